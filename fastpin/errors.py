@@ -1,0 +1,63 @@
+"""Every error that fastpin raises on purpose. All derive from :class:`FastpinError`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fastpin.state import Result
+
+
+class FastpinError(Exception):
+    """Base class of all errors raised by fastpin."""
+
+
+class InputError(FastpinError, ValueError):
+    """Input that can't be used. ``field`` names the field, the message says what is allowed."""
+
+    def __init__(self, field: str, message: str) -> None:
+        super().__init__(f"{field}: {message}")
+        self.field = field
+        self.reason = message
+
+
+class SolveError(FastpinError):
+    """A history that could not be followed to its end.
+
+    Attributes
+    ----------
+    step : int
+        Index of the load corner towards which the load was moving.
+    fraction : float
+        Fraction of that step that was solved, 0 to 1.
+    load : dict of str to float
+        The load at which the solution was lost, in the units of the history.
+    result : Result or None
+        Everything that was solved before.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        step: int = -1,
+        fraction: float = 0.0,
+        load: dict[str, float] | None = None,
+        result: Result | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.step = step
+        self.fraction = fraction
+        self.load = dict(load or {})
+        self.result = result
+
+
+class NoEquilibriumError(SolveError):
+    """No state of the pin carries the load: the pin spins, slides away or loses contact."""
+
+
+class ConvergenceError(SolveError):
+    """The solver could not find a state that meets the contact conditions; none is returned."""
+
+
+class ArcError(SolveError):
+    """The contact reaches an end of the arc of nodes that was given."""

@@ -1,0 +1,91 @@
+"""The fixed grid of nodes on which tractions live, piecewise linear between nodes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.materials import finite
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Nodes on an arc of the hole or on the whole circle.
+
+    Parameters
+    ----------
+    theta : ndarray, shape (n,)
+        Node angles in rad, strictly increasing, spanning less than a full turn. theta = -pi/2 is the bottom.
+    closed : bool
+        Whether the last node is joined to the first one (the whole circle).
+
+    Raises
+    ------
+    InputError
+        If there are fewer than 5 nodes, they do not increase, or they span a full turn or more.
+    """
+
+    theta: np.ndarray
+    closed: bool = False
+
+    def __post_init__(self) -> None:
+        theta = np.array(self.theta, dtype=float)
+        if theta.ndim != 1 or theta.size < 5:
+            raise InputError("nodes", f"must be at least 5, not {theta.size}")
+        if not np.all(np.isfinite(theta)) or np.any(np.diff(theta) <= 0.0):
+            raise InputError("theta", "node angles must be finite and strictly increasing")
+        if theta[-1] - theta[0] >= 2.0 * math.pi:
+            raise InputError("theta", "nodes must span less than a full turn")
+        theta.setflags(write=False)
+        object.__setattr__(self, "theta", theta)
+
+    @classmethod
+    def arc(cls, start: float, stop: float, nodes: int) -> Grid:
+        """`nodes` equally spaced nodes from angle `start` to angle `stop`, rad, both included."""
+        a, b = finite("arc start", start), finite("arc stop", stop)
+        if not 0.0 < b - a < 2.0 * math.pi:
+            raise InputError("arc", f"must run from a smaller to a larger angle, less than a full turn, not {a:g} to {b:g}")
+        return cls(np.linspace(a, b, _node_count(nodes)))
+
+    @classmethod
+    def circle(cls, nodes: int, start: float = -1.5 * math.pi) -> Grid:
+        """`nodes` equally spaced nodes on the whole circle, the first one at angle `start`."""
+        count = _node_count(nodes)
+        return cls(finite("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
+
+    @property
+    def size(self) -> int:
+        return int(self.theta.size)
+
+    def knots(self) -> tuple[np.ndarray, np.ndarray]:
+        """Left and right knots of every node's hat function, shape (n,) each.
+
+        The end nodes of an arc carry half hats (their outer knot is the node itself).
+        """
+        theta = self.theta
+        left = np.concatenate([theta[:1], theta[:-1]])
+        right = np.concatenate([theta[1:], theta[-1:]])
+        if self.closed:
+            left[0] = theta[-1] - 2.0 * math.pi
+            right[-1] = theta[0] + 2.0 * math.pi
+        return left, right
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Integral of every node's hat function, shape (n,), rad."""
+        left, right = self.knots()
+        return 0.5 * (right - left)
+
+    def wrap(self, angle: float) -> float:
+        """`angle` shifted by full turns into the turn that begins at the grid's middle minus pi."""
+        middle = 0.5 * (self.theta[0] + self.theta[-1])
+        return angle - 2.0 * math.pi * math.floor((angle - middle + math.pi) / (2.0 * math.pi))
+
+
+def _node_count(nodes: int) -> int:
+    if isinstance(nodes, bool) or not isinstance(nodes, (int, np.integer)) or nodes < 5:
+        raise InputError("nodes", f"must be a whole number of at least 5, not {nodes!r}")
+    return int(nodes)

@@ -1,0 +1,268 @@
+"""Elastic materials and the composite constants of a pin-plate pair.
+
+Equation numbers are those of Sundaram and Farris, "Mechanics of advancing pin-loaded contacts with
+friction". Index I in the paper is the pin here. Stresses in Pa, compliances in 1/Pa.
+
+Two sign conventions of Dundurs' parameters are in use. The *usual* one, with the pin as body 1, is
+
+    alpha = [(k+1)/G - (k_I+1)/G_I] / [(k+1)/G + (k_I+1)/G_I],    beta = alpha_star / (2 beta_star),
+
+positive when the plate is the more compliant body. The *paper* prints both with the opposite sign.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from fastpin.errors import InputError
+
+Plane = Literal["strain", "stress"]
+Convention = Literal["usual", "paper"]
+
+
+def finite(field: str, value: float) -> float:
+    """Return `value` as a float, or raise :class:`InputError` naming `field`."""
+    if isinstance(value, (bool, str)):
+        raise InputError(field, f"must be a number, not {value!r}")
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(field, f"must be a number, not {value!r}") from None
+    if not math.isfinite(number):
+        raise InputError(field, f"must be a finite number, not {number}")
+    return number
+
+
+def one_of(field: str, value: str, allowed: tuple[str, ...]) -> str:
+    """Return `value` if it is one of `allowed`, or raise :class:`InputError` naming `field`."""
+    if value not in allowed:
+        choices = " or ".join(f'"{choice}"' for choice in allowed)
+        raise InputError(field, f"must be {choices}, not {value!r}")
+    return value
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material.
+
+    Parameters
+    ----------
+    E : float
+        Young's modulus, Pa, positive; ``math.inf`` for a rigid body.
+    nu : float
+        Poisson's ratio, 0 to 0.5.
+    name : str, optional
+        Shown in tables and plots.
+
+    Raises
+    ------
+    InputError
+        If `E` is not positive or `nu` is outside [0, 0.5].
+    """
+
+    E: float
+    nu: float
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        modulus = self.E if self.E == math.inf else finite("E", self.E)
+        if modulus <= 0.0:
+            raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
+        ratio = finite("nu", self.nu)
+        if not 0.0 <= ratio <= 0.5:
+            raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")
+        object.__setattr__(self, "E", float(modulus))
+        object.__setattr__(self, "nu", ratio)
+
+    @classmethod
+    def rigid(cls) -> Material:
+        """The exact rigid limit (infinite modulus)."""
+        return cls(math.inf, 0.3, "rigid")
+
+    @property
+    def is_rigid(self) -> bool:
+        return math.isinf(self.E)
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)), Pa."""
+        return self.E / (2.0 * (1.0 + self.nu))
+
+    def kolosov(self, plane: Plane) -> float:
+        """Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress."""
+        if plane == "strain":
+            return 3.0 - 4.0 * self.nu
+        return (3.0 - self.nu) / (1.0 + self.nu)
+
+
+MATERIALS: dict[str, Material] = {
+    "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V"),
+    "aluminium": Material(69e9, 0.33, "aluminium"),
+    "steel": Material(210e9, 0.30, "steel"),
+    "nickel alloy": Material(199.9e9, 0.294, "nickel alloy"),
+}
+"""Named materials at room temperature.
+
+* Ti-6Al-4V (116 GPa, 0.32) and aluminium (69 GPa, 0.33): with these the pair has, in plane strain, the Dundurs
+  parameters 0.2507 and 0.0595, the paper's Ti6Al4V-Al pair (-0.2503, -0.0594 in its sign convention).
+* steel (210 GPa, 0.30): EN 1993-1-1, 3.2.6.
+* nickel alloy (199.9 GPa, 0.294): INCONEL alloy 718, Special Metals data sheet SMC-045, annealed and aged, 21 C.
+"""
+
+
+@dataclass(frozen=True)
+class MaterialPair:
+    """The pin's and the plate's material and their composite constants.
+
+    Parameters
+    ----------
+    pin, plate : Material
+        At most one of them rigid.
+    plane : {"strain", "stress"}
+
+    Raises
+    ------
+    InputError
+        If both bodies are rigid or `plane` is unknown.
+    """
+
+    pin: Material
+    plate: Material
+    plane: Plane = "strain"
+
+    def __post_init__(self) -> None:
+        one_of("plane", self.plane, ("strain", "stress"))
+        for field, body in (("pin", self.pin), ("plate", self.plate)):
+            if not isinstance(body, Material):
+                raise InputError(field, f"must be a Material, not {body!r}")
+        if self.pin.is_rigid and self.plate.is_rigid:
+            raise InputError("plate", "pin and plate can't both be rigid")
+
+    @classmethod
+    def from_dundurs(
+        cls,
+        alpha: float,
+        beta: float,
+        nu_pin: float,
+        plane: Plane = "strain",
+        convention: Convention = "usual",
+        beta_star: float = 1.0,
+    ) -> MaterialPair:
+        """A pair with given Dundurs parameters.
+
+        The two parameters do not determine the frictional problem: 1/(G_I beta_star) enters too, so the pin's
+        Poisson ratio and the plane state are needed.
+
+        Parameters
+        ----------
+        alpha, beta : float
+            Dundurs' parameters in the given sign `convention` (see the module's docstring).
+        nu_pin : float
+            Poisson's ratio of the pin.
+        beta_star : float
+            Composite compliance (32) of the pair, 1/Pa; it sets the scale of the moduli only.
+
+        Raises
+        ------
+        InputError
+            If no plate with 0 <= nu <= 0.5 gives these parameters.
+        """
+        one_of("convention", convention, ("usual", "paper"))
+        one_of("plane", plane, ("strain", "stress"))
+        sign = 1.0 if convention == "usual" else -1.0
+        a = sign * finite("alpha", alpha)
+        b = sign * finite("beta", beta)
+        scale = finite("beta_star", beta_star)
+        if scale <= 0.0:
+            raise InputError("beta_star", f"must be positive, not {scale:g}")
+        if not -1.0 <= a <= 1.0:
+            raise InputError("alpha", f"Dundurs' first parameter lies between -1 and 1, not {alpha:g}")
+        k_pin = Material(1.0, nu_pin).kolosov(plane)
+        inverse_g_pin = (1.0 - a) * scale / (k_pin + 1.0)
+        plus = (1.0 + a) * scale  # (k + 1)/G of the plate
+        minus = 2.0 * b * scale + (k_pin - 1.0) * inverse_g_pin  # (k - 1)/G of the plate
+        inverse_g = 0.5 * (plus - minus)
+        pin = Material.rigid() if a == 1.0 else _from_compliance(inverse_g_pin, finite("nu_pin", nu_pin))
+        if a == -1.0:
+            if abs(minus) > 1e-12 * scale:
+                needed = -sign * 0.5 * (k_pin - 1.0) * inverse_g_pin / scale
+                raise InputError("beta", f"a rigid plate (alpha {alpha:g}) requires beta = {needed:.6g}")
+            return cls(pin, Material.rigid(), plane)
+        nu = -1.0
+        if inverse_g > 0.0:
+            kolosov = plus / inverse_g - 1.0
+            nu = (3.0 - kolosov) / 4.0 if plane == "strain" else (3.0 - kolosov) / (1.0 + kolosov)
+        if not -1e-12 <= nu <= 0.5 + 1e-12:
+            raise InputError("beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}")
+        return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
+
+    def scaled(self, beta_star: float) -> MaterialPair:
+        """The same pair with both moduli scaled so that its composite compliance is `beta_star`."""
+        factor = self.beta_star / beta_star
+        pin = Material(self.pin.E * factor, self.pin.nu, self.pin.name)
+        plate = Material(self.plate.E * factor, self.plate.nu, self.plate.name)
+        return MaterialPair(pin, plate, self.plane)
+
+    @property
+    def pin_compliance(self) -> float:
+        """1/G_I, 1/Pa; 0 for a rigid pin."""
+        return 1.0 / self.pin.shear_modulus
+
+    @property
+    def plate_compliance(self) -> float:
+        """1/G, 1/Pa; 0 for a rigid plate."""
+        return 1.0 / self.plate.shear_modulus
+
+    @property
+    def pin_kolosov(self) -> float:
+        """kappa_I."""
+        return self.pin.kolosov(self.plane)
+
+    @property
+    def plate_kolosov(self) -> float:
+        """kappa."""
+        return self.plate.kolosov(self.plane)
+
+    @property
+    def alpha_star(self) -> float:
+        """Composite constant alpha* of Eq. (32), 1/Pa."""
+        return (self.plate_kolosov - 1.0) * self.plate_compliance - (self.pin_kolosov - 1.0) * self.pin_compliance
+
+    @property
+    def beta_star(self) -> float:
+        """Composite compliance beta* of Eq. (32), 1/Pa."""
+        plate = (self.plate_kolosov + 1.0) * self.plate_compliance
+        return 0.5 * (plate + (self.pin_kolosov + 1.0) * self.pin_compliance)
+
+    @property
+    def gamma(self) -> float:
+        """gamma of Eq. (39), centre load, 1/Pa."""
+        return self.beta_star + 0.5 * self.alpha_star - 2.0 * self.pin_compliance
+
+    @property
+    def gamma_prime(self) -> float:
+        """gamma' of Eq. (39), centre load, 1/Pa."""
+        return self.beta_star + 0.5 * self.alpha_star + 2.0 * self.pin_compliance
+
+    @property
+    def gamma_body(self) -> float:
+        """gamma_B of Eq. (56), body load, 1/Pa."""
+        return self.beta_star + 0.5 * self.alpha_star - self.pin_compliance
+
+    @property
+    def gamma_body_prime(self) -> float:
+        """gamma'_B of Eq. (56), body load, 1/Pa."""
+        return self.beta_star + 0.5 * self.alpha_star + self.pin_compliance
+
+    def dundurs(self, convention: Convention = "usual") -> tuple[float, float]:
+        """Dundurs' parameters (alpha, beta) in the given sign convention (see the module's docstring)."""
+        sign = 1.0 if one_of("convention", convention, ("usual", "paper")) == "usual" else -1.0
+        plate = (self.plate_kolosov + 1.0) * self.plate_compliance
+        pin = (self.pin_kolosov + 1.0) * self.pin_compliance
+        return sign * (plate - pin) / (plate + pin), sign * 0.5 * self.alpha_star / self.beta_star
+
+
+def _from_compliance(inverse_g: float, nu: float) -> Material:
+    return Material(2.0 * (1.0 + nu) / inverse_g, nu)

@@ -1,0 +1,129 @@
+"""The problem: materials, geometry, friction, how the pin is loaded and whether it may rotate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from fastpin.errors import InputError
+from fastpin.materials import MaterialPair, finite, one_of
+
+PinLoad = Literal["centre", "body"]
+Rotation = Literal["free", "fixed"]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An elastic pin in the hole of an infinite elastic plate, with Coulomb friction.
+
+    Parameters
+    ----------
+    pair : MaterialPair
+    hole_radius : float
+        R, m, positive.
+    clearance : float
+        Radial clearance R - R_D, m. Zero is a neat fit, negative an interference fit.
+    friction : float
+        Coefficient of friction, >= 0.
+    pin_load : {"centre", "body"}
+        The pin's load acts at its centre, or as a uniform body force (section 4 of the paper).
+    rotation : {"free", "fixed"}
+        A free pin carries the moment M (0 unless given); a fixed one has a prescribed rotation (0 unless given).
+        A body-loaded pin must be free: its potentials have a moment singularity otherwise (section 4).
+    hub_radius : float, optional
+        Only with ``rotation="fixed"``: the circle, m, whose mean rotation is prescribed. The rotation of a pin under
+        a centre moment depends on where it is measured; the paper's datum, the default, is
+        R / sqrt(kappa_I + 1). The whole rim is ``hub_radius=hole_radius``.
+    dimensionless : bool
+        Set by :meth:`from_load_parameter`; lifts the check that the clearance is smaller than the hole.
+
+    Raises
+    ------
+    InputError
+        Naming the field that is out of range, or the combination that the theory excludes.
+    """
+
+    pair: MaterialPair
+    hole_radius: float
+    clearance: float
+    friction: float
+    pin_load: PinLoad = "centre"
+    rotation: Rotation = "free"
+    hub_radius: float | None = None
+    dimensionless: bool = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.pair, MaterialPair):
+            raise InputError("pair", f"must be a MaterialPair, not {self.pair!r}")
+        radius = finite("hole_radius", self.hole_radius)
+        if radius <= 0.0:
+            raise InputError("hole_radius", f"must be positive, not {radius:g}")
+        clearance = finite("clearance", self.clearance)
+        if not self.dimensionless and abs(clearance) >= radius:
+            raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
+        friction = finite("friction", self.friction)
+        if friction < 0.0:
+            raise InputError("friction", f"must not be negative, not {friction:g}")
+        one_of("pin_load", self.pin_load, ("centre", "body"))
+        one_of("rotation", self.rotation, ("free", "fixed"))
+        if self.pin_load == "body" and self.rotation == "fixed":
+            raise InputError(
+                "rotation",
+                'a body-loaded pin must rotate freely (rotation = "free"): holding it takes a moment, and uniform body '
+                "forces leave that moment's singularity at the centre (section 4 of the paper)",
+            )
+        if self.hub_radius is not None:
+            hub = finite("hub_radius", self.hub_radius)
+            if self.rotation == "free":
+                raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
+            if not 0.0 < hub <= radius:
+                raise InputError("hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}")
+            object.__setattr__(self, "hub_radius", hub)
+        object.__setattr__(self, "hole_radius", radius)
+        object.__setattr__(self, "clearance", clearance)
+        object.__setattr__(self, "friction", friction)
+
+    @classmethod
+    def from_load_parameter(
+        cls,
+        pair: MaterialPair,
+        load_parameter: float,
+        friction: float,
+        pin_load: PinLoad = "centre",
+        rotation: Rotation = "free",
+        hub_radius: float | None = None,
+    ) -> Problem:
+        """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
+
+        With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`; tractions come out as N R/F,
+        displacements in units of F beta*, rotations in F beta*/R, remote stresses are given in F/R.
+        """
+        value = finite("load_parameter", load_parameter)
+        if not isinstance(pair, MaterialPair):
+            raise InputError("pair", f"must be a MaterialPair, not {pair!r}")
+        return cls(pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, dimensionless=True)
+
+    @property
+    def frictionless(self) -> bool:
+        return self.friction == 0.0
+
+    def load_parameter(self, force: float) -> float:
+        """L_p = (R - R_D) / (F beta*) for a force F, N/m."""
+        return self.clearance / (force * self.pair.beta_star)
+
+    def reference_force(self) -> float:
+        """R / beta*, N/m: the force unit in which tractions are strains."""
+        return self.hole_radius / self.pair.beta_star
+
+    @property
+    def hub_compliance(self) -> float:
+        """Rotation per int T dtheta of a held pin, in units of beta*: C_omega = hub_compliance * int T.
+
+        Zero for the paper's datum; [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r.
+        """
+        if self.hub_radius is None:
+            return 0.0
+        ratio = (self.hole_radius / self.hub_radius) ** 2
+        stiffness = 4.0 * math.pi * self.pair.beta_star
+        return (ratio - (self.pair.pin_kolosov + 1.0)) * self.pair.pin_compliance / stiffness
