@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.materials import finite
+from fastpin.problem import Problem
 
 LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
 """Names of the loads, in the order of every load vector.
@@ -170,6 +171,22 @@ class LoadHistory:
         rows = np.where(np.isnan(filled), 0, np.arange(len(filled))[:, None])
         latest = np.maximum.accumulate(rows, axis=0)
         return np.take_along_axis(filled, latest, axis=0)[1:]
+
+
+def check_loads(problem: Problem, history: LoadHistory) -> None:
+    """Raise :class:`InputError` if a load of `history` can't act in `problem`."""
+    given = history._given
+    moment, rotation = given[:, LOADS.index("M")], given[:, LOADS.index("rotation")]
+    if problem.pin_load == "body" and np.any(np.nan_to_num(moment) != 0.0):
+        raise InputError(
+            "M",
+            "a body-loaded pin can't carry a moment: uniform body forces leave the moment's singularity at the centre "
+            '(section 4 of the paper); use pin_load = "centre"',
+        )
+    if problem.rotation == "fixed" and not np.all(np.isnan(moment)):
+        raise InputError("M", 'the moment is a reaction where rotation = "fixed"; leave it out or let the pin rotate')
+    if problem.rotation == "free" and not np.all(np.isnan(rotation)):
+        raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed"')
 
 
 def named_load(vector: np.ndarray) -> dict[str, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,6 +9,7 @@ from typing import Any, overload
 
 import numpy as np
 
+from fastpin import zones
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory
 from fastpin.problem import Problem
@@ -17,7 +17,7 @@ from fastpin.problem import Problem
 SLIP_NEGATIVE, STICK, SLIP_POSITIVE, OPEN = -1, 0, 1, 2
 """Status of a node: slipping clockwise, sticking, slipping counter-clockwise (pin over plate), open."""
 
-Interval = tuple[float, float]
+Interval = zones.Interval
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,17 +73,131 @@ class State:
 
     @property
     def in_contact(self) -> bool:
+        """Whether any node is closed."""
         return bool(np.any(self.status != OPEN))
 
     @cached_property
     def contact(self) -> list[Interval]:
-        """Contact intervals (start, stop), rad, read between nodes: N^2 is extrapolated to zero.
+        """Contact intervals (start, stop), rad, read between nodes (N^2 is extrapolated to zero).
 
         A contact round the whole circle is one interval of length 2 pi.
         """
-        raise NotImplementedError
+        return zones.intervals(self.grid, self.status != OPEN, self.pressure)
 
     @cached_property
     def stick(self) -> list[Interval]:
-        """Stick intervals (start, stop), rad, read between nodes: (mu N - |T|)^2 is extrapolated to zero."""
-        raise NotImplementedError
+        """Stick intervals (start, stop), rad, read between nodes (mu N - |T| is extrapolated to zero)."""
+        reserve = self.problem.friction * self.pressure - np.abs(self.shear)
+        return zones.intervals(self.grid, self.status == STICK, reserve, self.contact)
+
+    @cached_property
+    def slip_zones(self) -> list[tuple[float, float, int]]:
+        """Slip zones (start, stop, sign), rad: what is in contact and does not stick, with the sign of the slip."""
+        return zones.complement(self.grid, self.contact, self.stick, self.status)
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest contact pressure, Pa, read between nodes."""
+        return self._pressure_peak[0]
+
+    @property
+    def peak_pressure_angle(self) -> float:
+        """Where the largest contact pressure acts, rad."""
+        return self._pressure_peak[1]
+
+    @property
+    def peak_shear(self) -> float:
+        """Shear traction of largest magnitude with its sign, Pa, read between nodes."""
+        return self._shear_peak[0]
+
+    @property
+    def peak_shear_angle(self) -> float:
+        """Where the shear traction of largest magnitude acts, rad."""
+        return self._shear_peak[1]
+
+    @cached_property
+    def _pressure_peak(self) -> tuple[float, float]:
+        return zones.smooth_peak(self.grid, self.pressure)
+
+    @cached_property
+    def _shear_peak(self) -> tuple[float, float]:
+        return zones.shear_peak(self)
+
+    @cached_property
+    def resultants(self) -> dict[str, float]:
+        """Force and moment on the pin from the tractions, (50), (51): P and Q in N/m, M in N."""
+        cos, sin = self.grid.trig_moments()
+        radius = self.problem.hole_radius
+        return {
+            "P": radius * float(cos @ self.shear - sin @ self.pressure),
+            "Q": radius * float(sin @ self.shear + cos @ self.pressure),
+            "M": -(radius**2) * float(self.grid.weights @ self.shear),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Restart:
+    """What a solution needs to go on: the last load (SI), the reference force (N/m) and the configuration."""
+
+    load: np.ndarray
+    force: float
+    configuration: Any
+
+
+class Result(Sequence[State]):
+    """The states of one solution, in the order of the history.
+
+    Attributes
+    ----------
+    problem : Problem
+    history : LoadHistory
+    grid : Grid
+    method : str
+        "path" or "increment".
+    statistics : dict of str to float
+        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (of the tableau), "increments" and
+        "seconds".
+    complete : bool
+        Whether the whole history was followed; False in the result that an error carries.
+    restart : Restart
+        For ``solve(..., start=result)``.
+    """
+
+    def __init__(
+        self,
+        states: Sequence[State],
+        problem: Problem,
+        history: LoadHistory,
+        grid: Grid,
+        method: str,
+        statistics: dict[str, float],
+        complete: bool,
+        restart: Restart | None,
+    ) -> None:
+        self._states = list(states)
+        self.problem = problem
+        self.history = history
+        self.grid = grid
+        self.method = method
+        self.statistics = statistics
+        self.complete = complete
+        self.restart = restart
+
+    @overload
+    def __getitem__(self, index: int) -> State: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[State]: ...
+
+    def __getitem__(self, index: int | slice) -> State | list[State]:
+        return self._states[index]
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def __iter__(self) -> Iterator[State]:
+        return iter(self._states)
+
+    def __repr__(self) -> str:
+        whole = "complete" if self.complete else "incomplete"
+        return f"<Result: {len(self)} states, {self.grid.size} nodes, {self.method}, {whole}>"

@@ -1,0 +1,8 @@
+"""``python -m fastpin``."""
+
+import sys
+
+from fastpin.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,349 @@
+"""Closed forms against which solutions are checked.
+
+Lengths along the contact are angles from the direction of the load, rad; tractions are in units of F/R, and
+the load parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays that
+broadcast; numbers give a float.
+
+Sources: A. Persson, "On the stress distribution of cylindrical elastic bodies in contact", dissertation,
+Chalmers (1964); M. Ciavarella and P. Decuzzi, "The state of stress induced by the plane frictionless
+cylindrical contact", Int. J. Solids Struct. 38 (2001); K. L. Johnson, "Contact Mechanics" (1985), chapters 4
+and 7; D. Nowell and D. A. Hills, "Mechanics of fretting fatigue tests", Int. J. Mech. Sci. 29 (1987); D. A.
+Spence, "An eigenvalue problem for elastic contact with finite friction", Proc. Camb. Phil. Soc. 73 (1973).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from fastpin.errors import InputError
+from fastpin.materials import one_of
+
+Branch = Literal["loading", "unloading", "reloading"]
+Values = float | np.ndarray
+
+
+def persson_load_parameter(half_angle: ArrayLike, mismatch: ArrayLike = 0.0) -> Values:
+    """Load parameter at which the frictionless contact has a given half-angle.
+
+    L_p = [(a - 1) (ln(b^2 + 1) + 2 b^4) + 2] / [8 pi b^2 (b^2 + 1)],  b = tan(half_angle/2): Ciavarella and
+    Decuzzi; a = 0 is Persson's formula. Exact for alpha* = 0.
+
+    Parameters
+    ----------
+    half_angle : float or ndarray
+        Half of the contact angle, rad, between 0 and pi.
+    mismatch : float or ndarray
+        a = (E'_plate - E'_pin)/(E'_plate + E'_pin), -1 to 1, with E' = E/(1 - nu^2) in plane strain and E in
+        plane stress; the paper's first Dundurs parameter.
+
+    Returns
+    -------
+    float or ndarray
+        L_p; negative (interference) beyond the half-angle of the neat fit.
+
+    Raises
+    ------
+    InputError
+        If `half_angle` or `mismatch` is out of range.
+    """
+    eps = _number("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    a = _number("mismatch", mismatch, -1.0, 1.0)
+    return _value(_load_parameter(np.tan(0.5 * eps), a))
+
+
+def persson_half_angle(load_parameter: ArrayLike, mismatch: ArrayLike = 0.0) -> Values:
+    """Half-angle of the frictionless contact, rad: the inverse of :func:`persson_load_parameter`.
+
+    Parameters
+    ----------
+    load_parameter : float or ndarray
+        L_p, above (a - 1)/(4 pi), where the contact closes round the pin; 0 is the neat fit.
+    mismatch : float or ndarray
+        a, see :func:`persson_load_parameter`.
+
+    Raises
+    ------
+    InputError
+        If `mismatch` is out of range or the contact goes all round the pin.
+    """
+    lp = _number("load_parameter", load_parameter)
+    a = _number("mismatch", mismatch, -1.0, 1.0)
+    lp, a = np.broadcast_arrays(lp, a)
+    limit = (a - 1.0) / (4.0 * math.pi)
+    if np.any(lp <= limit):
+        worst = np.argmin(lp - limit)
+        raise InputError(
+            "load_parameter",
+            f"must be above (mismatch - 1)/(4 pi) = {limit.flat[worst]:.6g}, not {lp.flat[worst]:g}: "
+            "the contact would go all round the pin",
+        )
+    flat = [_half_angle(float(one), float(ratio)) for one, ratio in zip(lp.flat, a.flat, strict=True)]
+    return _value(np.reshape(flat, lp.shape))
+
+
+def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
+    """Pressure N R/F of the frictionless contact (Persson; for any mismatch if alpha* = 0).
+
+    N R/F = (2/pi) r / [q (1 + y^2)] + ln[(q + r)/(q - r)] / [2 pi b^2 (b^2 + 1)] with b = tan(half_angle/2),
+    y = tan(phi/2), r = sqrt(b^2 - y^2), q = sqrt(b^2 + 1).
+
+    Parameters
+    ----------
+    phi : float or ndarray
+        Angle from the direction of the load, rad, between -pi and pi.
+    half_angle : float or ndarray
+        Half of the contact angle, rad, between 0 and pi.
+
+    Returns
+    -------
+    float or ndarray
+        Zero outside the contact.
+    """
+    angle = _number("phi", phi, -math.pi, math.pi)
+    eps = _number("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    inside = np.abs(angle) < eps
+    b = np.tan(0.5 * eps)
+    y = np.tan(0.5 * np.where(inside, angle, 0.0))
+    r = np.sqrt(np.where(inside, (b - y) * (b + y), 0.0))
+    b2 = b * b
+    # (q + r)/(q - r) = [(q + r)/sqrt(1 + y^2)]^2, whose logarithm is 2 arsinh(r/sqrt(1 + y^2))
+    second = np.arcsinh(r / np.sqrt(1.0 + y * y)) / (math.pi * b2 * (b2 + 1.0))
+    return _value(2.0 / math.pi * r / (np.sqrt(b2 + 1.0) * (1.0 + y * y)) + second)
+
+
+def hertz_half_angle(load_parameter: ArrayLike) -> Values:
+    """Half-angle of Hertz's contact, rad: 1/sqrt(pi L_p), the limit of large L_p.
+
+    Raises
+    ------
+    InputError
+        If `load_parameter` is not positive.
+    """
+    lp = _number("load_parameter", load_parameter, 0.0, open_low=True)
+    return _value(1.0 / np.sqrt(math.pi * lp))
+
+
+def hertz_peak_pressure(load_parameter: ArrayLike) -> Values:
+    """Peak pressure N R/F of Hertz's contact: 2 sqrt(L_p/pi).
+
+    Raises
+    ------
+    InputError
+        If `load_parameter` is not positive.
+    """
+    lp = _number("load_parameter", load_parameter, 0.0, open_low=True)
+    return _value(2.0 * np.sqrt(lp / math.pi))
+
+
+def cattaneo_mindlin_stick_ratio(load_ratio: ArrayLike) -> Values:
+    """Half-width of the stick zone over that of the contact, sqrt(1 - |Q|/(mu P)).
+
+    Parameters
+    ----------
+    load_ratio : float or ndarray
+        Q/(mu P), -1 to 1.
+
+    Raises
+    ------
+    InputError
+        If `load_ratio` is out of range (the contact slides).
+    """
+    return _value(np.sqrt(1.0 - np.abs(_number("load_ratio", load_ratio, -1.0, 1.0))))
+
+
+def cattaneo_mindlin_shear(
+    x: ArrayLike,
+    half_width: float,
+    peak_pressure: float,
+    friction: float,
+    load_ratio: float,
+    peak_ratio: float | None = None,
+    branch: Branch = "loading",
+    eccentricity: float = 0.0,
+) -> Values:
+    """Shear traction of like cylinders in partial slip (Cattaneo, Mindlin), in units of `peak_pressure`.
+
+    Loading: q = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x + e)^2/c^2)], c/a = sqrt(1 - Q/(mu P)). From +Q_max
+    to Q twice the same form with (Q_max - Q)/2 is taken away; from -Q_max to Q twice the form with (Q_max + Q)/2
+    is added to its negative.
+
+    Parameters
+    ----------
+    x : float or ndarray
+        Distance from the middle of the contact, in units of `half_width`'s.
+    half_width, peak_pressure, friction : float
+        a > 0, p0 > 0 and mu >= 0.
+    load_ratio : float
+        Q/(mu P) now, -1 to 1; not negative on the loading branch.
+    peak_ratio : float, optional
+        Q_max/(mu P), needed on the other two branches; `load_ratio` lies between its negative and itself.
+    branch : {"loading", "unloading", "reloading"}
+        First loading from 0, on the way from +Q_max to -Q_max, or back from -Q_max to +Q_max.
+    eccentricity : float
+        Shift e of the stick zone under bulk stress, loading only; see :func:`bulk_stress_eccentricity`.
+
+    Returns
+    -------
+    float or ndarray
+        q, with the sign of Q on first loading; zero outside the contact.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    """
+    one_of("branch", branch, ("loading", "unloading", "reloading"))
+    place = _number("x", x)
+    a = float(_number("half_width", half_width, 0.0, open_low=True))
+    p0 = float(_number("peak_pressure", peak_pressure, 0.0, open_low=True))
+    mu = float(_number("friction", friction, 0.0))
+    e = float(_number("eccentricity", eccentricity))
+    if branch == "loading":
+        now = float(_number("load_ratio", load_ratio, 0.0, 1.0))
+        _inside(e, math.sqrt(1.0 - now) * a, a)
+        return _value(mu * p0 * _partial_slip(place, a, now, e))
+    if peak_ratio is None:
+        raise InputError("peak_ratio", f"the {branch} branch needs it")
+    if e != 0.0:
+        raise InputError("eccentricity", "only the loading branch takes it")
+    peak = float(_number("peak_ratio", peak_ratio, 0.0, 1.0))
+    now = float(_number("load_ratio", load_ratio, -peak, peak))
+    sign = 1.0 if branch == "unloading" else -1.0
+    first = _partial_slip(place, a, peak, 0.0)
+    change = _partial_slip(place, a, 0.5 * (peak - sign * now), 0.0)
+    return _value(sign * mu * p0 * (first - 2.0 * change))
+
+
+def bulk_stress_eccentricity(
+    bulk_stress: float, half_width: float, peak_pressure: float, friction: float, load_ratio: float = 0.0
+) -> float:
+    """Shift of the stick zone under a bulk stress (Nowell and Hills).
+
+    e = a sigma/(4 mu p0), stick at |x + e| < c.
+
+    Parameters
+    ----------
+    bulk_stress : float
+        sigma, in units of `peak_pressure`'s; it rises together with Q.
+    half_width, peak_pressure, friction : float
+        a, p0 and mu, positive.
+    load_ratio : float
+        Q/(mu P), 0 to 1, which gives c = a sqrt(1 - Q/(mu P)).
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or |e| + c exceeds a: then slip has two directions and the form fails.
+    """
+    sigma = float(_number("bulk_stress", bulk_stress))
+    a = float(_number("half_width", half_width, 0.0, open_low=True))
+    p0 = float(_number("peak_pressure", peak_pressure, 0.0, open_low=True))
+    mu = float(_number("friction", friction, 0.0, open_low=True))
+    now = float(_number("load_ratio", load_ratio, 0.0, 1.0))
+    e = a * sigma / (4.0 * mu * p0)
+    _inside(e, math.sqrt(1.0 - now) * a, a, "bulk_stress")
+    return e
+
+
+def spence_stick_ratio(mu_over_beta: ArrayLike) -> Values:
+    """Stick zone over contact in the normal loading of unlike half-planes (Spence), pressure uncoupled.
+
+    K(k)/K(k') = mu/|beta| for the modulus k = c/a, with K the complete elliptic integral of the first kind and
+    beta Dundurs' second parameter. Inverted by the nome: k = [theta_2/theta_3]^2 at exp(-pi |beta|/mu).
+
+    Parameters
+    ----------
+    mu_over_beta : float or ndarray
+        mu/|beta|, not negative; ``math.inf`` (like materials) gives 1.
+
+    Raises
+    ------
+    InputError
+        If `mu_over_beta` is negative.
+    """
+    ratio = np.asarray(mu_over_beta, dtype=float)
+    if np.any(np.isnan(ratio)) or np.any(ratio < 0.0):
+        raise InputError("mu_over_beta", f"must not be negative, not {np.min(ratio):g}")
+    with np.errstate(divide="ignore"):
+        small = _modulus(np.exp(-math.pi / np.minimum(ratio, 1.0)))
+    other = _modulus(np.exp(-math.pi * np.maximum(ratio, 1.0)))
+    return _value(np.where(ratio <= 1.0, small, np.sqrt((1.0 - other) * (1.0 + other))))
+
+
+def _load_parameter(b: np.ndarray | float, a: np.ndarray | float) -> np.ndarray:
+    b2 = np.square(b)
+    return ((np.asarray(a) - 1.0) * (np.log1p(b2) + 2.0 * b2 * b2) + 2.0) / (8.0 * math.pi * b2 * (b2 + 1.0))
+
+
+def _half_angle(lp: float, a: float) -> float:
+    # L_p falls monotonically with b, like 1/(4 pi b^2) for small b
+    low = high = 0.0  # ln b
+    while _load_parameter(math.exp(low), a) < lp:
+        low -= 1.0
+    while _load_parameter(math.exp(high), a) > lp:
+        high += 1.0
+        if high > 150.0:
+            return math.pi
+    return 2.0 * math.atan(
+        math.exp(brentq(lambda x: _load_parameter(math.exp(x), a) - lp, low, high, xtol=1e-15))
+    )
+
+
+def _partial_slip(x: np.ndarray, a: float, ratio: float, e: float) -> np.ndarray:
+    """The loading form over mu p0, for Q/(mu P) = `ratio`."""
+    c = a * math.sqrt(1.0 - ratio)
+    outer = np.sqrt(np.maximum(1.0 - np.square(x / a), 0.0))
+    if c == 0.0:
+        return outer
+    return outer - c / a * np.sqrt(np.maximum(1.0 - np.square((x + e) / c), 0.0))
+
+
+def _inside(e: float, c: float, a: float, field: str = "eccentricity") -> None:
+    if abs(e) + c > a * (1.0 + 1e-12):
+        raise InputError(
+            field, f"the stick zone, {c:g} wide and {abs(e):g} off, leaves the contact, {a:g} wide"
+        )
+
+
+def _modulus(nome: np.ndarray) -> np.ndarray:
+    """Elliptic modulus of a nome of at most exp(-pi): five terms give all digits."""
+    even = sum(nome ** (n * (n + 1)) for n in range(1, 5))
+    square = sum(nome ** (n * n) for n in range(1, 5))
+    return 4.0 * np.sqrt(nome) * np.square((1.0 + even) / (1.0 + 2.0 * square))
+
+
+def _number(
+    field: str,
+    value: ArrayLike,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    open_low: bool = False,
+    open_high: bool = False,
+) -> np.ndarray:
+    """`value` as a float array, or :class:`InputError` naming `field` if it is not finite or out of range."""
+    try:
+        number = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(field, f"must be a number, not {value!r}") from None
+    bad = ~np.isfinite(number)
+    bad |= number <= low if open_low else number < low
+    bad |= number >= high if open_high else number > high
+    if np.any(bad):
+        first = number[bad].flat[0]
+        if not math.isfinite(first):
+            raise InputError(field, f"must be finite, not {first}")
+        below = "above" if open_low else "at least"
+        beyond = "below" if open_high else "at most"
+        bounds = [f"{below} {low:g}"] * (low > -math.inf) + [f"{beyond} {high:g}"] * (high < math.inf)
+        raise InputError(field, f"must be {' and '.join(bounds)}, not {first:g}")
+    return number
+
+
+def _value(number: np.ndarray) -> Values:
+    return float(number) if np.ndim(number) == 0 else number

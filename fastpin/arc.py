@@ -1,0 +1,94 @@
+"""The choice of the arc of nodes: from Hertz's estimate, over a coarse run, to the places that are ever in contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from fastpin.collocation import System
+from fastpin.errors import ArcError, SolveError
+from fastpin.grid import Grid
+from fastpin.problem import Problem
+from fastpin.run import Run
+
+COARSE_NODES = 121
+WHOLE = 5.6  # an arc wider than this, rad, becomes the whole circle
+CORNERS_ONLY = np.array([1.0])
+
+
+def grids_to_try(problem: Problem, values: np.ndarray, force: float, nodes: int) -> Iterator[Grid]:
+    """Grids of `nodes` nodes, each wider than the one before; the last one is the whole circle.
+
+    The first one spans the nodes that a coarse run had in contact, and a margin.
+    """
+    Grid.circle(nodes)  # checks the number of nodes before anything is computed
+    arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force)
+    while arc is not None and arc[1] - arc[0] < WHOLE:
+        yield Grid.arc(*arc, nodes)
+        arc = _widened(arc, 1.25)
+    yield Grid.circle(nodes)
+
+
+def _touched_arc(problem: Problem, values: np.ndarray, force: float) -> tuple[float, float] | None:
+    """The arc of all places that are ever in contact, with a margin; None for the whole circle."""
+    arc = _estimated_arc(problem, values)
+    for _ in range(12):
+        if arc is not None and arc[1] - arc[0] >= WHOLE:
+            arc = None
+        grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
+        try:
+            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY)
+            run.follow(values)
+            margin = 4
+        except ArcError:
+            assert arc is not None
+            arc = _widened(arc, 1.5)
+            continue
+        except SolveError:
+            margin = 12  # the fine run says what is wrong, or gets further
+        touched = np.flatnonzero(run.touched)
+        if touched.size == 0:
+            return arc
+        if grid.closed:
+            return _arc_of_circle(grid, touched, margin)
+        first, last = max(touched[0] - margin, 0), min(touched[-1] + margin, grid.size - 1)
+        found = float(grid.theta[first]), float(grid.theta[last])
+        if last - first > 0.4 * grid.size:
+            return found
+        arc = _widened(found, 1.1)  # too coarse to tell: look closer
+    return arc
+
+
+def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] | None:
+    """Directions of the pin's force at all corners and the half-angle of Hertz's contact at the largest one."""
+    pin = np.hypot(values[:, 0], values[:, 1])
+    remote = 0.5 * problem.pair.plate_compliance * (problem.pair.plate_kolosov + 1.0)
+    ovality = problem.hole_radius * remote * float(np.abs(values[:, 3:5]).max())
+    if not pin.any() or ovality > 0.2 * problem.clearance:
+        return None
+    loaded = pin > 0.0
+    angles = np.unwrap(np.arctan2(-values[loaded, 0], values[loaded, 1]))
+    parameter = problem.load_parameter(float(pin.max()))
+    half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
+    return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
+
+
+def _arc_of_circle(grid: Grid, touched: np.ndarray, margin: int) -> tuple[float, float] | None:
+    """The complement of the widest untouched part of the circle; None if that part is small."""
+    gaps = np.diff(np.r_[touched, touched[0] + grid.size])
+    widest = int(np.argmax(gaps))
+    if gaps[widest] < 0.15 * grid.size + 2 * margin:
+        return None
+    step = 2.0 * math.pi / grid.size
+    start = grid.theta[0] + step * (touched[widest] + gaps[widest] - margin)
+    stop = grid.theta[0] + step * (touched[widest] + grid.size + margin)
+    middle = 0.5 * (start + stop)
+    turns = 2.0 * math.pi * math.floor((middle + 1.5 * math.pi) / (2.0 * math.pi))
+    return float(start - turns), float(stop - turns)
+
+
+def _widened(arc: tuple[float, float], factor: float) -> tuple[float, float]:
+    middle, half = 0.5 * (arc[0] + arc[1]), 0.5 * factor * (arc[1] - arc[0])
+    return middle - half, middle + half

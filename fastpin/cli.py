@@ -1,0 +1,267 @@
+"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``.
+
+Solver, figures and storage are imported when they are needed, so that help and checks answer at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fastpin.casefile import EXAMPLE, Case, CaseFileError, builtin_case, checked_between, read_case
+from fastpin.errors import FastpinError, InputError, SolveError
+from fastpin.files import check_writable, replacing
+from fastpin.report import describe, state_table, summary, version
+
+if TYPE_CHECKING:
+    from fastpin.state import Result
+
+EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
+FIGURE_FORMATS = (".png", ".pdf", ".svg")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        Exit code: 0; 1 when the loads could not be followed to their end or a file could not be written;
+        2 for input that can't be used; 130 when interrupted.
+    """
+    try:
+        options = _parser().parse_args(arguments)
+        code = int(options.command(options))
+        sys.stdout.flush()
+        return code
+    except CaseFileError as error:
+        print(error, file=sys.stderr)  # a line for each fault, with the file's name
+        return EXIT_INPUT
+    except InputError as error:
+        return _fail(str(error), EXIT_INPUT)
+    except FastpinError as error:
+        return _fail(str(error), EXIT_FAILED)
+    except KeyboardInterrupt:
+        return _fail("interrupted; nothing was written", EXIT_INTERRUPTED)
+    except MemoryError:
+        return _fail("not enough memory: use fewer nodes or store fewer states", EXIT_FAILED)
+    except BrokenPipeError:  # the reader of our output has gone (fastpin run | head)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_PIPE
+    except OSError as error:
+        return _fail(str(error), EXIT_FAILED)
+
+
+def _fail(message: str, code: int) -> int:
+    print(f"fastpin: {message}", file=sys.stderr)
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="fastpin",
+        description="Frictional contact of an elastic pin in the hole of an elastic plate.",
+        epilog="Start with: fastpin example > case.toml; fastpin run case.toml",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"fastpin {version()}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    example = commands.add_parser("example", help="print a commented case file", allow_abbrev=False)
+    example.set_defaults(command=_example)
+
+    check = commands.add_parser(
+        "check", help="say what a case file means, or all that is wrong", allow_abbrev=False
+    )
+    check.add_argument("case", type=Path, help="case file (TOML)")
+    check.set_defaults(command=_check)
+
+    run = commands.add_parser("run", help="solve a case and print its states", allow_abbrev=False)
+    run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
+    run.add_argument(
+        "--json",
+        metavar="FILE",
+        nargs="?",
+        const="-",
+        help="write a summary as JSON; without FILE, or with -, to standard output instead of the table",
+    )
+    run.add_argument(
+        "--plot",
+        metavar="FILE",
+        nargs="?",
+        const=Path("tractions.png"),
+        type=Path,
+        help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
+    )
+    run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write everything to an HDF5 file")
+    run.add_argument("--nodes", type=int, help="number of nodes")
+    run.add_argument("--method", help="path or increment")
+    run.add_argument("--increments", type=int, help="increments a corner (method increment)")
+    run.add_argument(
+        "--between",
+        metavar="N",
+        help="more states inside every step: how many, or fractions such as 0.25,0.5",
+    )
+    run.set_defaults(command=_run)
+    return parser
+
+
+def _example(_: argparse.Namespace) -> int:
+    print(EXAMPLE, end="")
+    return EXIT_OK
+
+
+def _check(options: argparse.Namespace) -> int:
+    print(describe(read_case(options.case)))
+    return EXIT_OK
+
+
+def _run(options: argparse.Namespace) -> int:
+    case = builtin_case() if options.case is None else read_case(options.case)
+    case = _overridden(case, options)
+    _check_outputs(options)
+    result, failure = _solve(case)
+    states = [] if result is None else list(result)
+    statistics = {} if result is None else result.statistics
+
+    if options.json != "-":
+        _print_states(case, result)
+    code = EXIT_OK
+    if failure is not None:
+        code = _fail(str(failure), EXIT_FAILED)
+
+    error = None if failure is None else str(failure)
+    writers: list[tuple[Any, Callable[[Path], None]]] = []
+    document = json.dumps(summary(case, states, statistics, error), indent=2, allow_nan=False) + "\n"
+    if options.json == "-":
+        sys.stdout.write(document)
+    elif options.json is not None:
+        writers.append((options.json, lambda path: _write_text(path, document)))
+    if result is not None and states:
+        writers.append((options.plot, lambda path: _plot(result, path, case.title)))
+        writers.append((options.output, lambda path: _store(result, path, error)))
+    for path, write in writers:
+        if path is None:
+            continue
+        try:
+            write(Path(path))
+        except (OSError, InputError) as trouble:  # the other files are written all the same
+            code = _fail(f"can't write {path}: {trouble}", EXIT_FAILED)
+    return code
+
+
+def _overridden(case: Case, options: argparse.Namespace) -> Case:
+    """The case with the solver options of the command line."""
+    given: dict[str, Any] = {}
+    for name in ("nodes", "method", "increments"):
+        if getattr(options, name) is not None:
+            given[name] = getattr(options, name)
+    if options.between is not None:
+        given["between"] = _between(options.between)
+    try:
+        return dataclasses.replace(case, options=dataclasses.replace(case.options, **given))
+    except InputError as error:
+        raise InputError(f"--{error.field}", error.reason) from None
+
+
+def _between(text: str) -> int | tuple[float, ...]:
+    try:
+        value: object = (
+            int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
+        )
+    except ValueError:
+        value = text
+    try:
+        return checked_between(value)
+    except InputError as error:
+        raise InputError("--between", error.reason) from None
+
+
+def _check_outputs(options: argparse.Namespace) -> None:
+    """Find out before the work what could not be written after it."""
+    targets = {"--json": options.json, "--plot": options.plot, "--output": options.output}
+    chosen = {name: Path(path) for name, path in targets.items() if path is not None and path != "-"}
+    seen: dict[Path, str] = {}
+    for name, path in chosen.items():
+        # "fastpin run --json case.toml" takes the case file for the output.
+        if path.suffix == ".toml" or (options.case is not None and path.resolve() == options.case.resolve()):
+            raise InputError(
+                name, f"won't overwrite the case file {path}; write the case file before the options"
+            )
+        if name == "--plot" and path.suffix.lower() not in FIGURE_FORMATS:
+            raise InputError(
+                name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}"
+            )
+        check_writable(path)
+        other = seen.setdefault(path.resolve(), name)
+        if other != name:
+            raise InputError(name, f"writes the same file as {other}: {path}")
+
+
+def _solve(case: Case) -> tuple[Result | None, SolveError | None]:
+    from fastpin.solve import solve
+
+    with _progress(len(case.history)) as progress:
+        try:
+            return solve(case.problem, case.history, progress=progress, **case.options.keywords()), None
+        except SolveError as error:
+            return error.result, error
+
+
+@contextmanager
+def _progress(steps: int) -> Iterator[Callable[[float, int], None]]:
+    """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
+    from tqdm import tqdm
+
+    with tqdm(
+        total=steps,
+        delay=2,
+        disable=None,
+        leave=False,
+        file=sys.stderr,
+        bar_format="{percentage:3.0f}% |{bar}| load point {n:.2f} of {total}, {remaining} left",
+    ) as bar:
+
+        def report(done: float, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield report
+
+
+def _print_states(case: Case, result: Result | None) -> None:
+    if case.title:
+        print(case.title)
+    if result is None or not len(result):
+        print("no state was reached")
+        return
+    print(state_table(case.problem, list(result)))
+    statistics = result.statistics
+    known = [
+        f"{statistics[name]:.4g} {name}" for name in ("events", "exchanges", "seconds") if name in statistics
+    ]
+    print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
+
+
+def _write_text(path: Path, text: str) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _plot(result: Result, path: Path, title: str) -> None:
+    from fastpin.plot import plot_tractions
+
+    plot_tractions(result, path, title=title)
+
+
+def _store(result: Result, path: Path, error: str | None) -> None:
+    from fastpin.store import save
+
+    save(result, path, error=error)

@@ -1,0 +1,298 @@
+"""The matrices of one problem on one grid, and the contact's configuration in dimensionless form.
+
+With a reference force F, tractions are in F/R, displacements in F beta*, rotations in F beta*/R. The pin's motion
+(c_x, c_y, omega) counts from the concentric position, and
+
+    gap   h = gap0 + direct N + cross T  - c_x cos - c_y sin             + (loads)    Eqs. (9)-(12), (15)
+    slip  s =      - cross N + direct T  - c_x sin + c_y cos + omega     + (loads)    Eqs. (9)-(12), (18)
+
+where the terms of the displacement kernels that depend on the resultants only (the w terms of the pin's load) stand
+with the loads: they are known once P and Q are. What is left is symmetric.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import lapack
+
+from fastpin import kernels
+from fastpin.grid import Grid
+from fastpin.loading import LOADS
+from fastpin.problem import Problem
+from fastpin.state import OPEN, SLIP_POSITIVE, STICK
+
+P, Q, M, SXX, SYY, ROTATION = range(len(LOADS))
+
+MAX_RESIDUAL = 1e-9
+"""Largest relative violation of the contact conditions in a state that is returned."""
+
+SINGULAR = 1e-13
+"""A system whose reciprocal condition number is below this is a mechanism."""
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Units of the dimensionless quantities, SI."""
+
+    force: float  # F, N/m
+    traction: float  # F/R, Pa
+    displacement: float  # F beta*, m
+    rotation: float  # F beta*/R, rad
+    energy: float  # F^2 beta*, J/m
+    loads: np.ndarray  # unit of every load in the order of LOADS
+
+    @classmethod
+    def of(cls, problem: Problem, force: float) -> Scales:
+        radius, beta = problem.hole_radius, problem.pair.beta_star
+        traction, rotation = force / radius, force * beta / radius
+        loads = np.array([force, force, force * radius, traction, traction, rotation])
+        return cls(force, traction, force * beta, rotation, force * force * beta, loads)
+
+
+@dataclass(eq=False)
+class Configuration:
+    """Everything that evolves: tractions, gap, slip, motion and status at one load (dimensionless).
+
+    ``slip`` is the whole tangential displacement difference (18) from the concentric position, ``rest_slip`` its
+    value where the pin came to rest; users see the difference. ``rest`` is the motion at rest.
+    """
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    gap: np.ndarray
+    slip: np.ndarray
+    status: np.ndarray
+    motion: np.ndarray
+    load: np.ndarray
+    rest: np.ndarray
+    rest_slip: np.ndarray
+    dissipation: float = 0.0
+    work: float = 0.0
+
+    def copy(self) -> Configuration:
+        arrays = {k: v.copy() for k, v in vars(self).items() if isinstance(v, np.ndarray)}
+        return replace(self, **arrays)
+
+    @property
+    def closed(self) -> np.ndarray:
+        return self.status != OPEN
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """The collocation matrices of one problem on one grid.
+
+    ``operator`` (2n, 2n) maps (N, T) to (h, s); ``motion`` (2n, 3) the rigid motion; ``loads`` (2n, 6) the loads;
+    ``gap0`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). ``equilibrium @ (N, T) + motion_rows @ motion = forces @ load`` are the equilibrium
+    conditions (50), (51) or, where the rotation is held, its prescription.
+    """
+
+    problem: Problem
+    grid: Grid
+    scales: Scales
+    gap0: float
+    friction: float
+    operator: np.ndarray
+    motion: np.ndarray
+    loads: np.ndarray
+    equilibrium: np.ndarray
+    motion_rows: np.ndarray
+    forces: np.ndarray
+    weights: np.ndarray
+    plate: float
+
+    @property
+    def resting_status(self) -> int:
+        """Status of a closed node that does not move: sticking, or slipping where there is no friction."""
+        return STICK if self.friction > 0.0 else SLIP_POSITIVE
+
+    @classmethod
+    def build(cls, problem: Problem, grid: Grid, force: float) -> System:
+        """Fill the matrices of `problem` on `grid` with reference force `force`, N/m."""
+        pair = problem.pair
+        n, theta = grid.size, grid.theta
+        left, right = grid.knots()
+        spacing = np.diff(theta)
+        uniform = bool(np.ptp(spacing) <= 1e-12 * spacing[0] * n)
+        direct, cross = np.empty((n, n)), np.empty((n, n))
+        kernels.fill_log(theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
+
+        operator = np.empty((2 * n, 2 * n), order="F")
+        weights = grid.weights
+        uniform_part = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
+        operator[:n, :n] = (direct - uniform_part * weights) / (4.0 * math.pi)
+        operator[:n, n:] = cross / (4.0 * math.pi)
+        operator[n:, :n] = -cross / (4.0 * math.pi)
+        operator[n:, n:] = direct / (4.0 * math.pi)
+
+        cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
+        motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
+        share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
+        point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
+        plate = 0.5 * (1.0 - uniform_part)  # R kappa'/(2 G) per beta*, Eq. (42)
+        loads = np.zeros((2 * n, len(LOADS)))
+        loads[:, P] = point * np.r_[sin, cos]
+        loads[:, Q] = point * np.r_[-cos, sin]
+        loads[:, SXX] = plate * np.r_[0.5 + np.cos(2 * theta), np.sin(2 * theta)]
+        loads[:, SYY] = plate * np.r_[0.5 - np.cos(2 * theta), -np.sin(2 * theta)]
+
+        cos_moment, sin_moment = grid.trig_moments()
+        equilibrium = np.zeros((3, 2 * n))
+        equilibrium[0] = np.r_[cos_moment, sin_moment]  # Q
+        equilibrium[1] = np.r_[sin_moment, -cos_moment]  # -P
+        motion_rows, forces = np.zeros((3, 3)), np.zeros((3, len(LOADS)))
+        forces[0, Q], forces[1, P] = 1.0, -1.0
+        if problem.rotation == "free" and not problem.frictionless:
+            equilibrium[2, n:] = -weights  # M
+            forces[2, M] = 1.0
+        else:
+            motion_rows[2, 2] = 1.0
+            equilibrium[2, n:] = -problem.hub_compliance * weights
+            forces[2, ROTATION] = 1.0
+        scales = Scales.of(problem, force)
+        return cls(
+            problem, grid, scales, problem.clearance / scales.displacement, problem.friction,
+            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
+        )  # fmt: skip
+
+    def solve(self, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, gap0: float) -> Solution | None:
+        """Tractions and motion for given statuses; None if the closed nodes can't hold the pin (a mechanism).
+
+        `stuck_slip` (n,) is the slip held at sticking nodes. With ``gap0 = 0``, zero `stuck_slip` and a load rate
+        this gives rates.
+        """
+        active = ActiveSet(self, status)
+        if active.singular:
+            return None
+        n = self.grid.size
+        known = self.loads[active.rows] @ load
+        known[: active.normal.size] += gap0
+        known[active.normal.size :] -= stuck_slip[active.tangential]
+        unknowns = active.solve(np.r_[-known, self.forces @ load])
+        tractions = active.expand(unknowns)
+        motion = unknowns[-3:]
+        displacement = self.displacement(tractions, motion, load, gap0)
+        return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
+
+    def displacement(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, gap0: float) -> np.ndarray:
+        """Gap and slip (2n,) of given tractions, motion and load, straight from the matrices."""
+        result = self.operator @ tractions + self.motion @ motion + self.loads @ load
+        result[: self.grid.size] += gap0
+        return result
+
+    def work(self, before: Configuration, after: Configuration) -> float:
+        """Work of the loads between two configurations, with the mean load (dimensionless)."""
+        n = self.grid.size
+        load = 0.5 * (before.load + after.load)
+        moved = after.motion - before.motion
+        moment = -0.5 * float(self.weights @ (before.shear + after.shear))
+        change = np.r_[after.pressure - before.pressure, after.shear - before.shear]
+        column = self.loads @ load
+        internal = float((self.weights * column[:n]) @ change[:n] + (self.weights * column[n:]) @ change[n:])
+        return float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
+
+    def energy(self, configuration: Configuration) -> float:
+        """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
+        tractions = np.r_[configuration.pressure, configuration.shear]
+        elastic = 0.5 * (self.operator @ tractions) + self.loads @ configuration.load
+        return float(np.sum(np.r_[self.weights, self.weights] * tractions * elastic))
+
+    def worst_residual(self, configuration: Configuration) -> float:
+        return max(self.residuals(configuration).values())
+
+    def residuals(self, configuration: Configuration) -> dict[str, float]:
+        """Largest relative violation of the contact conditions, recomputed from the matrices."""
+        n, mu = self.grid.size, self.friction
+        pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
+        tractions = np.r_[pressure, shear]
+        true = self.displacement(tractions, configuration.motion, configuration.load, self.gap0)
+        closed, stick = status != OPEN, status == STICK
+        slipping = closed & ~stick
+        gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
+        slip_error = np.where(closed, np.abs(true[n:] - configuration.slip), 0.0)
+        on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
+        cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
+        balance = self.equilibrium @ tractions + self.motion_rows @ configuration.motion
+        balance_error = np.abs(balance - self.forces @ configuration.load)
+        elastic = np.abs(self.operator @ tractions)
+        length = max(float(elastic.max()), float(np.abs(configuration.motion - configuration.rest).max()), 1e-300)
+        traction = max(float(pressure.max()), 1e-300)
+        total = max(float(np.abs(self.equilibrium) @ np.abs(tractions) @ np.ones(3)), 1e-300)
+        return {
+            "gap": float(gap_error.max()) / length,
+            "slip": float(slip_error.max()) / length,
+            "cone": float(max(cone_error.max(), 0.0)) / traction,
+            "equilibrium": float(balance_error.max()) / total,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Tractions, gap, slip and motion of one solve (or their rates)."""
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    gap: np.ndarray
+    slip: np.ndarray
+    motion: np.ndarray
+
+
+class ActiveSet:
+    """The factored system of the unknown tractions of given statuses: N where closed, T where sticking, the motion.
+
+    At slipping nodes T = -sigma mu N is eliminated.
+    """
+
+    def __init__(self, system: System, status: np.ndarray) -> None:
+        n = system.grid.size
+        self.normal = np.flatnonzero(status != OPEN)
+        self.tangential = np.flatnonzero(status == STICK)
+        self.rows = np.r_[self.normal, n + self.tangential]
+        self.count = self.rows.size
+        self.coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
+        self._nodes = n
+        matrix = np.empty((self.count + 3, self.count + 3), order="F")
+        matrix[:-3, :-3] = self.columns(system.operator, self.rows)
+        matrix[:-3, -3:] = system.motion[self.rows]
+        matrix[-3:, :-3] = self.columns(system.equilibrium, slice(None))
+        matrix[-3:, -3:] = system.motion_rows
+        # Unknown forces instead of tractions: all entries are then of order one and the condition number means something.
+        self._width = float(system.weights.mean())
+        matrix[:, :-3] /= self._width
+        norm = float(np.abs(matrix).sum(axis=0).max())
+        self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
+        self.singular = info != 0 or not np.isfinite(norm)
+        if not self.singular:
+            rcond, _ = lapack.dgecon(self._lu, norm)
+            self.singular = not rcond > SINGULAR
+
+    def columns(self, matrix: np.ndarray, rows: np.ndarray | slice) -> np.ndarray:
+        """Columns of `matrix` (given `rows`) for the unknown tractions, friction eliminated."""
+        chosen = matrix[rows]
+        result = chosen[:, self.rows]
+        slipping = np.flatnonzero(self.coupling[self.normal])
+        nodes = self.normal[slipping]
+        result[:, slipping] += chosen[:, self._nodes + nodes] * self.coupling[nodes]
+        return result
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        unknowns = lapack.dgetrs(self._lu, self._pivots, right)[0]
+        unknowns[:-3] /= self._width
+        return unknowns
+
+    def inverse(self) -> np.ndarray:
+        """Inverse of the system (count + 3 square). The factors are overwritten: call it last."""
+        inverse = lapack.dgetri(self._lu, self._pivots, overwrite_lu=1)[0]
+        inverse[:-3] /= self._width
+        return inverse
+
+    def expand(self, unknowns: np.ndarray) -> np.ndarray:
+        """All tractions (2n,) from the unknown ones."""
+        tractions = np.zeros(2 * self._nodes)
+        tractions[self.rows] = unknowns[: self.count]
+        slipping = np.flatnonzero(self.coupling)
+        tractions[self._nodes + slipping] = self.coupling[slipping] * tractions[slipping]
+        return tractions

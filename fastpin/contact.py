@@ -1,0 +1,195 @@
+"""Where a contact begins: the resting position of the pin, the first contact, interference fits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fastpin.collocation import MAX_RESIDUAL, SXX, SYY, Configuration, M, P, Q, System
+from fastpin.errors import ConvergenceError, NoEquilibriumError
+from fastpin.increment import implicit_step
+from fastpin.state import OPEN
+
+FIRST_NODES = (4, 8)  # closed nodes wanted in the first contact
+LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
+
+
+def unloaded(system: System) -> Configuration:
+    """The configuration before any load: concentric, without contact, or the uniform pressure of an interference fit."""
+    n = system.grid.size
+    zeros = np.zeros(n)
+    configuration = Configuration(
+        zeros.copy(), zeros.copy(), np.full(n, system.gap0), zeros.copy(), np.full(n, OPEN, dtype=np.int8),
+        np.zeros(3), np.zeros(system.loads.shape[1]), np.zeros(3), zeros.copy(),
+    )  # fmt: skip
+    if system.gap0 >= 0.0:
+        return configuration
+    configuration.status[:] = system.resting_status
+    solution = system.solve(configuration.status, zeros, configuration.load, system.gap0)
+    if solution is None or solution.pressure.min() <= 0.0:
+        raise ConvergenceError("the uniform pressure of the interference fit was not found; use more nodes")
+    configuration.pressure = solution.pressure
+    configuration.gap = zeros.copy()
+    return configuration
+
+
+def released(system: System, last: Configuration, load: np.ndarray) -> Configuration:
+    """The configuration after contact was lost: no tractions, the pin where it was, its slip history forgotten."""
+    n = system.grid.size
+    new = last.copy()
+    new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
+    new.load = load.copy()
+    free = system.displacement(np.zeros(2 * n), new.motion, load, system.gap0)
+    new.gap, new.slip = np.maximum(free[:n], 0.0), free[n:]
+    return new
+
+
+def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
+    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and its two derivatives."""
+    _, _, _, sxx, syy, _ = load
+    mean, oval = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy)
+    double = 2.0 * np.asarray(theta)
+    return np.array(
+        [
+            system.gap0 + mean + oval * np.cos(double),
+            -2.0 * oval * np.sin(double),
+            -4.0 * oval * np.cos(double),
+        ]
+    )
+
+
+def at_rest(
+    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
+) -> tuple[Configuration, float] | None:
+    """The pin resting on the hole, about to be pushed, on the way from load `before` to load `after`.
+
+    Returns
+    -------
+    (Configuration, float) or None
+        The configuration from whose slip the contact's slip counts, with a first guess of the closed nodes, and the
+        fraction of the step at which the contact begins; None if it does not begin in this step.
+
+    Raises
+    ------
+    NoEquilibriumError
+        If a moment acts on a pin that nothing holds, or is more than friction at a point can carry.
+    """
+    begins = 0.0
+    force = np.array([after[Q], -after[P]])
+    size = float(np.hypot(*force))
+    if size == 0.0:
+        if system.problem.rotation == "free" and after[M] != 0.0:
+            raise NoEquilibriumError("a moment acts on the pin, which is not in contact: it spins")
+        begins = _pinch(system, before, after)
+        if begins >= 1.0:
+            return None
+        rest = np.zeros(3)
+    else:
+        tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
+        limit = system.friction / math.hypot(1.0, system.friction)
+        if abs(tangential) > limit:
+            raise NoEquilibriumError(
+                f"the moment is {abs(tangential):.4g} times force times radius, more than friction can carry "
+                f"({limit:.4g}): the pin spins"
+            )
+        rest = rest_position(system, before, math.atan2(force[1], force[0]) + math.asin(tangential))
+    n = system.grid.size
+    resting = released(system, floating, before)
+    resting.motion, resting.rest = rest.copy(), rest.copy()
+    free = system.displacement(np.zeros(2 * n), rest, before + begins * (after - before), system.gap0)
+    resting.gap, resting.slip = np.maximum(free[:n], 0.0), free[n:]
+    resting.rest_slip = resting.slip.copy()
+    resting.status[np.argsort(free[:n], kind="stable")[: sum(FIRST_NODES) // 2]] = system.resting_status
+    return resting, begins
+
+
+def first_contact(
+    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
+) -> tuple[Configuration, float]:
+    """The first contact on the way from load `before` to load `after`: one implicit increment from rest.
+
+    Returns
+    -------
+    (Configuration, float)
+        A configuration with a contact of a few nodes and the fraction of the step at which it holds; or the pin
+        still without contact, and 1.
+
+    Raises
+    ------
+    NoEquilibriumError
+        See :func:`at_rest`.
+    ConvergenceError
+        If no first contact was found on this grid.
+    """
+    resting = at_rest(system, floating, before, after)
+    if resting is None:
+        return released(system, floating, after), 1.0
+    return _first_patch(system, *resting, before, after)
+
+
+def rest_position(system: System, load: np.ndarray, angle: float) -> np.ndarray:
+    """Motion (c_x, c_y, 0) of the rigid pin pushed against the hole so that the contact normal is at `angle`."""
+    gap, slope, _ = hole_gap(system, load, angle)
+    fine = np.linspace(-math.pi, math.pi, 1441)
+    values, _, curvature = hole_gap(system, load, fine)
+    cos, sin = math.cos(angle), math.sin(angle)
+    if np.all(values + curvature >= 0.0):  # the pin touches at one point, where the normal is
+        return np.array([gap * cos - slope * sin, gap * sin + slope * cos, 0.0])
+    from scipy.optimize import linprog  # an oval hole tighter than the pin: it touches at two points
+
+    found = linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
+    if not found.success:
+        raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
+    return np.array([found.x[0], found.x[1], 0.0])
+
+
+def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
+    """Fraction of the step at which the shrinking hole touches the concentric pin; 1 if it never does."""
+    fine = np.linspace(-math.pi, math.pi, 1441)
+    first, last = hole_gap(system, before, fine)[0], hole_gap(system, after, fine)[0]
+    touching = last < 0.0
+    if not touching.any():
+        return 1.0
+    drop = first[touching] - last[touching]
+    return float(np.min(np.clip(first[touching] / drop, 0.0, 1.0)))
+
+
+def _first_patch(
+    system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
+) -> tuple[Configuration, float]:
+    """One implicit increment from rest to a load whose contact spans a few nodes."""
+    least, most = FIRST_NODES
+    wanted = 0.5 * (least + most)
+    self_similar = system.gap0 == 0.0 and not before[SXX : SYY + 1].any() and not after[SXX : SYY + 1].any()
+    part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
+    best: tuple[int, Configuration, float] | None = None
+    for _ in range(60):
+        fraction = begins + part * (1.0 - begins)
+        found = implicit_step(system, resting, before + fraction * (after - before))
+        if found is None or system.worst_residual(found) > MAX_RESIDUAL:
+            part *= 0.7
+            continue
+        count = int(found.closed.sum())
+        if best is None or abs(count - wanted) < abs(best[0] - wanted):
+            best = (count, found, fraction)
+        if self_similar or least <= count <= most or (count < least and part == 1.0):
+            break
+        part = min(max(part * min(max((wanted / count) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
+    if best is None:
+        raise ConvergenceError("no first contact was found on this grid; use more nodes or a smaller arc")
+    _, found, fraction = best
+    found.work = resting.work + system.energy(found)
+    return found, fraction
+
+
+def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
+    """Part of the step's force at which a Hertz contact spans about five nodes."""
+    force = float(np.hypot(change[Q], change[P]))
+    if force == 0.0:
+        return 1e-4
+    theta = system.grid.theta[np.argmin(resting.gap)]
+    gap, _, curvature = hole_gap(system, resting.load, theta)
+    spacing = float(system.grid.weights.mean())
+    part = math.pi * max(float(gap + curvature), 0.0) * (2.5 * spacing) ** 2 / force
+    return min(max(part, LEAST_PART), 1.0)

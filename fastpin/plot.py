@@ -1,0 +1,290 @@
+"""Figures. The only module that imports matplotlib; it keeps no global state and needs no display."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from fastpin.errors import InputError
+from fastpin.files import replacing
+from fastpin.loading import LOADS
+from fastpin.report import LOAD_KIND, acting_loads, load_point, scaled, units
+from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, State
+
+# Okabe and Ito's colours, distinct for all kinds of colour vision, without the yellow: too light for a line.
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
+_DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
+    (0, ()),
+    (0, (5.0, 1.6)),
+    (0, (1.2, 1.2)),
+    (0, (5.0, 1.4, 1.2, 1.4)),
+    (0, (8.0, 2.0)),
+    (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
+)
+MAX_NAMED = len(_COLOURS)
+"""Up to so many states are drawn with a legend; more get a colour scale."""
+MAX_LINES = 60
+
+_STYLE = {
+    "font.size": 9.0,
+    "font.family": "sans-serif",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+    "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "mathtext.default": "regular",
+    "svg.fonttype": "none",
+    "svg.hashsalt": "fastpin",  # the same figure has the same bytes
+}
+
+
+def plot_tractions(
+    states: Sequence[State] | State,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 200.0,
+) -> Figure:
+    """Pressure and shear traction round the hole.
+
+    The upper panel shows the pressure N, the middle one the shear traction T on the pin (counter-clockwise
+    positive) within its bounds +-mu N (thin), the lower one where each state slips (shaded)
+    or sticks (solid). Angles are in degrees from the bottom of the hole, counter-clockwise positive. More than :data:`MAX_NAMED`
+    states are coloured by their place in the history instead of being named, and the lower panel is left out.
+
+    Parameters
+    ----------
+    states : State, Result or sequence of State
+        Of one problem and on one grid.
+    path : path, optional
+        Also save the figure; its suffix chooses the format.
+    title : str
+    width : float
+        Width in inches.
+    dpi : float
+        Dots per inch of a saved bitmap.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        If there is no state, or the figure's format is unknown.
+    """
+    shown = [states] if isinstance(states, State) else list(states)
+    if not shown:
+        raise InputError("states", "there is no state to plot")
+    if len(shown) > MAX_LINES:
+        shown = [shown[k] for k in np.unique(np.linspace(0, len(shown) - 1, MAX_LINES).round().astype(int))]
+    with mpl.rc_context(_STYLE):
+        figure = _draw(shown, title, width)
+        if path is not None:
+            _save(figure, Path(path), dpi)
+    return figure
+
+
+def _save(figure: Figure, path: Path, dpi: float) -> None:
+    formats = FigureCanvasAgg.get_supported_filetypes()
+    if path.suffix[1:].lower() not in formats:
+        raise InputError(
+            "path", f"a figure's name must end in one of {', '.join(sorted(formats))}, not {path.name!r}"
+        )
+    dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
+
+
+def _draw(states: list[State], title: str, width: float) -> Figure:
+    problem = states[0].problem
+    named = len(states) <= MAX_NAMED
+    colours = list(_COLOURS) if named else [_scale(states).to_rgba(load_point(state)) for state in states]
+    zones = named and not problem.frictionless
+    strip = 0.16 * len(states) + 0.15  # inches
+    panels = [1.9] if problem.frictionless else [1.9, 1.9]
+    heights = [*panels, strip] if zones else panels
+
+    figure = Figure(figsize=(width, sum(heights) + 1.35), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
+
+    frame = _Frame(states)
+    unit = units(problem)["traction"]
+    factor, label = scaled([float(state.pressure.max()) for state in states], unit)
+    label = label.replace("beta*", "β*")
+    for index, state in enumerate(states):
+        colour = colours[index]
+        dashes = _DASHES[index] if named else _DASHES[0]
+        thickness = 1.4 if named else 0.9
+        angle, pressure, shear = frame.curves(state)
+        axes[0].plot(angle, factor * pressure, color=colour, linestyle=dashes, linewidth=thickness)
+        if not problem.frictionless:
+            for sign in (1.0, -1.0) if named else ():
+                bound = factor * sign * problem.friction * pressure
+                axes[1].plot(angle, bound, color=colour, linewidth=0.5, alpha=0.55, zorder=1)
+            axes[1].plot(angle, factor * shear, color=colour, linestyle=dashes, linewidth=thickness)
+    axes[0].set_ylabel(f"pressure  N  [{label}]")
+    axes[0].set_ylim(bottom=0.0)
+    if not problem.frictionless:
+        axes[1].set_ylabel(f"shear  T  [{label}]")
+        axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    if zones:
+        _draw_zones(axes[-1], states, colours, frame)
+    for panel in axes:
+        panel.grid(True, axis="x", color="0.92", linewidth=0.6)
+        panel.set_axisbelow(True)
+    axes[-1].set_xlim(*frame.limits)
+    axes[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 2, 3, 4.5, 5, 6, 9, 10]))
+    axes[-1].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
+    figure.align_ylabels(axes)
+    _name_states(figure, axes, states, colours, title, named)
+    return figure
+
+
+class _Frame:
+    """Where on the angle axis things are drawn: all that touches in some state, and a little more."""
+
+    def __init__(self, states: list[State]) -> None:
+        grid = states[0].grid
+        touched = np.any([state.status != OPEN for state in states], axis=0)
+        self.order = np.arange(grid.size)
+        if grid.closed and not touched.all():
+            # The circle is cut open in the middle of the longest stretch that never touches.
+            self.order = np.roll(self.order, -_middle_of_longest_gap(touched))
+        angle = np.degrees(np.unwrap(grid.theta[self.order])) + 90.0
+        if grid.closed:
+            self.order = np.append(self.order, self.order[0])
+            angle = np.append(angle, angle[0] + 360.0)
+        inside = angle[touched[self.order]]
+        first, last = (inside[0], inside[-1]) if inside.size else (angle[0], angle[-1])
+        turn = 360.0 * math.floor((0.5 * (first + last) + 180.0) / 360.0)
+        self.angle = angle - turn
+        margin = 0.04 * (last - first) + 1.0
+        self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
+
+    def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Angle, pressure and shear to draw; nothing where two neighbours are open."""
+        closed = state.status != OPEN
+        beside = closed.copy()
+        beside[1:] |= closed[:-1]
+        beside[:-1] |= closed[1:]
+        if state.grid.closed:
+            beside[0] |= closed[-1]
+            beside[-1] |= closed[0]
+        pressure = np.where(beside, state.pressure, np.nan)
+        shear = np.where(beside, state.shear, np.nan)
+        return self.angle, pressure[self.order], shear[self.order]
+
+    def place(self, start: float, stop: float) -> list[tuple[float, float]]:
+        """Parts (first angle, width) of an interval in rad on the axis, in degrees."""
+        length = math.degrees(stop - start)
+        first = math.degrees(start) + 90.0
+        first += 360.0 * math.ceil((self.limits[0] - first - length) / 360.0)
+        parts = []
+        while first < self.limits[1]:
+            left, right = max(first, self.limits[0]), min(first + length, self.limits[1])
+            if right > left:
+                parts.append((left, right - left))
+            first += 360.0
+        return parts
+
+
+def _middle_of_longest_gap(touched: np.ndarray) -> int:
+    size = touched.size
+    best, middle, run = 0, 0, 0
+    for k in range(2 * size):  # twice round, so that a stretch across the seam counts in full
+        run = 0 if touched[k % size] else run + 1
+        if run > best:
+            best, middle = run, k - run // 2
+    return middle % size
+
+
+def _draw_zones(panel: Axes, states: list[State], colours: Sequence[object], frame: _Frame) -> None:
+    """One row a state: solid where it sticks, shaded where it slips, with an arrow for the pin's sense."""
+    for row, state in enumerate(states):
+        colour = colours[row]
+        for start, stop, sign in state.slip_zones:
+            for left, width in frame.place(start, stop):
+                panel.barh(row, width, left=left, height=0.66, color=colour, alpha=0.22, linewidth=0)
+                if width > 0.03 * (frame.limits[1] - frame.limits[0]):
+                    arrow = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}.get(int(sign), "")
+                    panel.text(
+                        left + 0.5 * width, row, arrow, ha="center", va="center", fontsize=7.0, color="0.25"
+                    )
+        for start, stop in state.stick:
+            for left, width in frame.place(start, stop):
+                panel.barh(row, width, left=left, height=0.66, color=colour, linewidth=0)
+    panel.set_ylim(len(states) - 0.45, -0.55)
+    panel.set_yticks(range(len(states)), [f"{load_point(state):g}" for state in states])
+    panel.tick_params(axis="y", length=0)
+    panel.set_ylabel("stick, slip")
+    panel.spines["left"].set_visible(False)
+
+
+def _name_states(
+    figure: Figure, axes: np.ndarray, states: list[State], colours: Sequence[object], title: str, named: bool
+) -> None:
+    """Legend or colour scale; what all states share goes to the title."""
+    loads = [state.load for state in states]
+    acting = acting_loads(loads)
+    varying = [name for name in acting if any(load[name] != loads[0][name] for load in loads)]
+    common = [_load_text(states, 0, name) for name in acting if name not in varying]
+    heading = "\n".join(line for line in (title, ",  ".join(common)) if line)
+    if heading:
+        figure.suptitle(heading, fontsize=9.5, x=0.5)
+    if not named:
+        bar = figure.colorbar(_scale(states), ax=list(axes), aspect=40, pad=0.02)
+        bar.set_label("load point (1: first corner of the history)")
+        bar.outline.set_linewidth(0.5)  # type: ignore[operator]
+        return
+    handles: list[Line2D | Patch] = []
+    for index, state in enumerate(states):
+        parts = ",  ".join(_load_text(states, index, name) for name in varying)
+        text = f"{load_point(state):g}:  {parts}" if parts else f"{load_point(state):g}"
+        handles.append(Line2D([], [], color=colours[index], linestyle=_DASHES[index], label=text))  # type: ignore[arg-type]
+    if not states[0].problem.frictionless:
+        handles.append(
+            Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {states[0].problem.friction:g}")
+        )
+        handles.append(Patch(color="0.35", linewidth=0, label="stick"))
+        handles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip of the pin"))
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=3,
+        fontsize=8.0,
+        handlelength=2.8,
+        columnspacing=1.8,
+    )
+
+
+def _load_text(states: list[State], index: int, name: str) -> str:
+    """A load with its unit; all loads of one kind are given in the same one."""
+    alike = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
+    factor, unit = scaled(alike, units(states[0].problem)[LOAD_KIND[name]])
+    symbol = {"sxx": "$σ_{xx}$", "syy": "$σ_{yy}$"}.get(name, name)
+    value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
+    value = value.lstrip("+") if name == "P" or float(states[index].load[name]) == 0.0 else value
+    return f"{symbol} = {value} {unit.replace('beta*', 'β*')}"
+
+
+def _scale(states: list[State]) -> ScalarMappable:
+    points = [load_point(state) for state in states]
+    return ScalarMappable(Normalize(min(points), max(points)), "viridis_r")

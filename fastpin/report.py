@@ -1,0 +1,334 @@
+"""What a person or another program wants to read of a case and its states: tables and a summary.
+
+Angles are in degrees from the bottom of the hole, counter-clockwise positive (towards +x, where Q points).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError
+from importlib.metadata import version as installed_version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fastpin.loading import LOADS, LoadHistory, named_load
+from fastpin.materials import Material
+from fastpin.problem import Problem
+
+if TYPE_CHECKING:
+    from fastpin.casefile import Case
+    from fastpin.state import State
+
+LOAD_KIND = {
+    "P": "force",
+    "Q": "force",
+    "M": "moment",
+    "sxx": "traction",
+    "syy": "traction",
+    "rotation": "rotation",
+}
+"""What kind of quantity each load is, a key of :func:`units`."""
+
+_SI = {
+    "force": "N/m",
+    "moment": "N",
+    "traction": "Pa",
+    "length": "m",
+    "displacement": "m",
+    "rotation": "rad",
+    "energy": "J/m",
+}
+_DIMENSIONLESS = {
+    "force": "F",
+    "moment": "F R",
+    "traction": "F/R",
+    "length": "R",
+    "displacement": "F beta*",
+    "rotation": "F beta*/R",
+    "energy": "F^2 beta*",
+}
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
+_MAX_ROWS = 40
+
+
+def version() -> str:
+    """The version of the installed package."""
+    try:
+        return installed_version("fastpin")
+    except PackageNotFoundError:  # run from a source tree that is not installed
+        return "unknown"
+
+
+def units(problem: Problem) -> dict[str, str]:
+    """The unit of every kind of quantity: SI, or those of the paper for a dimensionless problem."""
+    return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
+
+
+def from_bottom(angle: float) -> float:
+    """An angle in rad as degrees from the bottom of the hole, in (-180, 180]."""
+    degrees = math.degrees(angle) + 90.0
+    return 180.0 - (180.0 - degrees) % 360.0
+
+
+def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
+    """An interval in rad as degrees from the bottom; the stop may exceed 180."""
+    first = from_bottom(start)
+    return first, first + math.degrees(stop - start)
+
+
+def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
+    """A factor and a unit with an SI prefix in which the largest of `values` reads well.
+
+    Units of a dimensionless problem (those with an F) keep the factor 1.
+    """
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    if "F" in unit or unit == "R" or largest == 0.0:
+        return 1.0, unit
+    exponent = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
+    exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**-exponent, _PREFIXES[exponent] + unit
+
+
+def load_point(state: State) -> float:
+    """Where in the history a state is: 1 at the first corner, 1.5 halfway from there to the second."""
+    return state.step + state.fraction
+
+
+def is_complete(states: Sequence[State], history: LoadHistory) -> bool:
+    """Whether the states reach the end of the history."""
+    return len(states) > 0 and states[-1].step == len(history) - 1 and states[-1].fraction == 1.0
+
+
+def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
+    """Names of the loads that are not zero throughout."""
+    return [name for name in LOADS if any(load.get(name, 0.0) != 0.0 for load in loads)]
+
+
+# -- text ----------------------------------------------------------------------------------------------------
+
+
+def describe(case: Case) -> str:
+    """What a case says, as text: pair, contact, loads with their load parameter, solver."""
+    problem, options = case.problem, case.options
+    pair = problem.pair
+    alpha, beta = pair.dundurs()
+    unit = units(problem)
+    if problem.dimensionless:
+        scale = "dimensionless: R = 1, F = 1, beta* = 1"
+        size = f"load parameter {problem.clearance:.4g}"
+    else:
+        scale = f"beta* = {pair.beta_star:.4g} 1/Pa"
+        kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
+        size = (
+            f"hole radius {_quantity(problem.hole_radius, 'm')}, {kind} {_quantity(problem.clearance, 'm')}"
+        )
+    pin_load = {"centre": "force at the centre", "body": "uniform body force"}[problem.pin_load]
+    hub = ""
+    if problem.rotation == "fixed":
+        hub = (
+            " at the paper's datum"
+            if problem.hub_radius is None
+            else f" at radius {problem.hub_radius:g} {unit['length']}"
+        )
+    loads = [named_load(row) for row in case.history.values()]
+    if options.arc is None:
+        where = "arc chosen by the solver"
+    elif options.arc[1] - options.arc[0] >= 2.0 * math.pi:
+        where = "on the whole circle"
+    else:
+        where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
+    method = options.method if options.method == "path" else f"increment, {options.increments} a corner"
+    rows = [
+        ("pin", _material(pair.pin, problem.dimensionless)),
+        ("plate", _material(pair.plate, problem.dimensionless)),
+        ("pair", f"plane {pair.plane}, Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
+        ("contact", f"{size}, friction {problem.friction:g}"),
+        ("loading", f"{pin_load}, rotation {problem.rotation}{hub}"),
+        ("solver", f"{method}, {options.nodes} nodes, {where}"),
+        ("loads", f"{len(loads)} corners, reached one after the other from no load"),
+    ]
+    text = [case.title] if case.title else []
+    text += [f"{name:8s} {value}" for name, value in rows]
+    return "\n".join([*text, "", _load_table(problem, loads)])
+
+
+def _load_table(problem: Problem, loads: list[dict[str, float]]) -> str:
+    columns = [("corner", "", [f"{number}" for number in range(1, len(loads) + 1)])]
+    columns += _load_columns(problem, loads)
+    forces = [math.hypot(load["P"], load["Q"]) for load in loads]
+    columns.append(
+        ("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces])
+    )
+    return _table(columns)
+
+
+def state_table(problem: Problem, states: Sequence[State]) -> str:
+    """The states as a table with one line each."""
+    unit = units(problem)
+
+    def column(name: str, kind: str, values: list[float], digits: int = 5) -> tuple[str, str, list[str]]:
+        factor, label = scaled(values, unit[kind])
+        return name, label, [f"{value * factor:.{digits}g}" for value in values]
+
+    columns = [("load point", "", [f"{load_point(state):g}" for state in states])]
+    columns += _load_columns(problem, [state.load for state in states])
+    columns += [
+        column("peak N", "traction", [state.peak_pressure for state in states]),
+        ("at", "deg", [_angle(state.peak_pressure_angle) for state in states]),
+        column("peak T", "traction", [state.peak_shear for state in states]),
+        ("at", "deg", [_angle(state.peak_shear_angle) for state in states]),
+        ("contact", "deg", [_intervals(state.contact) for state in states]),
+        ("stick", "deg", [_intervals(state.stick) for state in states]),
+        column("rotation", "rotation", [state.rotation for state in states], 4),
+        column("dissipated", "energy", [state.dissipation for state in states], 4),
+        ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
+    ]
+    return _table(columns)
+
+
+def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
+    unit = units(problem)
+    columns = []
+    acting = acting_loads(loads)
+    for name in acting:
+        # Loads of one kind share their unit.
+        alike = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
+        factor, label = scaled(alike, unit[LOAD_KIND[name]])
+        columns.append((name, label, [f"{load[name] * factor:.5g}" for load in loads]))
+    return columns
+
+
+def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
+    count = len(columns[0][2])
+    if count > _MAX_ROWS:
+        kept = [*range(_MAX_ROWS // 2), *range(count - _MAX_ROWS // 2, count)]
+        columns = [(name, unit, [cells[k] for k in kept]) for name, unit, cells in columns]
+    widths = [max(len(cell) for cell in (name, unit, *cells)) for name, unit, cells in columns]
+    lines = [[name for name, _, _ in columns], [unit for _, unit, _ in columns]]
+    lines += [[cells[k] for _, _, cells in columns] for k in range(len(columns[0][2]))]
+    text = [
+        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    ]
+    if count > _MAX_ROWS:
+        text.insert(2 + _MAX_ROWS // 2, f"... {count - _MAX_ROWS} more ...")
+    return "\n".join(text)
+
+
+def _angle(angle: float | None) -> str:
+    return "-" if angle is None or not math.isfinite(angle) else f"{from_bottom(angle) + 0.0:.2f}"
+
+
+def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
+    if not intervals:
+        return "none"
+    parts = []
+    for start, stop in intervals:
+        first, last = interval_from_bottom(start, stop)
+        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:.2f} to {last:.2f}")
+    return ", ".join(parts)
+
+
+def _quantity(value: float, unit: str) -> str:
+    factor, label = scaled([value], unit)
+    return f"{value * factor:.6g} {label}"
+
+
+def _material(material: Material, dimensionless: bool) -> str:
+    if material.is_rigid:
+        return "rigid"
+    name = f"{material.name}, " if material.name else ""
+    modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {_quantity(material.E, 'Pa')}"
+    return f"{name}{modulus}, nu = {material.nu:.4g}"
+
+
+# -- machine-readable ----------------------------------------------------------------------------------------
+
+
+def summary(
+    case: Case,
+    states: Sequence[State],
+    statistics: Mapping[str, float] | None = None,
+    error: str | None = None,
+) -> dict[str, Any]:
+    """The case and its states as a dict that goes to JSON as it is; what is not finite becomes None.
+
+    ``units`` names the unit of every kind of quantity; angles are in degrees from the bottom of the hole.
+    """
+    problem, pair = case.problem, case.problem.pair
+    alpha, beta = pair.dundurs()
+    document = {
+        "fastpin": version(),
+        "title": case.title,
+        "complete": error is None and is_complete(states, case.history),
+        "error": error,
+        "units": {**units(problem), "angle": "deg from the bottom of the hole, counter-clockwise"},
+        "problem": {
+            "pin": _material_summary(pair.pin),
+            "plate": _material_summary(pair.plate),
+            "plane": pair.plane,
+            "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
+            "beta_star": pair.beta_star,
+            "hole_radius": problem.hole_radius,
+            "clearance": problem.clearance,
+            "friction": problem.friction,
+            "pin_load": problem.pin_load,
+            "rotation": problem.rotation,
+            "hub_radius": problem.hub_radius,
+            "dimensionless": problem.dimensionless,
+        },
+        "history": {"loads": list(LOADS), "corners": case.history.values().tolist()},
+        "solver": case.options.keywords(),
+        "statistics": dict(statistics or {}),
+        "states": [_state_summary(state) for state in states],
+    }
+    return _plain(document)
+
+
+def _material_summary(material: Material) -> dict[str, Any]:
+    modulus = None if material.is_rigid else material.E
+    return {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
+
+
+def _state_summary(state: State) -> dict[str, Any]:
+    return {
+        "load_point": load_point(state),
+        "step": state.step,
+        "fraction": state.fraction,
+        "load": state.load,
+        "in_contact": state.in_contact,
+        "peak_pressure": state.peak_pressure,
+        "peak_pressure_angle": _degrees(state.peak_pressure_angle),
+        "peak_shear": state.peak_shear,
+        "peak_shear_angle": _degrees(state.peak_shear_angle),
+        "contact": [interval_from_bottom(*interval) for interval in state.contact],
+        "stick": [interval_from_bottom(*interval) for interval in state.stick],
+        "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
+        "dx": state.dx,
+        "dy": state.dy,
+        "rotation": state.rotation,
+        "dissipation": state.dissipation,
+        "work": state.work,
+        "energy": state.energy,
+        "resultants": state.resultants,
+        "residuals": state.residuals,
+    }
+
+
+def _degrees(angle: float | None) -> float | None:
+    return None if angle is None or not math.isfinite(angle) else from_bottom(angle)
+
+
+def _plain(value: Any) -> Any:
+    """`value` with numpy's numbers as Python's, tuples as lists and None for what JSON can't say."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,150 @@
+"""solve(): follow a load history on one grid and return the states at its corners."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from fastpin.arc import grids_to_try
+from fastpin.collocation import System
+from fastpin.errors import ArcError, InputError, SolveError
+from fastpin.grid import Grid
+from fastpin.loading import LoadHistory, check_loads
+from fastpin.materials import one_of
+from fastpin.problem import Problem
+from fastpin.run import Method, Progress, Run
+from fastpin.state import Result
+
+
+def solve(
+    problem: Problem,
+    history: LoadHistory | Sequence[dict[str, float]],
+    nodes: int = 401,
+    method: Method = "path",
+    increments: int = 80,
+    arc: tuple[float, float] | None = None,
+    grid: Grid | None = None,
+    between: int | Sequence[float] = 0,
+    start: Result | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Follow a load history and return the contact's states at its corners.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory or sequence of dicts
+        Corner points of the loads; between them loads are linear. It starts from no load, or where `start` ended.
+    nodes : int
+        Number of nodes of the arc, which spans all places that are ever in contact and a little more.
+    method : {"path", "increment"}
+        "path" is exact in load. "increment" is the paper's way: implicit increments, first order in their size.
+    increments : int
+        Increments a step, for the increment solver: of equal size, or growing linearly in a step that starts without
+        contact.
+    arc : (float, float), optional
+        Start and end angle of the arc, rad (the bottom is -pi/2). Chosen from a coarse run if not given. A span of
+        2 pi or more means the whole circle.
+    grid : Grid, optional
+        The nodes themselves, for example graded ones; `nodes` and `arc` are then not used.
+    between : int or sequence of float
+        Also return states inside each step: so many equally spaced ones, or at these fractions of a step.
+    start : Result, optional
+        Go on from the last state of this result, on its grid. The states are those of an unsplit history, bit for
+        bit.
+    progress : callable, optional
+        Called as ``progress(done_steps, all_steps)`` now and then.
+
+    Returns
+    -------
+    Result
+        Every state meets the contact conditions to 1e-9 (see ``State.residuals``).
+
+    Raises
+    ------
+    InputError
+        Naming the field that can't be used.
+    NoEquilibriumError
+        If no state carries the load; it says where the load was lost and holds the result so far.
+    ConvergenceError
+        If no state that meets the conditions was found; it holds the result so far.
+    ArcError
+        If the contact reaches an end of a given arc.
+    """
+    if not isinstance(problem, Problem):
+        raise InputError("problem", f"must be a Problem, not {problem!r}")
+    if not isinstance(history, LoadHistory):
+        history = LoadHistory(history)
+    one_of("method", method, ("path", "increment"))
+    if isinstance(increments, bool) or not isinstance(increments, (int, np.integer)) or increments < 1:
+        raise InputError("increments", f"must be a whole number of at least 1, not {increments!r}")
+    check_loads(problem, history)
+    fractions = _fractions(between)
+    began = time.perf_counter()
+
+    if start is not None:
+        if start.problem != problem:
+            raise InputError("start", "the result to go on from belongs to another problem")
+        system = System.build(problem, start.grid, start.restart.force)
+        run = Run(system, method, increments, fractions, progress, start.restart.configuration.copy())
+        return _finished(run, history, history.values(initial=start.restart.load), began)
+
+    values = history.values()
+    force = reference_force(problem, values)
+    for chosen in _grids(problem, values, force, nodes, arc, grid):
+        run = Run(System.build(problem, chosen, force), method, increments, fractions, progress)
+        try:
+            return _finished(run, history, values, began)
+        except ArcError:
+            if arc is not None or grid is not None:
+                raise
+    raise AssertionError("the whole circle has no ends")
+
+
+def _finished(run: Run, history: LoadHistory, values: np.ndarray, began: float) -> Result:
+    """Follow the history; an error leaves with what was solved before."""
+    try:
+        run.follow(values)
+    except SolveError as error:
+        error.result = run.result(history, time.perf_counter() - began)
+        raise
+    return run.result(history, time.perf_counter() - began)
+
+
+def _grids(
+    problem: Problem, values: np.ndarray, force: float, nodes: int, arc: tuple[float, float] | None, grid: Grid | None
+) -> Iterator[Grid]:
+    """The given grid, or those to try one after the other until the contact stays clear of the ends."""
+    if grid is None and arc is None:
+        yield from grids_to_try(problem, values, force, nodes)
+        return
+    if grid is None:
+        assert arc is not None
+        whole = arc[1] - arc[0] >= 2.0 * np.pi
+        grid = Grid.circle(nodes, arc[0]) if whole else Grid.arc(arc[0], arc[1], nodes)
+    if problem.clearance < 0.0 and not grid.closed:
+        raise InputError("arc", "an interference fit is in contact all round: its grid must be the whole circle")
+    yield grid
+
+
+def reference_force(problem: Problem, values: np.ndarray) -> float:
+    """The force F, N/m, in which a history is made dimensionless: its largest load."""
+    radius = problem.hole_radius
+    pin = float(np.hypot(values[:, 0], values[:, 1]).max())
+    moment = float(np.abs(values[:, 2]).max()) / radius
+    remote = float(np.abs(values[:, 3:5]).max()) * radius
+    return max(pin, moment) or remote or problem.reference_force()
+
+
+def _fractions(between: int | Sequence[float]) -> np.ndarray:
+    """Fractions of a step at which states are returned, the corner included."""
+    if isinstance(between, (int, np.integer)) and not isinstance(between, bool):
+        if between < 0:
+            raise InputError("between", f"must not be negative, not {between}")
+        return np.arange(1, between + 2) / (between + 1)
+    inner = np.asarray(between, dtype=float)
+    if inner.ndim != 1 or not np.all((inner > 0.0) & (inner < 1.0)):
+        raise InputError("between", "must be a whole number or fractions of a step between 0 and 1")
+    return np.r_[np.unique(inner), 1.0]

@@ -1,0 +1,407 @@
+"""The compiled kernels: compiled, as plain Python, and against naive quadrature written independently."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+
+from fastpin import kernels
+from fastpin.grid import Grid
+
+RATIO = 0.31
+POINT, WEIGHT = np.polynomial.legendre.leggauss(16)
+Kernel = Callable[[np.ndarray], np.ndarray]
+
+
+def python(function):
+    """The plain Python version of a compiled function (itself when compilation is switched off)."""
+    return getattr(function, "py_func", function)
+
+
+# --- the naive version ------------------------------------------------------------------------------------
+
+
+def sawtooth(x: np.ndarray) -> np.ndarray:
+    """A, from its definition on one turn and periodicity."""
+    return np.mod(x, 2.0 * np.pi) / 2.0 - np.pi / 2.0
+
+
+def logarithm(x: np.ndarray) -> np.ndarray:
+    return np.log(4.0 * np.sin(x / 2.0) ** 2)
+
+
+def direct_kernel(x: np.ndarray) -> np.ndarray:
+    return RATIO * np.sin(x) * sawtooth(x) - np.cos(x) * logarithm(x)
+
+
+def cross_kernel(x: np.ndarray) -> np.ndarray:
+    return RATIO * np.cos(x) * sawtooth(x) + np.sin(x) * logarithm(x)
+
+
+def graded(function: Kernel, start: float, stop: float) -> float:
+    """int function over [start, stop]; Gauss panels that shrink towards both ends."""
+    share = np.concatenate([[0.0], 0.5 * 0.2 ** np.arange(24, -1, -1.0)])
+    share = np.concatenate([share, 1.0 - share[-2::-1]])
+    width = stop - start
+    total = 0.0
+    for a, b in pairwise(share):
+        total += (
+            0.5
+            * (b - a)
+            * width
+            * np.dot(WEIGHT, function(start + width * (a + 0.5 * (b - a) * (1.0 + POINT))))
+        )
+    return float(total)
+
+
+def naive_hat(kernel: Kernel, u: float, h_left: float, h_right: float) -> float:
+    """int hat kernel(theta - xi) dxi, in x = theta - xi, cut at the node and at the multiples of 2 pi."""
+    total = 0.0
+    for side, h in ((1.0, h_right), (-1.0, h_left)):
+        cuts = [2.0 * math.pi * m for m in range(-3, 4)]
+        inner = sorted(t for t in (side * (u - cut) for cut in cuts) if 1e-14 < t < h * (1.0 - 1e-12))
+        ends = [0.0, *inner, h]
+        if h > 0.0:
+            for a, b in pairwise(ends):
+                # distances are taken from the near end of each piece, where the singularity may be
+                middle = 0.5 * (a + b)
+                for edge, far, sign in ((a, middle, 1.0), (b, middle, -1.0)):
+                    corner = u - side * edge
+                    nearest = 2.0 * math.pi * round(corner / (2.0 * math.pi))
+                    corner = 0.0 if abs(corner - nearest) < 1e-13 else corner
+
+                    def integrand(t, edge=edge, sign=sign, corner=corner, h=h, side=side):
+                        return kernel(corner - side * sign * t) * (1.0 - (edge + sign * t) / h)
+
+                    total += graded(integrand, 0.0, abs(far - edge))
+    return total
+
+
+def naive_cauchy(u: float, h_left: float, h_right: float) -> float:
+    """Principal value: values at equal distances on both sides of theta are paired first."""
+
+    def hat(y: np.ndarray) -> np.ndarray:  # y = xi - node
+        y = np.mod(y + np.pi, 2.0 * np.pi) - np.pi
+        falling = np.where((y >= 0.0) & (y < h_right), 1.0 - y / (h_right or 1.0), 0.0)
+        rising = np.where((y < 0.0) & (y > -h_left), 1.0 + y / (h_left or 1.0), 0.0)
+        return falling + rising
+
+    u = math.remainder(u, 2.0 * math.pi)
+    kinks = [abs(math.remainder(u - knot, 2.0 * math.pi)) for knot in (-h_left, 0.0, h_right)]
+    ends = [0.0, *sorted({k for k in kinks if 1e-12 < k < math.pi - 1e-12}), math.pi]
+    total = 0.0
+    for a, b in pairwise(ends):
+        x = a + 0.5 * (b - a) * (1.0 + np.polynomial.legendre.leggauss(60)[0])
+        weight = 0.5 * (b - a) * np.polynomial.legendre.leggauss(60)[1]
+        total += float(np.dot(weight, (hat(u - x) - hat(u + x)) / np.tan(x / 2.0)))
+    return total
+
+
+def graded_nodes(n: int, start: float, stop: float) -> np.ndarray:
+    """Nodes whose spacing varies smoothly by a factor of about 20."""
+    t = np.linspace(0.0, 1.0, n)
+    return start + (stop - start) * (t - 0.9 / (2.0 * np.pi) * np.sin(2.0 * np.pi * t))
+
+
+def matrices(grid: Grid, uniform: bool) -> tuple[np.ndarray, np.ndarray]:
+    left, right = grid.knots()
+    direct, cross = np.empty((2, grid.size, grid.size))
+    kernels.fill_log(grid.theta, left, right, uniform, grid.closed, RATIO, direct, cross)
+    return direct, cross
+
+
+def cauchy(grid: Grid, uniform: bool) -> np.ndarray:
+    left, right = grid.knots()
+    out = np.empty((grid.size, grid.size))
+    kernels.fill_cauchy(grid.theta, left, right, uniform, grid.closed, out)
+    return out
+
+
+# --- Clausen's function -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("call", [kernels.clausen, python(kernels.clausen)], ids=["compiled", "python"])
+def test_clausen_against_mpmath(call):
+    points = [0.0, 1e-300, 1e-9, 0.3, 1.999, 2.001, math.pi, 3.5, 6.28, 6.3, 20.0, 1000.0]
+    for x in [*points, *(-p for p in points), *np.linspace(-7.0, 7.0, 80)]:
+        assert call(x) == pytest.approx(float(mpmath.clsin(2, mpmath.mpf(x))), abs=1e-15)
+
+
+def test_clausen_is_odd_and_periodic():
+    for x in (0.2, 1.0, 2.9, 3.1):
+        assert kernels.clausen(-x) == -kernels.clausen(x)
+        assert kernels.clausen(x + 2.0 * math.pi) == pytest.approx(kernels.clausen(x), abs=3e-15)
+    assert kernels.clausen(math.pi) == pytest.approx(0.0, abs=1e-15)
+    assert kernels.clausen(math.pi / 2.0) == pytest.approx(float(mpmath.catalan), abs=1e-15)
+
+
+# --- kernels and antiderivatives --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "call", [kernels.log_kernels, python(kernels.log_kernels)], ids=["compiled", "python"]
+)
+def test_log_kernels_against_their_definition(call):
+    for x in (-7.0, -4.0, -1e-3, 1e-6, 0.4, 2.0, 3.2, 6.2, 6.4, 9.0):
+        one = np.array([x])
+        assert call(x, RATIO) == pytest.approx(
+            (direct_kernel(one)[0], cross_kernel(one)[0]), rel=1e-12, abs=1e-13
+        )
+
+
+@pytest.mark.parametrize("call", [kernels.log_antiderivatives, python(kernels.log_antiderivatives)])
+def test_antiderivatives_differentiate_to_the_kernels(call):
+    step = 1e-3
+    fine = np.array([-2.0, -1.0, 1.0, 2.0])
+    coefficient = np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * step)
+    for x in (-8.0, -5.0, -2.0, -0.3, 0.2, 1.0, 3.1, 4.0, 5.9, 7.0):
+        around = np.array([call(x + step * k, RATIO) for k in fine])
+        rate = coefficient @ around
+        here = call(x, RATIO)
+        direct, cross = kernels.log_kernels(x, RATIO)
+        assert (rate[0], rate[2]) == pytest.approx((direct, cross), abs=2e-8)
+        assert (rate[1], rate[3]) == pytest.approx((here[0], here[2]), abs=2e-8)
+
+
+def test_antiderivatives_are_continuous_at_full_turns():
+    for point in (-2.0 * math.pi, 0.0, 2.0 * math.pi):
+        below = np.array(kernels.log_antiderivatives(point - 1e-9, RATIO))
+        above = np.array(kernels.log_antiderivatives(point + 1e-9, RATIO))
+        assert np.abs(above - below).max() < 2e-7
+    assert kernels.log_antiderivatives(0.0, RATIO) == (0.0, 0.0, 0.0, 0.0)
+
+
+# --- hat integrals ----------------------------------------------------------------------------------------
+
+HATS = [(1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (1.0, 0.3), (0.05, 1.0)]
+
+
+@pytest.mark.parametrize("n", [20, 240, 4096])
+@pytest.mark.parametrize("shape", HATS)
+def test_hat_log_against_graded_quadrature(n, shape):
+    h = 2.0 * math.pi / n
+    h_left, h_right = shape[0] * h, shape[1] * h
+    offsets = np.unique(
+        np.concatenate([np.arange(-10, 11), [0.37, -2.5, 7.9, 8.3, 9.01], [n // 3, -n // 3, n // 2]])
+    )
+    largest = naive_hat(direct_kernel, 0.0, h_left, h_right)
+    assert largest > 0.0
+    for offset in offsets:
+        u = offset * h
+        got = kernels.hat_log(u, h_left, h_right, RATIO)
+        assert got[0] == pytest.approx(naive_hat(direct_kernel, u, h_left, h_right), abs=1e-11 * largest)
+        assert got[1] == pytest.approx(naive_hat(cross_kernel, u, h_left, h_right), abs=1e-11 * largest)
+
+
+def test_hat_log_against_mpmath():
+    mpmath.mp.dps = 25
+    ratio = mpmath.mpf(RATIO)
+
+    def kernel(x, cross):
+        saw = (x - 2 * mpmath.pi * mpmath.floor(x / (2 * mpmath.pi))) / 2 - mpmath.pi / 2
+        log = mpmath.log(4 * mpmath.sin(x / 2) ** 2)
+        if cross:
+            return ratio * mpmath.cos(x) * saw + mpmath.sin(x) * log
+        return ratio * mpmath.sin(x) * saw - mpmath.cos(x) * log
+
+    h = mpmath.mpf(2.0 * math.pi / 400)
+    for offset in (3, 8.5, 150):
+        u = mpmath.mpf(offset) * h
+        for cross in (False, True):
+            right = mpmath.quad(lambda t, u=u, c=cross: kernel(u - t, c) * (1 - t / h), [0, h])
+            left = mpmath.quad(lambda t, u=u, c=cross: kernel(u + t, c) * (1 - t / h), [0, h])
+            got = kernels.hat_log(float(u), float(h), float(h), RATIO)[int(cross)]
+            assert got == pytest.approx(float(right + left), abs=1e-13)
+
+
+@pytest.mark.parametrize("function", [kernels.hat_log, kernels.half_hat_log])
+def test_plain_python_hats_agree_with_compiled_ones(function):
+    widths = (0.01, 0.02) if function is kernels.hat_log else (0.02,)
+    for u in (-3.0, -0.1, -0.01, 0.0, 0.02, 0.5, math.pi):
+        assert python(function)(u, *widths, RATIO) == pytest.approx(
+            function(u, *widths, RATIO), rel=1e-12, abs=1e-15
+        )
+
+
+def test_hats_wider_than_half_a_turn():
+    # a closed ring whose nodes crowd on one side: x leaves (-2 pi, 2 pi)
+    for u in (-2.9, -1.0, 0.0, 0.7, 3.0):
+        got = kernels.hat_log(u, 0.5, 5.5, RATIO)
+        assert got[0] == pytest.approx(naive_hat(direct_kernel, u, 0.5, 5.5), abs=1e-10)
+        assert got[1] == pytest.approx(naive_hat(cross_kernel, u, 0.5, 5.5), abs=1e-10)
+
+
+def test_near_and_far_integration_meet():
+    h = 2.0 * math.pi / 1000
+    border = (kernels.NEAR + 1.0) * h
+    inside = np.array(kernels.half_hat_log(border * (1.0 - 1e-13), h, RATIO))
+    outside = np.array(kernels.half_hat_log(border * (1.0 + 1e-13), h, RATIO))
+    assert np.abs(inside - outside).max() < 1e-13
+    inside = kernels.half_hat_cauchy(border * (1.0 - 1e-13), h)
+    assert inside == pytest.approx(kernels.half_hat_cauchy(border * (1.0 + 1e-13), h), abs=2e-12)
+
+
+@pytest.mark.parametrize("n", [20, 240, 4096])
+@pytest.mark.parametrize("shape", HATS)
+def test_hat_cauchy_against_paired_quadrature(n, shape):
+    h = 2.0 * math.pi / n
+    h_left, h_right = shape[0] * h, shape[1] * h
+    half = 0.0 in shape
+    for offset in (-9, -3, -1, -0.4, 0, 0.6, 1, 2, 8, 9.5, n // 3, n // 2):
+        u = offset * h
+        got = kernels.hat_cauchy(u, h_left, h_right)
+        if half and offset == 0:
+            assert math.isnan(got)
+        else:
+            assert got == pytest.approx(naive_cauchy(u, h_left, h_right), abs=1e-11)
+            assert python(kernels.hat_cauchy)(u, h_left, h_right) == pytest.approx(got, abs=1e-14)
+
+
+def test_uneven_hat_at_its_own_node_has_a_principal_value():
+    # near the node cot(x/2) is 2/x, and PV int hat 2/x dx = 2 ln(h_left/h_right)
+    assert kernels.hat_cauchy(0.0, 0.01, 0.01) == 0.0
+    assert kernels.hat_cauchy(0.0, 0.02, 0.01) == pytest.approx(2.0 * math.log(2.0), abs=1e-4)
+
+
+# --- the matrices -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "grid", [Grid.arc(-3.5, 0.4, 41), Grid.circle(40), Grid.circle(41)], ids=["arc", "even", "odd"]
+)
+def test_uniform_fill_equals_general_fill(grid):
+    for quick, slow in zip(matrices(grid, True), matrices(grid, False), strict=True):
+        assert np.abs(quick - slow).max() < 1e-12
+    np.testing.assert_allclose(cauchy(grid, True), cauchy(grid, False), rtol=0.0, atol=2e-12, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    "grid",
+    [
+        Grid.arc(-2.5, 0.4, 23),
+        Grid.circle(24),
+        Grid(graded_nodes(25, -3.0, 0.0)),
+        Grid(graded_nodes(25, -3.0, 3.0), True),
+    ],
+    ids=["arc", "circle", "graded arc", "graded circle"],
+)
+def test_fills_against_naive_quadrature(grid):
+    left, right = grid.knots()
+    uniform = np.ptp(np.diff(grid.theta)) < 1e-9
+    direct, cross = matrices(grid, uniform)
+    pv = cauchy(grid, uniform)
+    for i in range(0, grid.size, 4):
+        scale = np.abs(direct[i]).max()
+        for j in range(grid.size):
+            u, a, b = grid.theta[i] - grid.theta[j], grid.theta[j] - left[j], right[j] - grid.theta[j]
+            assert direct[i, j] == pytest.approx(naive_hat(direct_kernel, u, a, b), abs=1e-10 * scale)
+            assert cross[i, j] == pytest.approx(naive_hat(cross_kernel, u, a, b), abs=1e-10 * scale)
+            if i != j:
+                assert pv[i, j] == pytest.approx(naive_cauchy(u, a, b), abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    "grid", [Grid.arc(-2.5, 0.4, 12), Grid.circle(12), Grid(graded_nodes(12, -3.0, 0.0))]
+)
+@pytest.mark.parametrize("uniform", [True, False])
+def test_plain_python_fills_agree_with_compiled_ones(grid, uniform):
+    if uniform and np.ptp(np.diff(grid.theta)) > 1e-9:
+        uniform = False
+    left, right = grid.knots()
+    direct, cross, pv = np.empty((3, grid.size, grid.size))
+    python(kernels.fill_log)(grid.theta, left, right, uniform, grid.closed, RATIO, direct, cross)
+    python(kernels.fill_cauchy)(grid.theta, left, right, uniform, grid.closed, pv)
+    np.testing.assert_allclose([direct, cross], matrices(grid, uniform), rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(pv, cauchy(grid, uniform), rtol=0.0, atol=1e-13, equal_nan=True)
+
+
+def test_circle_is_circulant_and_arc_is_toeplitz_inside():
+    direct, cross = matrices(Grid.circle(30), True)
+    assert np.array_equal(np.roll(direct, (1, 1), (0, 1)), direct)
+    assert np.array_equal(np.roll(cross, (1, 1), (0, 1)), cross)
+    assert np.array_equal(direct, direct.T)
+    assert np.array_equal(cross, -cross.T)
+    assert np.array_equal(cauchy(Grid.circle(30), True), -cauchy(Grid.circle(30), True).T)
+    direct, cross = matrices(Grid.arc(-3.0, 0.0, 30), True)
+    assert np.array_equal(direct[1:, 2:-1], direct[:-1, 1:-2])
+    # the half hats at the ends mirror each other bit by bit
+    assert np.array_equal(direct[::-1, ::-1], direct)
+    assert np.array_equal(cross[::-1, ::-1], -cross)
+
+
+def test_only_the_corner_entries_of_the_cauchy_matrix_diverge():
+    for grid, uniform in ((Grid.arc(-2.0, 0.0, 9), True), (Grid(graded_nodes(9, -2.0, 0.0)), False)):
+        bad = np.isnan(cauchy(grid, uniform))
+        assert bad[0, 0]
+        assert bad[-1, -1]
+        assert bad.sum() == 2
+    assert not np.isnan(cauchy(Grid.circle(9), True)).any()
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_moved_by_full_turns_nothing_changes(closed):
+    theta = graded_nodes(21, -3.0, 2.5)
+    here, there = Grid(theta, closed), Grid(theta + 4.0 * math.pi, closed)
+    assert np.abs(np.array(matrices(here, False)) - np.array(matrices(there, False))).max() < 1e-13
+
+
+def test_harmonics_on_the_circle():
+    # L = -2 sum cos(m x)/m and A = -sum sin(m x)/m; a product with C or S shifts m by one. Interpolation
+    # between nodes is second order, so the matrices must be too.
+    def errors(n):
+        grid = Grid.circle(n)
+        theta, k = grid.theta, 3
+        direct, cross = matrices(grid, True)
+        wave, lower, upper = np.cos(k * theta), np.pi / (k - 1), np.pi / (k + 1)
+        exact_direct = (lower * (1.0 + 0.5 * RATIO) + upper * (1.0 - 0.5 * RATIO)) * np.cos(k * theta)
+        exact_cross = -(lower * (1.0 + 0.5 * RATIO) - upper * (1.0 - 0.5 * RATIO)) * np.sin(k * theta)
+        exact_cauchy = 2.0 * np.pi * np.sin(k * theta)
+        return [
+            np.abs(direct @ wave - exact_direct).max(),
+            np.abs(cross @ wave - exact_cross).max(),
+            np.abs(cauchy(grid, True) @ wave - exact_cauchy).max(),
+        ]
+
+    coarse, fine = np.array(errors(60)), np.array(errors(120))
+    assert np.all(np.abs(np.log2(coarse / fine) - 2.0) < 0.05)
+    assert np.all(fine < 2e-2)
+
+
+# --- moments ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "call", [kernels.trig_moments, python(kernels.trig_moments)], ids=["compiled", "python"]
+)
+@pytest.mark.parametrize("width", [1e-7, 1e-3, 0.49, 0.51, 3.0])
+def test_trig_moments_against_mpmath(call, width):
+    mpmath.mp.dps = 30
+    theta = np.array([-1.3, -1.3, -1.3])
+    left = theta - np.array([1.0, 0.0, 0.4]) * width
+    right = theta + np.array([0.5, 1.0, 0.0]) * width
+    cosine, sine = np.empty((2, 3))
+    call(left, theta, right, cosine, sine)
+    for j in range(3):
+        node, a, b = (mpmath.mpf(v) for v in (theta[j], theta[j] - left[j], right[j] - theta[j]))
+        for got, wave in ((cosine[j], mpmath.cos), (sine[j], mpmath.sin)):
+            exact = mpmath.mpf(0)
+            if b > 0:
+                exact += mpmath.quad(lambda t, w=wave, n=node, b=b: w(n + t) * (1 - t / b), [0, b])
+            if a > 0:
+                exact += mpmath.quad(lambda t, w=wave, n=node, a=a: w(n - t) * (1 - t / a), [0, a])
+            assert got == pytest.approx(float(exact), rel=1e-14, abs=1e-15 * width)
+
+
+def test_trig_moments_add_up_to_the_integrals_over_the_arc():
+    # sum of hats is 1
+    grid = Grid(graded_nodes(31, -3.0, 0.5))
+    left, right = grid.knots()
+    cosine, sine = np.empty((2, grid.size))
+    kernels.trig_moments(left, grid.theta, right, cosine, sine)
+    assert cosine.sum() == pytest.approx(math.sin(0.5) - math.sin(-3.0), abs=1e-14)
+    assert sine.sum() == pytest.approx(math.cos(-3.0) - math.cos(0.5), abs=1e-14)
