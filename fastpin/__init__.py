@@ -1,1 +1,74 @@
-"""x"""
+"""fastpin: frictional contact of an elastic pin in the hole of an elastic plate.
+
+Notation, signs and units
+-------------------------
+theta is measured from the +x axis, counter-clockwise; the bottom of the hole is theta = -pi/2. On the contact,
+pressure is positive in compression; shear is the traction **on the pin**, positive along +theta (the plate feels the
+opposite); slip is the motion of the pin over the plate, positive along +theta. P pushes the pin down (-y), Q along
++x, M turns it counter-clockwise. All loads are per unit thickness.
+
+SI units (N/m, N, Pa, m, rad) go in and come out. ``Problem.from_load_parameter`` gives the dimensionless problem of
+the paper (R = F = beta* = 1). All arrays of a state have one entry per node, shape (n,).
+
+    >>> import fastpin
+    >>> pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
+    >>> problem = fastpin.Problem.from_load_parameter(pair, 0.1, friction=0.4, pin_load="body")
+    >>> result = fastpin.solve(problem, [{"P": 1.0}], nodes=101)
+    >>> round(result[-1].peak_pressure, 3)
+    0.529
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fastpin.errors import (
+    ArcError,
+    ConvergenceError,
+    FastpinError,
+    InputError,
+    NoEquilibriumError,
+    SolveError,
+)
+from fastpin.grid import Grid
+from fastpin.loading import LoadHistory
+from fastpin.materials import MATERIALS, Material, MaterialPair
+from fastpin.problem import Problem
+from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Result, State
+
+if TYPE_CHECKING:
+    from fastpin.solver import solve
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "MATERIALS",
+    "OPEN",
+    "SLIP_NEGATIVE",
+    "SLIP_POSITIVE",
+    "STICK",
+    "ArcError",
+    "ConvergenceError",
+    "FastpinError",
+    "Grid",
+    "InputError",
+    "LoadHistory",
+    "Material",
+    "MaterialPair",
+    "NoEquilibriumError",
+    "Problem",
+    "Result",
+    "SolveError",
+    "State",
+    "solve",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import the solver, and with it the compiled code, only when it is asked for."""
+    if name == "solve":
+        from fastpin.solver import solve
+
+        globals()["solve"] = solve
+        return solve
+    raise AttributeError(f"module 'fastpin' has no attribute {name!r}")

@@ -1,8 +1,8 @@
 """Closed forms against which solutions are checked.
 
 Lengths along the contact are angles from the direction of the load, rad; tractions are in units of F/R, and
-the load parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays that
-broadcast; numbers give a float.
+the load parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays
+that broadcast; numbers give a float.
 
 Sources: A. Persson, "On the stress distribution of cylindrical elastic bodies in contact", dissertation,
 Chalmers (1964); M. Ciavarella and P. Decuzzi, "The state of stress induced by the plane frictionless
@@ -168,9 +168,9 @@ def cattaneo_mindlin_shear(
 ) -> Values:
     """Shear traction of like cylinders in partial slip (Cattaneo, Mindlin), in units of `peak_pressure`.
 
-    Loading: q = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x + e)^2/c^2)], c/a = sqrt(1 - Q/(mu P)). From +Q_max
-    to Q twice the same form with (Q_max - Q)/2 is taken away; from -Q_max to Q twice the form with (Q_max + Q)/2
-    is added to its negative.
+    Loading: q = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x + e)^2/c^2)], c/a = sqrt(1 - Q/(mu P)).
+    From +Q_max to Q twice the same form with (Q_max - Q)/2 is taken away; from -Q_max to Q twice that with
+    (Q_max + Q)/2 is added to its negative.
 
     Parameters
     ----------
@@ -253,8 +253,8 @@ def bulk_stress_eccentricity(
 def spence_stick_ratio(mu_over_beta: ArrayLike) -> Values:
     """Stick zone over contact in the normal loading of unlike half-planes (Spence), pressure uncoupled.
 
-    K(k)/K(k') = mu/|beta| for the modulus k = c/a, with K the complete elliptic integral of the first kind and
-    beta Dundurs' second parameter. Inverted by the nome: k = [theta_2/theta_3]^2 at exp(-pi |beta|/mu).
+    K(k)/K(k') = mu/|beta| for the modulus k = c/a, with K the complete elliptic integral of the first kind
+    and beta Dundurs' second parameter. Inverted by the nome: k = [theta_2/theta_3]^2 at exp(-pi |beta|/mu).
 
     Parameters
     ----------

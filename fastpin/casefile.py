@@ -125,7 +125,7 @@ class CaseFileError(InputError):
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """Options of :func:`fastpin.solve.solve`, with the same names and defaults."""
+    """Options of :func:`fastpin.solve`, with the same names and defaults."""
 
     nodes: int = 401
     method: str = "path"
@@ -140,7 +140,7 @@ class SolveOptions:
             raise InputError("method", f'must be "path" or "increment", not {self.method!r}')
 
     def keywords(self) -> dict[str, Any]:
-        """The options as keyword arguments of :func:`fastpin.solve.solve`."""
+        """The options as keyword arguments of :func:`fastpin.solve`."""
         return {
             "nodes": self.nodes,
             "method": self.method,
@@ -152,7 +152,7 @@ class SolveOptions:
 
 @dataclass(frozen=True)
 class Case:
-    """What a case file says: everything that :func:`fastpin.solve.solve` needs."""
+    """What a case file says: everything that :func:`fastpin.solve` needs."""
 
     problem: Problem
     history: LoadHistory

@@ -15,10 +15,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fastpin import __version__
 from fastpin.casefile import EXAMPLE, Case, CaseFileError, builtin_case, checked_between, read_case
 from fastpin.errors import FastpinError, InputError, SolveError
 from fastpin.files import check_writable, replacing
-from fastpin.report import describe, state_table, summary, version
+from fastpin.report import describe, state_table, summary
 
 if TYPE_CHECKING:
     from fastpin.state import Result
@@ -71,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Start with: fastpin example > case.toml; fastpin run case.toml",
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action="version", version=f"fastpin {version()}")
+    parser.add_argument("--version", action="version", version=f"fastpin {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     example = commands.add_parser("example", help="print a commented case file", allow_abbrev=False)
@@ -128,8 +129,6 @@ def _run(options: argparse.Namespace) -> int:
     case = _overridden(case, options)
     _check_outputs(options)
     result, failure = _solve(case)
-    states = [] if result is None else list(result)
-    statistics = {} if result is None else result.statistics
 
     if options.json != "-":
         _print_states(case, result)
@@ -139,14 +138,15 @@ def _run(options: argparse.Namespace) -> int:
 
     error = None if failure is None else str(failure)
     writers: list[tuple[Any, Callable[[Path], None]]] = []
-    document = json.dumps(summary(case, states, statistics, error), indent=2, allow_nan=False) + "\n"
+    document = json.dumps(summary(case, result, error), indent=2, allow_nan=False) + "\n"
     if options.json == "-":
         sys.stdout.write(document)
     elif options.json is not None:
         writers.append((options.json, lambda path: _write_text(path, document)))
-    if result is not None and states:
-        writers.append((options.plot, lambda path: _plot(result, path, case.title)))
-        writers.append((options.output, lambda path: _store(result, path, error)))
+    if result is not None and len(result):
+        reached = result
+        writers.append((options.plot, lambda path: _plot(reached, path, case.title)))
+        writers.append((options.output, lambda path: _store(reached, path, error)))
     for path, write in writers:
         if path is None:
             continue
@@ -206,7 +206,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
 
 def _solve(case: Case) -> tuple[Result | None, SolveError | None]:
-    from fastpin.solve import solve
+    from fastpin.solver import solve
 
     with _progress(len(case.history)) as progress:
         try:

@@ -219,6 +219,8 @@ class System:
         balance_error = np.abs(balance - self.forces @ configuration.load)
         elastic = np.abs(self.operator @ tractions)
         length = max(float(elastic.max()), float(np.abs(configuration.motion - configuration.rest).max()), 1e-300)
+        if not closed.any():
+            length = max(length, abs(self.gap0))
         traction = max(float(pressure.max()), 1e-300)
         total = max(float(np.abs(self.equilibrium) @ np.abs(tractions) @ np.ones(3)), 1e-300)
         return {

@@ -12,6 +12,7 @@ from fastpin.increment import implicit_step
 from fastpin.state import OPEN
 
 FIRST_NODES = (4, 8)  # closed nodes wanted in the first contact
+FIRST_GUESS = 5  # nodes with which its iteration begins; odd, not to tilt a symmetric pin
 LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
 
 
@@ -35,11 +36,19 @@ def unloaded(system: System) -> Configuration:
 
 
 def released(system: System, last: Configuration, load: np.ndarray) -> Configuration:
-    """The configuration after contact was lost: no tractions, the pin where it was, its slip history forgotten."""
+    """The configuration after contact was lost: no tractions, the slip history forgotten, the pin where it was.
+
+    What indentation is left from the last nodes is taken back towards the concentric position.
+    """
     n = system.grid.size
     new = last.copy()
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
+    width = system.gap0 + system.loads[:n] @ load
+    approach = -system.motion[:n, :2] @ new.motion[:2]
+    deep = approach > width
+    if deep.any():
+        new.motion[:2] *= max(float(np.min(width[deep] / approach[deep])), 0.0)
     free = system.displacement(np.zeros(2 * n), new.motion, load, system.gap0)
     new.gap, new.slip = np.maximum(free[:n], 0.0), free[n:]
     return new
@@ -100,7 +109,7 @@ def at_rest(
     free = system.displacement(np.zeros(2 * n), rest, before + begins * (after - before), system.gap0)
     resting.gap, resting.slip = np.maximum(free[:n], 0.0), free[n:]
     resting.rest_slip = resting.slip.copy()
-    resting.status[np.argsort(free[:n], kind="stable")[: sum(FIRST_NODES) // 2]] = system.resting_status
+    resting.status[np.argsort(free[:n], kind="stable")[:FIRST_GUESS]] = system.resting_status
     return resting, begins
 
 

@@ -5,20 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.files import replacing
+from fastpin.files import check_writable, replacing
 from fastpin.loading import LOADS
 from fastpin.report import LOAD_KIND, acting_loads, load_point, scaled, units
 from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, State
@@ -33,11 +35,12 @@ _DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
     (0, (8.0, 2.0)),
     (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
 )
+_SHADE = "0.93"
 MAX_NAMED = len(_COLOURS)
 """Up to so many states are drawn with a legend; more get a colour scale."""
 MAX_LINES = 60
 
-_STYLE = {
+_STYLE: Any = {
     "font.size": 9.0,
     "font.family": "sans-serif",
     "axes.linewidth": 0.7,
@@ -50,7 +53,6 @@ _STYLE = {
     "legend.frameon": False,
     "mathtext.default": "regular",
     "svg.fonttype": "none",
-    "svg.hashsalt": "fastpin",  # the same figure has the same bytes
 }
 
 
@@ -64,9 +66,10 @@ def plot_tractions(
     """Pressure and shear traction round the hole.
 
     The upper panel shows the pressure N, the middle one the shear traction T on the pin (counter-clockwise
-    positive) within its bounds +-mu N (thin), the lower one where each state slips (shaded)
-    or sticks (solid). Angles are in degrees from the bottom of the hole, counter-clockwise positive. More than :data:`MAX_NAMED`
-    states are coloured by their place in the history instead of being named, and the lower panel is left out.
+    positive) within its bounds +-mu N (thin), the lower one where a state slips (shaded) or sticks (solid).
+    Angles are in degrees from the bottom of the hole, counter-clockwise positive. More than
+    :data:`MAX_NAMED` states are coloured by their place in the history instead of being named, and the lower
+    panel is left out.
 
     Parameters
     ----------
@@ -94,6 +97,8 @@ def plot_tractions(
         raise InputError("states", "there is no state to plot")
     if len(shown) > MAX_LINES:
         shown = [shown[k] for k in np.unique(np.linspace(0, len(shown) - 1, MAX_LINES).round().astype(int))]
+    if path is not None:
+        _check_format(Path(path))
     with mpl.rc_context(_STYLE):
         figure = _draw(shown, title, width)
         if path is not None:
@@ -101,12 +106,15 @@ def plot_tractions(
     return figure
 
 
-def _save(figure: Figure, path: Path, dpi: float) -> None:
+def _check_format(path: Path) -> None:
     formats = FigureCanvasAgg.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
-        raise InputError(
-            "path", f"a figure's name must end in one of {', '.join(sorted(formats))}, not {path.name!r}"
-        )
+        known = ", ".join(sorted(formats))
+        raise InputError("path", f"a figure's name must end in one of {known}, not {path.name!r}")
+    check_writable(path)
+
+
+def _save(figure: Figure, path: Path, dpi: float) -> None:
     dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
     with replacing(path) as temporary:
         figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
@@ -115,8 +123,9 @@ def _save(figure: Figure, path: Path, dpi: float) -> None:
 def _draw(states: list[State], title: str, width: float) -> Figure:
     problem = states[0].problem
     named = len(states) <= MAX_NAMED
-    colours = list(_COLOURS) if named else [_scale(states).to_rgba(load_point(state)) for state in states]
-    zones = named and not problem.frictionless
+    shades = _scale(states).to_rgba(np.array([load_point(state) for state in states]))
+    colours: Sequence[Any] = _COLOURS if named else list(shades)
+    zones = named and not problem.frictionless and len(states) > 1
     strip = 0.16 * len(states) + 0.15  # inches
     panels = [1.9] if problem.frictionless else [1.9, 1.9]
     heights = [*panels, strip] if zones else panels
@@ -145,6 +154,8 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     if not problem.frictionless:
         axes[1].set_ylabel(f"shear  T  [{label}]")
         axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    if len(states) == 1:
+        _shade_slip(list(axes), states[0], frame)
     if zones:
         _draw_zones(axes[-1], states, colours, frame)
     for panel in axes:
@@ -216,7 +227,14 @@ def _middle_of_longest_gap(touched: np.ndarray) -> int:
     return middle % size
 
 
-def _draw_zones(panel: Axes, states: list[State], colours: Sequence[object], frame: _Frame) -> None:
+def _shade_slip(axes: Sequence[Axes], state: State, frame: _Frame) -> None:
+    for start, stop, _ in state.slip_zones:
+        for left, width in frame.place(start, stop):
+            for panel in axes:
+                panel.axvspan(left, left + width, color=_SHADE, linewidth=0, zorder=-1)
+
+
+def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame: _Frame) -> None:
     """One row a state: solid where it sticks, shaded where it slips, with an arrow for the pin's sense."""
     for row, state in enumerate(states):
         colour = colours[row]
@@ -239,7 +257,7 @@ def _draw_zones(panel: Axes, states: list[State], colours: Sequence[object], fra
 
 
 def _name_states(
-    figure: Figure, axes: np.ndarray, states: list[State], colours: Sequence[object], title: str, named: bool
+    figure: Figure, axes: np.ndarray, states: list[State], colours: Sequence[Any], title: str, named: bool
 ) -> None:
     """Legend or colour scale; what all states share goes to the title."""
     loads = [state.load for state in states]
@@ -252,27 +270,49 @@ def _name_states(
     if not named:
         bar = figure.colorbar(_scale(states), ax=list(axes), aspect=40, pad=0.02)
         bar.set_label("load point (1: first corner of the history)")
-        bar.outline.set_linewidth(0.5)  # type: ignore[operator]
+        bar.ax.yaxis.set_major_locator(MaxNLocator(nbins=8, integer=True))
+        bar.outline.set_linewidth(0.5)
         return
-    handles: list[Line2D | Patch] = []
+    handles: list[Artist] = []
     for index, state in enumerate(states):
         parts = ",  ".join(_load_text(states, index, name) for name in varying)
         text = f"{load_point(state):g}:  {parts}" if parts else f"{load_point(state):g}"
-        handles.append(Line2D([], [], color=colours[index], linestyle=_DASHES[index], label=text))  # type: ignore[arg-type]
+        handles.append(Line2D([], [], color=colours[index], linestyle=_DASHES[index], label=text))
+    styles: list[Artist] = []
     if not states[0].problem.frictionless:
-        handles.append(
-            Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {states[0].problem.friction:g}")
+        friction = states[0].problem.friction
+        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {friction:g}"))
+        if len(states) == 1:
+            styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
+        else:
+            styles.append(Patch(color="0.35", linewidth=0, label="stick"))
+            styles.append(
+                Patch(color="0.35", alpha=0.22, linewidth=0, label="slip of the pin (→ counter-clockwise)")
+            )
+    handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
+    if handles:
+        figure.legend(
+            handles=handles,
+            loc="outside lower center",
+            ncols=columns,
+            fontsize=8.0,
+            handlelength=2.8,
+            columnspacing=2.0,
         )
-        handles.append(Patch(color="0.35", linewidth=0, label="stick"))
-        handles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip of the pin"))
-    figure.legend(
-        handles=handles,
-        loc="outside lower center",
-        ncols=3,
-        fontsize=8.0,
-        handlelength=2.8,
-        columnspacing=1.8,
-    )
+
+
+def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:
+    """Legend entries, filled up so that states and styles stand in columns of their own, and the columns."""
+    if not states:
+        return styles, max(len(styles), 1)
+    rows = len(states) if len(states) <= 3 else math.ceil(len(states) / 2)
+    columns = [states[k : k + rows] for k in range(0, len(states), rows)]
+    if styles:
+        columns.append(styles)
+    rows = max(len(column) for column in columns)
+    blank = Line2D([], [], linestyle="none", label=" ")
+    filled = [entry for column in columns for entry in [*column, *[blank] * (rows - len(column))]]
+    return filled, len(columns)
 
 
 def _load_text(states: list[State], index: int, name: str) -> str:
@@ -281,10 +321,14 @@ def _load_text(states: list[State], index: int, name: str) -> str:
     factor, unit = scaled(alike, units(states[0].problem)[LOAD_KIND[name]])
     symbol = {"sxx": "$σ_{xx}$", "syy": "$σ_{yy}$"}.get(name, name)
     value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
-    value = value.lstrip("+") if name == "P" or float(states[index].load[name]) == 0.0 else value
+    if states[index].load[name] == 0.0:
+        return f"{symbol} = 0"
+    value = value.lstrip("+") if name == "P" else value
     return f"{symbol} = {value} {unit.replace('beta*', 'β*')}"
 
 
 def _scale(states: list[State]) -> ScalarMappable:
     points = [load_point(state) for state in states]
-    return ScalarMappable(Normalize(min(points), max(points)), "viridis_r")
+    # The lightest tenth of the scale can't be seen on white.
+    shades = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.9, 0.0, 256)))
+    return ScalarMappable(Normalize(min(points), max(points)), shades)

@@ -7,19 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError
-from importlib.metadata import version as installed_version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fastpin.loading import LOADS, LoadHistory, named_load
+from fastpin import __version__
+from fastpin.loading import LOADS, named_load
 from fastpin.materials import Material
 from fastpin.problem import Problem
 
 if TYPE_CHECKING:
     from fastpin.casefile import Case
-    from fastpin.state import State
+    from fastpin.state import Result, State
 
 LOAD_KIND = {
     "P": "force",
@@ -51,14 +50,6 @@ _DIMENSIONLESS = {
 }
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 _MAX_ROWS = 40
-
-
-def version() -> str:
-    """The version of the installed package."""
-    try:
-        return installed_version("fastpin")
-    except PackageNotFoundError:  # run from a source tree that is not installed
-        return "unknown"
 
 
 def units(problem: Problem) -> dict[str, str]:
@@ -94,11 +85,6 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
 def load_point(state: State) -> float:
     """Where in the history a state is: 1 at the first corner, 1.5 halfway from there to the second."""
     return state.step + state.fraction
-
-
-def is_complete(states: Sequence[State], history: LoadHistory) -> bool:
-    """Whether the states reach the end of the history."""
-    return len(states) > 0 and states[-1].step == len(history) - 1 and states[-1].fraction == 1.0
 
 
 def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
@@ -249,20 +235,20 @@ def _material(material: Material, dimensionless: bool) -> str:
 
 def summary(
     case: Case,
-    states: Sequence[State],
-    statistics: Mapping[str, float] | None = None,
+    result: Result | None,
     error: str | None = None,
 ) -> dict[str, Any]:
     """The case and its states as a dict that goes to JSON as it is; what is not finite becomes None.
 
-    ``units`` names the unit of every kind of quantity; angles are in degrees from the bottom of the hole.
+    `result` is None where not even a first state was reached, `error` says why it is incomplete. ``units``
+    names the unit of every kind of quantity; angles are in degrees from the bottom of the hole.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = pair.dundurs()
     document = {
-        "fastpin": version(),
+        "fastpin": __version__,
         "title": case.title,
-        "complete": error is None and is_complete(states, case.history),
+        "complete": result is not None and result.complete,
         "error": error,
         "units": {**units(problem), "angle": "deg from the bottom of the hole, counter-clockwise"},
         "problem": {
@@ -281,8 +267,8 @@ def summary(
         },
         "history": {"loads": list(LOADS), "corners": case.history.values().tolist()},
         "solver": case.options.keywords(),
-        "statistics": dict(statistics or {}),
-        "states": [_state_summary(state) for state in states],
+        "statistics": {} if result is None else result.statistics,
+        "states": [] if result is None else [_state_summary(state) for state in result],
     }
     return _plain(document)
 

@@ -25,6 +25,9 @@ MOST_HALVINGS = 12
 FEW_NODES = 8
 """A contact of so few nodes that is lost while the pin is being unloaded completely has just opened."""
 
+ALMOST_UNLOADED = 1.0 - 1e-8
+"""So far into a complete unloading everything falls to zero together, and the order of events is rounding."""
+
 @dataclass(frozen=True)
 class _Piece:
     """A straight piece of a step, from fraction `begin` to fraction `end` of it."""
@@ -163,15 +166,16 @@ class Run:
                 if self.progress is not None:
                     self.progress(step + reached, steps)
         except StepLost as lost:
-            if lost.code == tableau.NO_SUPPORT and not _pushed(piece.after) and self.now.closed.sum() <= FEW_NODES:
-                self.now = released(self.system, self.now, piece.after)
+            last_nodes = path is not None and int(path.now.closed.sum()) <= FEW_NODES
+            if not _pushed(piece.after) and (last_nodes or lost.fraction > ALMOST_UNLOADED):
+                self.now = released(self.system, self.now if path is None else path.now, piece.after)
                 if piece.end in inside:
                     self._keep(step, piece.end)
             else:
                 fraction = piece.end if path is None else origin + lost.fraction * (piece.end - origin)
                 raise _solve_error(lost.code, fraction, int(self.now.closed.sum())) from None
         except SolveError as error:
-            error.fraction = max(error.fraction, reached)
+            error.fraction = reached + error.fraction * (stop - reached)  # so far relative to the way to this stop
             raise
         finally:
             if path is not None:
@@ -194,11 +198,15 @@ class Run:
             self.now = released(self.system, self.now, load)
             return 1.0
         resting, fraction = begins
-        change = load - self.now.load
+        before = self.now.load
         for k in range(1, self.increments + 1):
             part = fraction + (1.0 - fraction) * k * (k + 1) / (self.increments * (self.increments + 1))
-            target = load if k == self.increments else self.now.load + part * change
-            self._increment(resting if k == 1 else self.now, target, MOST_HALVINGS)
+            target = load if k == self.increments else before + part * (load - before)
+            try:
+                self._increment(resting if k == 1 else self.now, target, MOST_HALVINGS)
+            except SolveError as error:
+                error.fraction = part
+                raise
         return 1.0
 
     def _increments(self, load: np.ndarray, reached: float, stop: float) -> None:
@@ -211,8 +219,8 @@ class Run:
             target = load if k == count else before + k / count * (load - before)
             try:
                 self._increment(self.now, target, MOST_HALVINGS)
-            except ConvergenceError as error:
-                error.fraction = reached + (k - 1) / count * (stop - reached)
+            except SolveError as error:
+                error.fraction = (k - 1) / count
                 raise
 
     def _increment(self, start: Configuration, load: np.ndarray, halvings: int) -> None:
@@ -253,8 +261,7 @@ class Run:
         if not max(residuals.values()) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
-                f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned",
-                fraction=fraction,
+                f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
         motion = now.motion - now.rest
         self.states.append(

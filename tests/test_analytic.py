@@ -54,6 +54,14 @@ def test_persson_half_angle_falls_with_the_load_parameter_and_grows_with_mismatc
     assert np.all(np.diff(analytic.persson_half_angle(0.1, np.linspace(-1.0, 1.0, 21))) > 0.0)
 
 
+@pytest.mark.parametrize("mismatch", [-0.5, 0.0, 0.6])
+def test_contact_closes_round_the_pin_at_the_limit(mismatch):
+    limit = (mismatch - 1.0) / (4.0 * math.pi)
+    assert analytic.persson_half_angle(limit + 1e-8, mismatch) == pytest.approx(math.pi, abs=1e-2)
+    with pytest.raises(InputError, match="all round"):
+        analytic.persson_half_angle(limit - 1e-8, mismatch)
+
+
 def test_persson_of_like_bodies_is_its_own_formula():
     half_angle = np.linspace(0.1, 3.0, 30)
     b = np.tan(half_angle / 2.0)

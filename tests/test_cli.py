@@ -1,0 +1,401 @@
+"""The command line: what it prints, its exit codes and its files."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from samples import sample_result
+
+import fastpin.solver
+from fastpin import __version__
+from fastpin.casefile import EXAMPLE, builtin_case
+from fastpin.cli import main
+from fastpin.errors import NoEquilibriumError
+from fastpin.files import replacing
+from fastpin.report import describe, from_bottom, interval_from_bottom, scaled, state_table
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """The solver is replaced by a result made by hand; what it was called with is recorded."""
+    calls: list[dict[str, Any]] = []
+
+    def solve(
+        problem: object, history: object, progress: Callable[[float, int], None], **options: Any
+    ) -> object:
+        calls.append(options)
+        progress(0.5, 3)
+        progress(3.0, 3)
+        return sample_result()
+
+    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    return calls
+
+
+@pytest.fixture
+def lost(monkeypatch: pytest.MonkeyPatch) -> NoEquilibriumError:
+    """The solver loses the load in the third step."""
+    error = NoEquilibriumError(
+        "the pin slides away at 40 % of step 4", 3, 0.4, {}, sample_result(complete=False)
+    )
+
+    def solve(*_: object, **__: object) -> object:
+        raise error
+
+    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    return error
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(EXAMPLE)
+    return path
+
+
+def test_example_prints_a_case_file(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["example"]) == 0
+    assert capsys.readouterr().out == EXAMPLE
+
+
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert capsys.readouterr().out == f"fastpin {project['version']}\n"
+    assert __version__ == project["version"]
+
+
+def test_check_says_what_was_understood(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(case)]) == 0
+    out = capsys.readouterr().out
+    for words in (
+        "Ti-6Al-4V, E = 116 GPa, nu = 0.32",
+        "alpha = 0.2507, beta = 0.0595",
+        "radius 10 mm",
+        "401 nodes",
+    ):
+        assert words in out
+    rows = [line.split() for line in out.splitlines()]
+    assert rows[-4:] == [
+        ["1", "2.42", "0", "0.1"],
+        ["2", "2.42", "0.484", "0.0981"],
+        ["3", "2.42", "-0.484", "0.0981"],
+        ["4", "2.42", "0.484", "0.0981"],
+    ]
+
+
+def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(EXAMPLE.replace("nu = 0.33", "nu = 0.7").replace("nodes = 401", "nodes = 1"))
+    assert main(["check", str(case)]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    lines = captured.err.splitlines()
+    assert [line.split(": ")[1] for line in lines] == ["nu", "nodes"]
+    assert all(line.startswith(f"{case}, line ") for line in lines)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["run", "--help"], ["example"], ["check", "CASE"], ["run", "CASE", "--nodes", "1"]],
+    ids=" ".join,
+)
+def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], case: Path) -> None:
+    code = (
+        "import sys\nfrom fastpin.cli import main\n"
+        "try:\n    main(sys.argv[1:])\nexcept SystemExit:\n    pass\n"
+        "print([name for name in ('numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])"
+    )
+    arguments = [str(case) if word == "CASE" else word for word in arguments]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_run_prints_a_line_for_each_state(
+    solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run"]) == 0
+    assert solved == [builtin_case().options.keywords()]
+    captured = capsys.readouterr()
+    assert captured.err == ""  # no progress bar where nobody watches
+    lines = captured.out.splitlines()
+    assert lines[0] == builtin_case().title
+    assert lines[1].split()[:6] == ["load", "point", "P", "Q", "peak", "N"]
+    assert "MPa" in lines[2]
+    first = lines[3].split()
+    assert first[:3] == ["1", "2.42", "0"]
+    assert float(first[3]) == pytest.approx(100.0, rel=1e-3)  # MPa
+    assert len(lines) == 7
+    assert "81 nodes" in lines[-1]
+
+
+def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> None:
+    arguments = ["--nodes", "99", "--method", "increment", "--increments", "7", "--between", "0.25,0.5"]
+    assert main(["run", str(case), *arguments]) == 0
+    assert main(["run", str(case), "--between", "3"]) == 0
+    first, second = solved
+    assert first == {"nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5)}
+    assert second["between"] == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--nodes", "2"], "--nodes: must be a whole number"),
+        (["--method", "magic"], "--method: must be"),
+        (["--increments", "0"], "--increments: must be"),
+        (["--between", "x"], "--between: must be"),
+        (["--between", "0.5,0.5"], "--between: must be"),
+        (["--plot", "figure.docx"], "--plot: the figure's name must end in"),
+        (["--json", "no/such/dir/x.json"], "does not exist"),
+        (["-o", "."], "is a directory"),
+        (["--json", "a.png", "--plot", "a.png"], "writes the same file as --json"),
+    ],
+)
+def test_options_are_checked_before_the_work(
+    arguments: list[str],
+    words: str,
+    solved: list[dict[str, Any]],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1
+    assert solved == []
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("option", ["--json", "--plot", "-o"])
+def test_the_case_file_is_never_overwritten(
+    option: str, case: Path, solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """argparse takes the case file after an option with an optional value for that value."""
+    assert main(["run", option, str(case)]) == 2
+    assert main(["run", str(case), option, str(case.parent / "." / case.name)]) == 2
+    assert "won't overwrite the case file" in capsys.readouterr().err
+    assert case.read_text() == EXAMPLE
+    assert solved == []
+
+
+def test_json_on_standard_output_is_the_only_thing_there(
+    solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    result = sample_result()
+    assert document["complete"] is True
+    assert document["error"] is None
+    assert document["units"]["traction"] == "Pa"
+    assert document["fastpin"] == __version__
+    assert document["problem"]["dundurs"]["alpha"] == pytest.approx(0.2507, abs=1e-4)
+    assert len(document["states"]) == len(result)
+    for said, state in zip(document["states"], result, strict=True):
+        assert said["peak_pressure"] == state.peak_pressure
+        assert said["load"] == state.load
+        start, stop = state.contact[0]
+        assert said["contact"][0] == pytest.approx([np.degrees(start) + 90.0, np.degrees(stop) + 90.0])
+        assert said["load_point"] == state.step + 1
+
+
+def test_all_outputs(case: Path, solved: list[dict[str, Any]], tmp_path: Path) -> None:
+    from fastpin.store import load
+
+    names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
+    arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
+    for _ in range(2):  # again: an existing file is replaced
+        assert main(["run", str(case), *arguments]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"case.toml", *names.values()}
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert len(load(tmp_path / "a.h5")) == len(json.loads((tmp_path / "a.json").read_text())["states"]) == 3
+
+
+def test_a_lost_load_keeps_what_was_solved(
+    lost: NoEquilibriumError, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from fastpin.store import load
+
+    names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
+    arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
+    assert main(["run", *arguments]) == 1
+    captured = capsys.readouterr()
+    assert captured.err == f"fastpin: {lost}\n"
+    assert len(captured.out.splitlines()) == 7
+    document = json.loads((tmp_path / "a.json").read_text())
+    assert document["complete"] is False
+    assert document["error"] == str(lost)
+    assert len(document["states"]) == 3
+    assert load(tmp_path / "a.h5").complete is False
+    assert (tmp_path / "a.png").exists()
+
+
+def test_a_load_lost_at_once_has_no_states(
+    lost: NoEquilibriumError, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lost.result = None
+    path = tmp_path / "a.json"
+    assert main(["run", "--json", str(path), "--plot", str(tmp_path / "a.png")]) == 1
+    assert "no state was reached" in capsys.readouterr().out
+    assert json.loads(path.read_text())["states"] == []
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_an_interrupted_run_ends_with_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def solve(*_: object, **__: object) -> object:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    assert main(["run", "--json", str(tmp_path / "a.json")]) == 130
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_can_not_be_written_does_not_cost_the_others(
+    solved: list[dict[str, Any]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    import fastpin.plot
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(fastpin.plot, "plot_tractions", full)
+    path = tmp_path / "a.h5"
+    assert main(["run", "--plot", str(tmp_path / "a.png"), "-o", str(path)]) == 1
+    assert "No space left" in capsys.readouterr().err
+    assert path.exists()
+
+
+def test_a_reader_that_leaves_is_no_error(case: Path) -> None:
+    command = f"{sys.executable} -m fastpin example | true"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.stderr == ""
+
+
+def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(case), "--nodes", "61", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    first = document["states"][0]
+    # 0.52882 F/R for the load parameter 0.1, on many nodes
+    assert first["peak_pressure"] * 0.01 / 2.42e6 == pytest.approx(0.5288, rel=3e-3)
+    (start, stop), *rest = first["contact"]
+    assert not rest
+    assert (start, stop) == pytest.approx((-np.degrees(1.136), np.degrees(1.136)), abs=1.0)
+
+
+# -- pieces --------------------------------------------------------------------------------------------------
+
+
+def test_angles_from_the_bottom() -> None:
+    assert from_bottom(-0.5 * np.pi) == 0.0
+    assert from_bottom(0.0) == pytest.approx(90.0)
+    assert from_bottom(0.5 * np.pi) == pytest.approx(180.0)
+    assert from_bottom(np.pi) == pytest.approx(-90.0)
+    assert interval_from_bottom(0.0, np.pi) == pytest.approx((90.0, 270.0))
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "expected"),
+    [
+        ([1.2e8, -3e7], "Pa", (1e-6, "MPa")),
+        ([1e6], "Pa", (1e-6, "MPa")),
+        ([999.0], "N/m", (1.0, "N/m")),
+        ([2e-5], "m", (1e6, "um")),
+        ([0.0], "m", (1.0, "m")),
+        ([float("nan"), 1e3], "m", (1e-3, "km")),
+        ([1e-9], "F/R", (1.0, "F/R")),
+        ([1e30], "Pa", (1e-9, "GPa")),
+    ],
+)
+def test_scaled(values: list[float], unit: str, expected: tuple[float, str]) -> None:
+    factor, label = scaled(values, unit)
+    assert (factor, label) == (pytest.approx(expected[0]), expected[1])
+
+
+def test_long_tables_are_cut_in_the_middle() -> None:
+    corners = [{"P": 1e6 + k} for k in range(100)]
+    text = state_table(sample_result().problem, list(sample_result(corners)))
+    assert len(text.splitlines()) < 60
+    assert "60 more" in text
+
+
+def test_description_of_other_kinds_of_cases() -> None:
+    from fastpin.casefile import parse_case
+
+    text = """
+    [dundurs]
+    alpha = 1.0
+    beta = 0.3
+    nu_pin = 0.3
+    [contact]
+    load_parameter = 0.05
+    friction = 0.4
+    rotation = "fixed"
+    hub_radius = 1.0
+    [[load]]
+    P = 1
+    [[load]]
+    P = 0
+    """
+    said = describe(parse_case(text))
+    for words in ("rigid", "load parameter 0.05", "rotation fixed at radius 1 R", "dimensionless"):
+        assert words in said
+    assert said.splitlines()[-1].split() == ["2", "0", "-"]
+
+
+def test_replacing_keeps_the_old_file_when_writing_fails(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def fail_half_way() -> None:
+        with replacing(path) as temporary:
+            temporary.write_text("half")
+            raise RuntimeError("power cut")
+
+    with pytest.raises(RuntimeError):
+        fail_half_way()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_replacing_follows_links_and_keeps_ordinary_permissions(tmp_path: Path) -> None:
+    real, link = tmp_path / "real.txt", tmp_path / "link.txt"
+    real.write_text("old")
+    link.symlink_to(real)
+    with replacing(link) as temporary:
+        temporary.write_text("new")
+    assert link.is_symlink()
+    assert real.read_text() == "new"
+    umask = os.umask(0)
+    os.umask(umask)
+    assert stat.S_IMODE(real.stat().st_mode) == 0o666 & ~umask
+
+
+def test_replacing_never_replaces_a_device(tmp_path: Path) -> None:
+    with replacing(os.devnull) as temporary:
+        temporary.write_text("gone")
+    assert not Path(os.devnull).is_file()

@@ -1,0 +1,153 @@
+"""Figures: what is drawn, where, and that none of the kinds of results breaks it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from samples import PAIR, sample_result
+
+from fastpin.errors import InputError
+from fastpin.plot import MAX_LINES, MAX_NAMED, plot_tractions
+from fastpin.problem import Problem
+
+
+def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
+    return [
+        line.get_xydata()
+        for line in panel.lines
+        if len(line.get_xdata()) > 2 and line.get_lw() > thicker_than
+    ]
+
+
+def labels(figure: mpl.figure.Figure) -> list[str]:
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> None:
+    result = sample_result()
+    pressure, shear, zones = plot_tractions(result).axes
+    assert len(curves(pressure)) == len(curves(shear)) == len(result)
+    for state, line in zip(result, curves(pressure), strict=True):
+        drawn = np.isfinite(line[:, 1])
+        assert np.allclose(line[drawn, 1], state.pressure[drawn] / 1e6)
+        assert np.allclose(line[:, 0], np.degrees(state.theta) + 90.0)
+        assert np.isnan(line[~drawn, 1]).all()
+        assert np.nanmax(line[:, 1]) == pytest.approx(100.0, rel=1e-3)
+    assert "MPa" in pressure.get_ylabel()
+    assert "bottom" in zones.get_xlabel()
+
+
+def test_shear_lies_within_its_drawn_bounds() -> None:
+    _, shear, _ = plot_tractions(sample_result()).axes
+    bounds = [line.get_xydata() for line in shear.lines if len(line.get_xdata()) > 2 and line.get_lw() < 0.8]
+    assert len(bounds) == 2 * len(curves(shear))
+    upper, line = bounds[0], curves(shear)[0]
+    inside = np.isfinite(upper[:, 1])
+    assert inside.any()
+    assert np.all(np.abs(line[inside, 1]) <= upper[inside, 1] + 1e-12)
+
+
+def test_legend_names_what_differs_and_the_title_what_does_not() -> None:
+    figure = plot_tractions(sample_result(), title="A case")
+    assert labels(figure)[:3] == ["1:  Q = 0", "2:  Q = +0.484 MN/m", "3:  Q = −0.484 MN/m"]
+    assert figure.get_suptitle() == "A case\nP = 2.42 MN/m"
+
+
+def test_zones_of_each_state() -> None:
+    result = sample_result()
+    panel = plot_tractions(result).axes[-1]
+    bars = sorted((bar.get_y(), bar.get_x(), bar.get_width()) for bar in panel.patches)
+    expected = sum(len(state.stick) + len(state.slip_zones) for state in result)
+    assert len(bars) == expected
+    start, stop = result[0].stick[0]
+    assert any(
+        np.allclose(bar[1:], (np.degrees(start) + 90, np.degrees(stop - start)), atol=1e-6) for bar in bars
+    )
+
+
+def test_one_state_is_shaded_where_it_slips() -> None:
+    figure = plot_tractions(sample_result()[0])
+    assert len(figure.axes) == 2
+    assert all(len(panel.patches) == 2 for panel in figure.axes)
+    assert "slip" in labels(figure)
+
+
+def test_without_friction_there_is_no_shear_panel() -> None:
+    figure = plot_tractions(sample_result(friction=0.0))
+    assert [panel.get_ylabel().split()[0] for panel in figure.axes] == ["pressure"]
+
+
+def test_dimensionless_units() -> None:
+    figure = plot_tractions(sample_result([{"P": 1.0}], problem=Problem.from_load_parameter(PAIR, 0.1, 0.4)))
+    assert "F/R" in figure.axes[0].get_ylabel()
+
+
+def test_many_states_get_a_colour_scale() -> None:
+    count = 5 * MAX_LINES
+    result = sample_result([{"P": 1e6 * (k + 1)} for k in range(count)])
+    few = plot_tractions(list(result)[: MAX_NAMED + 1])
+    assert not few.legends
+    assert len(few.axes) == 3  # pressure, shear, colour scale
+    many = plot_tractions(result)
+    assert len(curves(many.axes[0])) == MAX_LINES
+
+
+@pytest.mark.parametrize("centre", [-0.5 * np.pi, 0.0, 0.5 * np.pi, 0.75 * np.pi])
+def test_a_contact_across_the_seam_of_the_circle_is_drawn_in_one_piece(centre: float) -> None:
+    result = sample_result(closed=True, centre=centre, nodes=120)
+    figure = plot_tractions(result)
+    line = curves(figure.axes[0])[0]
+    drawn = np.flatnonzero(np.isfinite(line[:, 1]))
+    assert np.all(np.diff(drawn) == 1)
+    assert np.all(np.diff(line[:, 0]) > 0.0)
+    low, high = figure.axes[0].get_xlim()
+    assert low < line[drawn[0], 0]
+    assert line[drawn[-1], 0] < high
+    middle = line[np.nanargmax(line[:, 1]), 0]
+    assert (middle - np.degrees(centre) - 90.0) % 360.0 == pytest.approx(0.0, abs=3.1) or middle % 360 > 356.0
+    assert len(figure.axes[-1].patches) == 9  # stick and two slip zones of each state, none cut or lost
+
+
+def test_contact_all_round() -> None:
+    result = sample_result([{"P": 1e6}, {"Q": 1e5}], closed=True, nodes=60)
+    for state in result:
+        state.pressure[:] = 1e8
+        state.status[:] = 0
+    figure = plot_tractions(result)
+    low, high = figure.axes[0].get_xlim()
+    assert high - low == pytest.approx(360.0)
+
+
+def test_states_without_contact(tmp_path: Path) -> None:
+    result = sample_result()
+    for state in result:
+        state.pressure[:] = 0.0
+        state.shear[:] = 0.0
+        state.status[:] = 2
+    plot_tractions(result, tmp_path / "a.png")
+    assert (tmp_path / "a.png").stat().st_size > 0
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_formats(suffix: str, magic: bytes, tmp_path: Path) -> None:
+    path = tmp_path / f"a.{suffix}"
+    plot_tractions(sample_result(), path)
+    assert path.read_bytes().startswith(magic)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_no_global_state_is_touched() -> None:
+    before = dict(mpl.rcParams)
+    plot_tractions(sample_result())
+    assert dict(mpl.rcParams) == before
+
+
+def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no state"):
+        plot_tractions([])
+    with pytest.raises(InputError, match="must end in"):
+        plot_tractions(sample_result(), tmp_path / "a.docx")
+    assert list(tmp_path.iterdir()) == []

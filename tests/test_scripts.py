@@ -1,0 +1,162 @@
+"""The scripts, with a Python that only records what it is asked to do."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# Stands for Python, for the Python of the environment and for apt-get. What it was called with goes to $LOG.
+FAKE = """#!/bin/bash
+[[ $0 == */apt-get ]] && { echo "apt-get $*" >>"$LOG"; touch "$HERE/has-ensurepip"; exit 0; }
+case "$1 $2" in
+"-c import ensurepip"*) [[ -e $HERE/has-ensurepip ]]; exit ;;
+"-c import sys; print"*) echo python3.11-venv; exit ;;
+"-c import sys; sys.exit"*) [[ ! -e $HERE/too-old ]]; exit ;;
+"-c "*) exit 0 ;;
+"-m venv") mkdir -p "$4/bin" && cp "$0" "$4/bin/python"; echo "venv" >>"$LOG"; exit ;;
+"-m pip") [[ $3 == --version ]] && exit 0
+    [[ -e $HERE/offline ]] && { echo "no network" >&2; exit 1; }
+    sleep 0.2; echo "pip ${!#}" >>"$LOG"; exit ;;
+esac
+echo "$PWD> $*" >>"$LOG"
+[[ -z $FAIL ]] || exit "$FAIL"
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A copy of the scripts in a directory with a space, beside a directory of fake commands."""
+    root = tmp_path / "a b" / "fastpin"
+    shutil.copytree(ROOT / "scripts", root / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", root)
+    commands = tmp_path / "bin"
+    commands.mkdir()
+    (tmp_path / "has-ensurepip").touch()
+    for name in ("python3.11", "python3", "apt-get"):
+        (commands / name).write_text(FAKE)
+        (commands / name).chmod(0o755)
+    return root
+
+
+def environment(project: Path, **more: str) -> dict[str, str]:
+    here = project.parents[1]
+    path = f"{here / 'bin'}:/usr/bin:/bin"
+    return {"PATH": path, "LOG": str(here / "log"), "HERE": str(here), "HOME": str(here), "FAIL": "", **more}
+
+
+def run(project: Path, script: str, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [project / "scripts" / script, *arguments],
+        capture_output=True,
+        text=True,
+        cwd="/",
+        env=environment(project, **more),
+        check=False,
+    )
+
+
+def log(project: Path) -> list[str]:
+    file = project.parents[1] / "log"
+    lines = file.read_text().splitlines() if file.exists() else []
+    file.unlink(missing_ok=True)
+    return lines
+
+
+@pytest.mark.parametrize("name", ["scripts/run", "scripts/test", ".ci/run"])
+def test_scripts_can_be_run_and_parsed(name: str) -> None:
+    assert os.access(ROOT / name, os.X_OK)
+    subprocess.run(["bash", "-n", ROOT / name], check=True)
+    subprocess.run(["bash", "-n", ROOT / "scripts" / "environment.sh"], check=True)
+
+
+def test_environment_is_made_once_and_again_when_the_dependencies_change(project: Path) -> None:
+    first = run(project, "run", "case.toml", "--nodes", "9")
+    assert first.returncode == 0, first.stderr
+    assert log(project) == ["venv", f"pip {project}", "/> -P -m fastpin run case.toml --nodes 9"]
+    assert run(project, "run", "case.toml").stderr == ""
+    assert log(project) == ["/> -P -m fastpin run case.toml"]
+    with open(project / "pyproject.toml", "a") as file:
+        file.write("\n# changed\n")
+    run(project, "run", "case.toml")
+    assert log(project)[:-1] == [f"pip {project}"]
+
+
+def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> None:
+    run(project, "run", "x")
+    log(project)
+    assert run(project, "test", "-k", "a b").returncode == 0
+    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -k a b"]
+    run(project, "run", "x")
+    assert log(project) == ["/> -P -m fastpin run x"]
+
+
+def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> None:
+    done = run(project, "run")
+    assert log(project)[-1].endswith(f"--plot {project}/out/tractions.png --json {project}/out/summary.json")
+    assert (project / "out").is_dir()
+    assert "out/tractions.png" in done.stdout
+
+
+@pytest.mark.parametrize(("script", "arguments"), [("run", ()), ("run", ("x",)), ("test", ())])
+def test_exit_codes_come_through(script: str, arguments: tuple[str, ...], project: Path) -> None:
+    assert run(project, script, *arguments, FAIL="7").returncode == 7
+
+
+def test_called_through_a_link(project: Path) -> None:
+    link = project.parents[1] / "fp"
+    link.symlink_to(project / "scripts" / "run")
+    done = subprocess.run([link, "x"], env=environment(project), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_two_at_once_install_once(project: Path) -> None:
+    both = [
+        subprocess.Popen([project / "scripts" / "run", "x"], env=environment(project), stderr=subprocess.PIPE)
+        for _ in range(2)
+    ]
+    assert [process.wait() for process in both] == [0, 0]
+    for process in both:
+        assert process.stderr is not None
+        process.stderr.close()
+    assert sorted(line.split()[0] for line in log(project)).count("pip") == 1
+
+
+def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
+    (project.parents[1] / "too-old").touch()
+    done = run(project, "run")
+    assert done.returncode == 1
+    assert done.stderr == (
+        "fastpin: Python 3.11 or later is needed (apt-get install python3 python3-venv), or set PYTHON to one.\n"
+    )
+    done = run(project, "run", PYTHON="python3.11")
+    assert done.stderr == "fastpin: PYTHON=python3.11 is not a Python of version 3.11 or later.\n"
+    assert log(project) == []
+
+
+def test_missing_venv_package(project: Path) -> None:
+    (project.parents[1] / "has-ensurepip").unlink()
+    done = run(project, "run", "x")
+    if os.geteuid() == 0:  # root may install it
+        assert done.returncode == 0, done.stderr
+        assert log(project)[:2] == ["apt-get update -qq", "apt-get install -y -qq python3.11-venv"]
+    else:
+        assert done.returncode == 1
+        assert "apt-get install python3-venv" in done.stderr
+        assert log(project) == []
+
+
+def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> None:
+    (project.parents[1] / "offline").touch()
+    done = run(project, "run", "x")
+    assert done.returncode == 1
+    assert "no network" in done.stderr
+    (project.parents[1] / "offline").unlink()
+    log(project)
+    assert run(project, "run", "x").returncode == 0
+    assert log(project)[0] == f"pip {project}"
