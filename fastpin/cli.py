@@ -244,9 +244,8 @@ def _print_states(case: Case, result: Result | None) -> None:
         return
     print(state_table(case.problem, list(result)))
     statistics = result.statistics
-    known = [
-        f"{statistics[name]:.4g} {name}" for name in ("events", "exchanges", "seconds") if name in statistics
-    ]
+    names = ("events", "exchanges", "increments", "seconds")
+    known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
     print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
 
 

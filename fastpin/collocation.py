@@ -1,12 +1,12 @@
 """The matrices of one problem on one grid, and the contact's configuration in dimensionless form.
 
 With a reference force F, tractions are in F/R, displacements in F beta*, rotations in F beta*/R. The pin's motion
-(c_x, c_y, omega) counts from the concentric position, and
+(c_x, c_y, omega) counts from where it came to rest on the hole, and
 
-    gap   h = gap0 + direct N + cross T  - c_x cos - c_y sin             + (loads)    Eqs. (9)-(12), (15)
-    slip  s =      - cross N + direct T  - c_x sin + c_y cos + omega     + (loads)    Eqs. (9)-(12), (18)
+    gap   h = rest gap + direct N + cross T  - c_x cos - c_y sin             + (loads)    Eqs. (9)-(12), (15)
+    slip  s =           - cross N + direct T  - c_x sin + c_y cos + omega     + (loads)    Eqs. (9)-(12), (18)
 
-where the terms of the displacement kernels that depend on the resultants only (the w terms of the pin's load) stand
+where the rest gap is that of the rigid pin in the undeformed hole, and the terms of the displacement kernels that depend on the resultants only (the w terms of the pin's load) stand
 with the loads: they are known once P and Q are. What is left is symmetric.
 """
 
@@ -56,8 +56,10 @@ class Scales:
 class Configuration:
     """Everything that evolves: tractions, gap, slip, motion and status at one load (dimensionless).
 
-    ``slip`` is the whole tangential displacement difference (18) from the concentric position, ``rest_slip`` its
-    value where the pin came to rest; users see the difference. ``rest`` is the motion at rest.
+    ``rest`` (2,) is the position of the pin's centre, from the concentric one, where it came to rest on the hole, and
+    ``rest_gap`` (n,) the gap there, both without the remote stress. ``motion`` and ``slip`` count from there;
+    ``origin`` is the first such position (NaN before there was one).
+    ``rest_slip`` is what the remote stress had made of the slip by then, and is taken off before users see it.
     """
 
     pressure: np.ndarray
@@ -67,7 +69,9 @@ class Configuration:
     status: np.ndarray
     motion: np.ndarray
     load: np.ndarray
+    origin: np.ndarray
     rest: np.ndarray
+    rest_gap: np.ndarray
     rest_slip: np.ndarray
     dissipation: float = 0.0
     work: float = 0.0
@@ -118,7 +122,9 @@ class System:
         spacing = np.diff(theta)
         uniform = bool(np.ptp(spacing) <= 1e-12 * spacing[0] * n)
         direct, cross = np.empty((n, n)), np.empty((n, n))
-        kernels.fill_log(theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
+        kernels.fill_log(
+            theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross
+        )
 
         operator = np.empty((2 * n, 2 * n), order="F")
         weights = grid.weights
@@ -158,10 +164,12 @@ class System:
             operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
         )  # fmt: skip
 
-    def solve(self, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, gap0: float) -> Solution | None:
+    def solve(
+        self, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
+    ) -> Solution | None:
         """Tractions and motion for given statuses; None if the closed nodes can't hold the pin (a mechanism).
 
-        `stuck_slip` (n,) is the slip held at sticking nodes. With ``gap0 = 0``, zero `stuck_slip` and a load rate
+        `stuck_slip` (n,) is the slip held at sticking nodes. With ``rest_gap = 0``, zero `stuck_slip` and a load rate
         this gives rates.
         """
         active = ActiveSet(self, status)
@@ -169,18 +177,20 @@ class System:
             return None
         n = self.grid.size
         known = self.loads[active.rows] @ load
-        known[: active.normal.size] += gap0
+        known[: active.normal.size] += np.broadcast_to(rest_gap, n)[active.normal]
         known[active.normal.size :] -= stuck_slip[active.tangential]
         unknowns = active.solve(np.r_[-known, self.forces @ load])
         tractions = active.expand(unknowns)
         motion = unknowns[-3:]
-        displacement = self.displacement(tractions, motion, load, gap0)
+        displacement = self.displacement(tractions, motion, load, rest_gap)
         return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
 
-    def displacement(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, gap0: float) -> np.ndarray:
+    def displacement(
+        self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
+    ) -> np.ndarray:
         """Gap and slip (2n,) of given tractions, motion and load, straight from the matrices."""
         result = self.operator @ tractions + self.motion @ motion + self.loads @ load
-        result[: self.grid.size] += gap0
+        result[: self.grid.size] += rest_gap
         return result
 
     def work(self, before: Configuration, after: Configuration) -> float:
@@ -208,17 +218,19 @@ class System:
         n, mu = self.grid.size, self.friction
         pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
         tractions = np.r_[pressure, shear]
-        true = self.displacement(tractions, configuration.motion, configuration.load, self.gap0)
+        true = self.displacement(tractions, configuration.motion, configuration.load, configuration.rest_gap)
         closed, stick = status != OPEN, status == STICK
         slipping = closed & ~stick
         gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
         slip_error = np.where(closed, np.abs(true[n:] - configuration.slip), 0.0)
         on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
-        cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
+        cone_error = np.where(
+            closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear))
+        )
         balance = self.equilibrium @ tractions + self.motion_rows @ configuration.motion
         balance_error = np.abs(balance - self.forces @ configuration.load)
         elastic = np.abs(self.operator @ tractions)
-        length = max(float(elastic.max()), float(np.abs(configuration.motion - configuration.rest).max()), 1e-300)
+        length = max(float(elastic.max()), float(np.abs(configuration.motion).max()), 1e-300)
         if not closed.any():
             length = max(length, abs(self.gap0))
         traction = max(float(pressure.max()), 1e-300)
@@ -254,7 +266,9 @@ class ActiveSet:
         self.tangential = np.flatnonzero(status == STICK)
         self.rows = np.r_[self.normal, n + self.tangential]
         self.count = self.rows.size
-        self.coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
+        self.coupling = np.where(
+            np.abs(status) == 1, -system.friction * status, 0.0
+        )  # T = coupling N where slipping
         self._nodes = n
         matrix = np.empty((self.count + 3, self.count + 3), order="F")
         matrix[:-3, :-3] = self.columns(system.operator, self.rows)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fastpin.collocation import MAX_RESIDUAL, SXX, SYY, Configuration, M, P, Q, System
+from fastpin.collocation import MAX_RESIDUAL, ROTATION, SXX, SYY, Configuration, M, P, Q, System
 from fastpin.errors import ConvergenceError, NoEquilibriumError
 from fastpin.increment import implicit_step
 from fastpin.state import OPEN
@@ -21,15 +21,25 @@ def unloaded(system: System) -> Configuration:
     n = system.grid.size
     zeros = np.zeros(n)
     configuration = Configuration(
-        zeros.copy(), zeros.copy(), np.full(n, system.gap0), zeros.copy(), np.full(n, OPEN, dtype=np.int8),
-        np.zeros(3), np.zeros(system.loads.shape[1]), np.zeros(3), zeros.copy(),
-    )  # fmt: skip
+        pressure=zeros.copy(),
+        shear=zeros.copy(),
+        gap=np.full(n, system.gap0),
+        slip=zeros.copy(),
+        status=np.full(n, OPEN, dtype=np.int8),
+        motion=np.zeros(3),
+        load=np.zeros(system.loads.shape[1]),
+        origin=np.full(2, np.nan),
+        rest=np.zeros(2),
+        rest_gap=np.full(n, system.gap0),
+        rest_slip=zeros.copy(),
+    )
     if system.gap0 >= 0.0:
         return configuration
     configuration.status[:] = system.resting_status
-    solution = system.solve(configuration.status, zeros, configuration.load, system.gap0)
+    solution = system.solve(configuration.status, zeros, configuration.load, configuration.rest_gap)
     if solution is None or solution.pressure.min() <= 0.0:
         raise ConvergenceError("the uniform pressure of the interference fit was not found; use more nodes")
+    configuration.origin = np.zeros(2)
     configuration.pressure = solution.pressure
     configuration.gap = zeros.copy()
     return configuration
@@ -44,14 +54,27 @@ def released(system: System, last: Configuration, load: np.ndarray) -> Configura
     new = last.copy()
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
+    position = new.rest + new.motion[:2]
     width = system.gap0 + system.loads[:n] @ load
-    approach = -system.motion[:n, :2] @ new.motion[:2]
+    approach = -system.motion[:n, :2] @ position
     deep = approach > width
     if deep.any():
-        new.motion[:2] *= max(float(np.min(width[deep] / approach[deep])), 0.0)
-    free = system.displacement(np.zeros(2 * n), new.motion, load, system.gap0)
-    new.gap, new.slip = np.maximum(free[:n], 0.0), free[n:]
+        position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
+    _put_at_rest(system, new, position, system.gap0 + system.motion[:n, :2] @ position)
     return new
+
+
+def _put_at_rest(
+    system: System, configuration: Configuration, rest: np.ndarray, rest_gap: np.ndarray
+) -> None:
+    """Let motion and slip count from the position `rest`, in which nothing is in contact."""
+    n = system.grid.size
+    configuration.rest, configuration.rest_gap = rest, rest_gap
+    configuration.motion = np.array([0.0, 0.0, configuration.motion[2]])
+    free = system.loads @ configuration.load
+    configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
+    configuration.slip = free[n:] + configuration.motion[2]
+    configuration.rest_slip = configuration.slip.copy()
 
 
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
@@ -93,7 +116,7 @@ def at_rest(
         begins = _pinch(system, before, after)
         if begins >= 1.0:
             return None
-        rest = np.zeros(3)
+        rest, rest_gap = np.zeros(2), np.full(system.grid.size, system.gap0)
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         limit = system.friction / math.hypot(1.0, system.friction)
@@ -102,14 +125,17 @@ def at_rest(
                 f"the moment is {abs(tangential):.4g} times force times radius, more than friction can carry "
                 f"({limit:.4g}): the pin spins"
             )
-        rest = rest_position(system, before, math.atan2(force[1], force[0]) + math.asin(tangential))
-    n = system.grid.size
-    resting = released(system, floating, before)
-    resting.motion, resting.rest = rest.copy(), rest.copy()
-    free = system.displacement(np.zeros(2 * n), rest, before + begins * (after - before), system.gap0)
-    resting.gap, resting.slip = np.maximum(free[:n], 0.0), free[n:]
-    resting.rest_slip = resting.slip.copy()
-    resting.status[np.argsort(free[:n], kind="stable")[:FIRST_GUESS]] = system.resting_status
+        angle = math.atan2(force[1], force[0]) + math.asin(tangential)
+        rest, rest_gap = rest_position(system, before, angle)
+    resting = floating.copy()
+    resting.load = before + begins * (after - before)
+    if system.problem.rotation == "fixed":
+        resting.motion[2] = before[ROTATION]
+    if np.isnan(resting.origin).any():
+        resting.origin = rest.copy()
+    _put_at_rest(system, resting, rest, rest_gap)
+    resting.load = before.copy()
+    resting.status[np.argsort(resting.gap, kind="stable")[:FIRST_GUESS]] = system.resting_status
     return resting, begins
 
 
@@ -137,20 +163,27 @@ def first_contact(
     return _first_patch(system, *resting, before, after)
 
 
-def rest_position(system: System, load: np.ndarray, angle: float) -> np.ndarray:
-    """Motion (c_x, c_y, 0) of the rigid pin pushed against the hole so that the contact normal is at `angle`."""
+def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where the rigid pin rests when pushed so that the contact normal is at `angle`, and the gap there (n,).
+
+    The gap is without the remote stress, and keeps its digits beside the contact however wide the clearance is.
+    """
+    cos, sin = math.cos(angle), math.sin(angle)
     gap, slope, _ = hole_gap(system, load, angle)
     fine = np.linspace(-math.pi, math.pi, 1441)
     values, _, curvature = hole_gap(system, load, fine)
-    cos, sin = math.cos(angle), math.sin(angle)
     if np.all(values + curvature >= 0.0):  # the pin touches at one point, where the normal is
-        return np.array([gap * cos - slope * sin, gap * sin + slope * cos, 0.0])
+        widened = gap - system.gap0
+        shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
+        half = 0.5 * (system.grid.theta - angle)
+        rest_gap = 2.0 * system.gap0 * np.sin(half) ** 2 + system.motion[: system.grid.size, :2] @ shift
+        return system.gap0 * np.array([cos, sin]) + shift, rest_gap
     from scipy.optimize import linprog  # an oval hole tighter than the pin: it touches at two points
 
     found = linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
     if not found.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return np.array([found.x[0], found.x[1], 0.0])
+    return found.x, system.gap0 + system.motion[: system.grid.size, :2] @ found.x
 
 
 def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:

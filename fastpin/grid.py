@@ -47,7 +47,9 @@ class Grid:
         """`nodes` equally spaced nodes from angle `start` to angle `stop`, rad, both included."""
         a, b = finite("arc start", start), finite("arc stop", stop)
         if not 0.0 < b - a < 2.0 * math.pi:
-            raise InputError("arc", f"must run from a smaller to a larger angle, less than a full turn, not {a:g} to {b:g}")
+            raise InputError(
+                "arc", f"must run from a smaller to a larger angle, less than a full turn, not {a:g} to {b:g}"
+            )
         return cls(np.linspace(a, b, _node_count(nodes)))
 
     @classmethod
@@ -80,24 +82,23 @@ class Grid:
         return 0.5 * (right - left)
 
     def trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Integrals of every node's hat function times cos theta and times sin theta, shape (n,) each.
-
-        Exact, and written in half-angles so that no digits are lost at small spacing: a half hat of length h has
-        int (1 - t/h) exp(i t) dt = h [sinc(h/2)^2 / 2 + i (1 - sinc h) / h].
-        """
+        """Integrals of every node's hat function times cos theta and times sin theta, shape (n,) each. Exact."""
         left, right = self.knots()
         total = np.zeros(self.size, dtype=complex)
         for length, sense in ((self.theta - left, -1.0), (right - self.theta, 1.0)):
-            even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
-            odd = np.where(length < 1e-2, length**2 / 6.0 * (1.0 - length**2 / 20.0), 1.0 - np.sinc(length / math.pi))
-            total += even + 1j * sense * odd
+            total += _half_hat_moment(length, sense)
         total *= np.exp(1j * self.theta)
         return total.real, total.imag
 
-    def wrap(self, angle: float) -> float:
-        """`angle` shifted by full turns into the turn that begins at the grid's middle minus pi."""
-        middle = 0.5 * (self.theta[0] + self.theta[-1])
-        return angle - 2.0 * math.pi * math.floor((angle - middle + math.pi) / (2.0 * math.pi))
+
+def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
+    """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0."""
+    even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
+    series = np.zeros_like(length)  # of 1 - sin(h)/h, which loses no digits where h is small
+    for k in range(8, 0, -1):
+        series = length**2 / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
+    odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
+    return even + 1j * sense * odd
 
 
 def _node_count(nodes: int) -> int:

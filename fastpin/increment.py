@@ -53,7 +53,7 @@ def _iterate(
         if key in seen:
             return None
         seen.add(key)
-        solution = system.solve(status, start.slip, load, system.gap0)
+        solution = system.solve(status, start.slip, load, start.rest_gap)
         if solution is None:
             return None
         wanted = _wanted_status(system, start, solution, status)
@@ -67,11 +67,15 @@ def _iterate(
     return None
 
 
-def _wanted_status(system: System, start: Configuration, solution: Solution, status: np.ndarray) -> np.ndarray:
+def _wanted_status(
+    system: System, start: Configuration, solution: Solution, status: np.ndarray
+) -> np.ndarray:
     """Statuses that the solution of the present ones asks for."""
     traction_tol = TOLERANCE * max(float(np.abs(solution.pressure).max()), 1e-300)
     slid = solution.slip - start.slip
-    length_tol = TOLERANCE * max(float(np.abs(solution.gap - system.gap0).max()), float(np.abs(slid).max()), 1e-300)
+    length_tol = TOLERANCE * max(
+        float(np.abs(solution.gap - start.rest_gap).max()), float(np.abs(slid).max()), 1e-300
+    )
     wanted = status.copy()
     closing = (status == OPEN) & (solution.gap < -length_tol)
     wanted[closing] = np.where(slid[closing] < 0.0, -1, 1)
@@ -82,13 +86,39 @@ def _wanted_status(system: System, start: Configuration, solution: Solution, sta
         return wanted
     slipping = closed & (status != STICK)
     wanted[slipping & (status * slid < -length_tol)] = STICK
-    letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
+    letting_go = (status == STICK) & (
+        np.abs(solution.shear) > system.friction * solution.pressure + traction_tol
+    )
     wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
     wanted[opening] = OPEN
+    if system.problem.rotation == "free" and not np.any(wanted == STICK):
+        _hold_one(wanted, status, solution, system.friction, slid)
     return wanted
 
 
-def _accepted(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
+def _hold_one(
+    wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: float, slid: np.ndarray
+) -> None:
+    """Let one of the closed nodes stick in `wanted`, where all of them slip and nothing would keep the pin from turning.
+
+    Of several nodes that let go it is the one nearest to sticking; if the last one lets go, the pin turns until the
+    first of those stick that slip the other way.
+    """
+    letting_go = np.flatnonzero((status == STICK) & (wanted != OPEN))
+    if letting_go.size > 1:
+        excess = np.abs(solution.shear) - friction * solution.pressure
+        wanted[letting_go[np.argmin(excess[letting_go])]] = STICK
+        return
+    others = np.flatnonzero((wanted != OPEN) & (status != STICK))
+    if letting_go.size == 1:
+        others = others[wanted[others] == np.sign(solution.shear[letting_go[0]])]
+    if others.size:
+        wanted[others[np.argmin(np.abs(slid[others]))]] = STICK
+
+
+def _accepted(
+    start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray
+) -> Configuration:
     new = start.copy()
     closed = status != OPEN
     new.status = status

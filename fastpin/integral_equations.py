@@ -48,8 +48,9 @@ def residuals(
     """Left minus right side of (46) and (47) at every node, divided by F beta*.
 
     Both vanish, up to discretisation, where the gap is zero. At a gap h > 0 they are -h/(F beta*) and
-    h'/(F beta*). The slip has kinks at the borders of zones: leave out the nodes beside them and beside the
-    contact edges.
+    h'/(F beta*). Leave out the nodes beside contact edges and borders of zones, where tractions and slip
+    have kinks. (46) needs the derivative of the slip, and a stick zone keeps the kinks that earlier borders
+    left in it: after a reversal (47) is the sharper check.
 
     Parameters
     ----------
@@ -101,9 +102,7 @@ def residuals(
 
     theta = grid.theta
     cos, sin = np.cos(theta), np.sin(theta)
-    left, right = grid.knots()
-    cos_moment, sin_moment = np.empty((2, grid.size))
-    kernels.trig_moments(left, theta, right, cos_moment, sin_moment)
+    cos_moment, sin_moment = grid.trig_moments()
     N_cos, N_sin, N_total = cos_moment @ N, sin_moment @ N, grid.weights @ N
     T_cos, T_sin, T_total = cos_moment @ T, sin_moment @ T, grid.weights @ T
     C_N, S_N = cos * N_cos + sin * N_sin, sin * N_cos - cos * N_sin

@@ -67,7 +67,7 @@ class Material:
     name: str = ""
 
     def __post_init__(self) -> None:
-        modulus = self.E if self.E == math.inf else finite("E", self.E)
+        modulus = self.E if math.inf == self.E else finite("E", self.E)
         if modulus <= 0.0:
             raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
         ratio = finite("nu", self.nu)
@@ -195,7 +195,9 @@ class MaterialPair:
             kolosov = plus / inverse_g - 1.0
             nu = (3.0 - kolosov) / 4.0 if plane == "strain" else (3.0 - kolosov) / (1.0 + kolosov)
         if not -1e-12 <= nu <= 0.5 + 1e-12:
-            raise InputError("beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}")
+            raise InputError(
+                "beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}"
+            )
         return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
 
     def scaled(self, beta_star: float) -> MaterialPair:
@@ -228,7 +230,9 @@ class MaterialPair:
     @property
     def alpha_star(self) -> float:
         """Composite constant alpha* of Eq. (32), 1/Pa."""
-        return (self.plate_kolosov - 1.0) * self.plate_compliance - (self.pin_kolosov - 1.0) * self.pin_compliance
+        return (self.plate_kolosov - 1.0) * self.plate_compliance - (
+            self.pin_kolosov - 1.0
+        ) * self.pin_compliance
 
     @property
     def beta_star(self) -> float:

@@ -138,7 +138,9 @@ class StepLost(Exception):
         self.fraction = fraction
 
 
-def build_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+def build_tableau(
+    system: System, status: np.ndarray, load_rate: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
     """Tableau (2n+3, 2n) and rates (2n+3,) for given statuses; None if the closed nodes can't hold the pin.
 
     The zero-rate variables of the unknown tractions' pairs are h and s, of the others N and tau.
@@ -173,7 +175,9 @@ def build_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> 
 
 def refined(system: System, configuration: Configuration) -> Configuration:
     """The same configuration with its tractions, gap and slip recomputed from statuses, held slip and load."""
-    solution = system.solve(configuration.status, configuration.slip, configuration.load, system.gap0)
+    solution = system.solve(
+        configuration.status, configuration.slip, configuration.load, configuration.rest_gap
+    )
     if solution is None:
         return configuration.copy()
     new = configuration.copy()

@@ -250,7 +250,7 @@ def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame:
             for left, width in frame.place(start, stop):
                 panel.barh(row, width, left=left, height=0.66, color=colour, linewidth=0)
     panel.set_ylim(len(states) - 0.45, -0.55)
-    panel.set_yticks(range(len(states)), [f"{load_point(state):g}" for state in states])
+    panel.set_yticks(range(len(states)), [f"{load_point(state):.4g}" for state in states])
     panel.tick_params(axis="y", length=0)
     panel.set_ylabel("stick, slip")
     panel.spines["left"].set_visible(False)
@@ -276,7 +276,7 @@ def _name_states(
     handles: list[Artist] = []
     for index, state in enumerate(states):
         parts = ",  ".join(_load_text(states, index, name) for name in varying)
-        text = f"{load_point(state):g}:  {parts}" if parts else f"{load_point(state):g}"
+        text = f"{load_point(state):.4g}:  {parts}" if parts else f"{load_point(state):.4g}"
         handles.append(Line2D([], [], color=colours[index], linestyle=_DASHES[index], label=text))
     styles: list[Artist] = []
     if not states[0].problem.frictionless:
@@ -286,19 +286,29 @@ def _name_states(
             styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
         else:
             styles.append(Patch(color="0.35", linewidth=0, label="stick"))
-            styles.append(
-                Patch(color="0.35", alpha=0.22, linewidth=0, label="slip of the pin (→ counter-clockwise)")
-            )
+            styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip, → counter-clockwise"))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
     if handles:
-        figure.legend(
+        _fitted_legend(figure, handles, columns)
+
+
+def _fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
+    """A legend below the panels, in a font small enough for the figure's width."""
+    size = 8.0
+    while True:
+        legend = figure.legend(
             handles=handles,
             loc="outside lower center",
             ncols=columns,
-            fontsize=8.0,
+            fontsize=size,
             handlelength=2.8,
             columnspacing=2.0,
         )
+        share = legend.get_window_extent().width / figure.bbox.width
+        if share <= 0.98 or size <= 4.0:
+            return
+        legend.remove()
+        size = max(4.0, size * 0.96 / share)
 
 
 def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:

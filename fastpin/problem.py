@@ -61,7 +61,9 @@ class Problem:
             raise InputError("hole_radius", f"must be positive, not {radius:g}")
         clearance = finite("clearance", self.clearance)
         if not self.dimensionless and abs(clearance) >= radius:
-            raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
+            raise InputError(
+                "clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}"
+            )
         friction = finite("friction", self.friction)
         if friction < 0.0:
             raise InputError("friction", f"must not be negative, not {friction:g}")
@@ -78,7 +80,9 @@ class Problem:
             if self.rotation == "free":
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
             if not 0.0 < hub <= radius:
-                raise InputError("hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}")
+                raise InputError(
+                    "hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}"
+                )
             object.__setattr__(self, "hub_radius", hub)
         object.__setattr__(self, "hole_radius", radius)
         object.__setattr__(self, "clearance", clearance)
@@ -111,10 +115,6 @@ class Problem:
     def load_parameter(self, force: float) -> float:
         """L_p = (R - R_D) / (F beta*) for a force F, N/m."""
         return self.clearance / (force * self.pair.beta_star)
-
-    def reference_force(self) -> float:
-        """R / beta*, N/m: the force unit in which tractions are strains."""
-        return self.hole_radius / self.pair.beta_star
 
     @property
     def hub_compliance(self) -> float:

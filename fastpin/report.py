@@ -154,11 +154,18 @@ def state_table(problem: Problem, states: Sequence[State]) -> str:
     """The states as a table with one line each."""
     unit = units(problem)
 
-    def column(name: str, kind: str, values: list[float], digits: int = 5) -> tuple[str, str, list[str]]:
-        factor, label = scaled(values, unit[kind])
-        return name, label, [f"{value * factor:.{digits}g}" for value in values]
+    def column(
+        name: str, kind: str, values: list[float], digits: int = 5, size: float = 0.0
+    ) -> tuple[str, str, list[str]]:
+        # What is zero but for rounding, against the column and a natural size, is shown as zero.
+        noise = 1e-9 * max(size, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
+        cleaned = [0.0 if abs(value) <= noise else value for value in values]
+        factor, label = scaled(cleaned, unit[kind])
+        return name, label, [f"{value * factor:.{digits}g}" for value in cleaned]
 
-    columns = [("load point", "", [f"{load_point(state):g}" for state in states])]
+    strain = problem.pair.beta_star * max((state.peak_pressure for state in states), default=0.0)
+    energy = max((abs(state.energy) for state in states), default=0.0)
+    columns = [("load point", "", [_point(state) for state in states])]
     columns += _load_columns(problem, [state.load for state in states])
     columns += [
         column("peak N", "traction", [state.peak_pressure for state in states]),
@@ -167,8 +174,8 @@ def state_table(problem: Problem, states: Sequence[State]) -> str:
         ("at", "deg", [_angle(state.peak_shear_angle) for state in states]),
         ("contact", "deg", [_intervals(state.contact) for state in states]),
         ("stick", "deg", [_intervals(state.stick) for state in states]),
-        column("rotation", "rotation", [state.rotation for state in states], 4),
-        column("dissipated", "energy", [state.dissipation for state in states], 4),
+        column("rotation", "rotation", [state.rotation for state in states], 4, strain),
+        column("dissipated", "energy", [state.dissipation for state in states], 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
     return _table(columns)
@@ -203,8 +210,12 @@ def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
     return "\n".join(text)
 
 
+def _point(state: State) -> str:
+    return f"{load_point(state):.3f}".rstrip("0").rstrip(".")
+
+
 def _angle(angle: float | None) -> str:
-    return "-" if angle is None or not math.isfinite(angle) else f"{from_bottom(angle) + 0.0:.2f}"
+    return "-" if angle is None or not math.isfinite(angle) else f"{from_bottom(angle):z.2f}"
 
 
 def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
@@ -213,7 +224,7 @@ def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
     parts = []
     for start, stop in intervals:
         first, last = interval_from_bottom(start, stop)
-        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:.2f} to {last:.2f}")
+        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:z.2f} to {last:z.2f}")
     return ", ".join(parts)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin import tableau
 from fastpin.collocation import MAX_RESIDUAL, Configuration, P, Q, System
-from fastpin.contact import at_rest, first_contact, released, unloaded
+from fastpin.contact import first_contact, released, unloaded
 from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
 from fastpin.loading import LoadHistory, named_load
@@ -27,6 +27,7 @@ FEW_NODES = 8
 
 ALMOST_UNLOADED = 1.0 - 1e-8
 """So far into a complete unloading everything falls to zero together, and the order of events is rounding."""
+
 
 @dataclass(frozen=True)
 class _Piece:
@@ -52,6 +53,18 @@ def _pieces(before: np.ndarray, after: np.ndarray) -> list[_Piece]:
         middle[[P, Q]] = 0.0
         return [_Piece(0.0, cut, before, middle), _Piece(cut, 1.0, middle, after)]
     return [_Piece(0.0, 1.0, before, after)]
+
+
+def _equal_parts(count: int) -> np.ndarray:
+    """Ends of `count` equal increments in parts of a way."""
+    return np.arange(1, count + 1) / count
+
+
+def _growing_parts(count: int, done: float) -> np.ndarray:
+    """Ends of `count` increments that grow linearly, in parts of what is left of a way when `done` of it lies behind."""
+    ends = np.arange(1, count + 1) * np.arange(2, count + 2) / (count * (count + 1.0))
+    ahead = ends[ends > done]
+    return (ahead - done) / (1.0 - done) if done < 1.0 else ahead
 
 
 def _pushed(load: np.ndarray) -> bool:
@@ -125,7 +138,9 @@ class Run:
             except SolveError as error:
                 load = (before + error.fraction * (target - before)) * self.system.scales.loads
                 error.step, error.load = step, named_load(load)
-                place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
+                place = ", ".join(
+                    f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0
+                )
                 where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
                 error.args = (f"{where}: {error}",)
                 raise
@@ -148,10 +163,14 @@ class Run:
         try:
             for stop in np.unique(np.r_[inside, piece.end]):
                 load = piece.load_at(stop)
+                parts = _equal_parts(max(1, round(self.increments * (stop - reached))))
                 if not self.now.closed.any() and not np.array_equal(self.now.load, load):
-                    reached += self._touch_down(load) * (stop - reached)
+                    touched = self._touch_down(load)
+                    parts = _growing_parts(self.increments, touched)
+                    reached += touched * (stop - reached)
                 if self.method == "increment":
-                    self._increments(load, reached, stop)
+                    if not np.array_equal(self.now.load, load):
+                        self._increments(load, parts)
                 elif not np.array_equal(self.now.load, load):
                     if path is None:
                         path = PathStep(self.system, self.now, piece.after)
@@ -175,7 +194,9 @@ class Run:
                 fraction = piece.end if path is None else origin + lost.fraction * (piece.end - origin)
                 raise _solve_error(lost.code, fraction, int(self.now.closed.sum())) from None
         except SolveError as error:
-            error.fraction = reached + error.fraction * (stop - reached)  # so far relative to the way to this stop
+            error.fraction = reached + error.fraction * (
+                stop - reached
+            )  # so far relative to the way to this stop
             raise
         finally:
             if path is not None:
@@ -189,39 +210,21 @@ class Run:
 
         The pin may also stay without contact; it is then at `load`, and the fraction is 1.
         """
-        if self.method == "path":
-            self.now, fraction = first_contact(self.system, self.now, self.now.load, load)
-            self.touched |= self.now.closed
-            return fraction
-        begins = at_rest(self.system, self.now, self.now.load, load)
-        if begins is None:
-            self.now = released(self.system, self.now, load)
-            return 1.0
-        resting, fraction = begins
-        before = self.now.load
-        for k in range(1, self.increments + 1):
-            part = fraction + (1.0 - fraction) * k * (k + 1) / (self.increments * (self.increments + 1))
-            target = load if k == self.increments else before + part * (load - before)
-            try:
-                self._increment(resting if k == 1 else self.now, target, MOST_HALVINGS)
-            except SolveError as error:
-                error.fraction = part
-                raise
-        return 1.0
+        self.now, fraction = first_contact(self.system, self.now, self.now.load, load)
+        self.touched |= self.now.closed
+        return fraction
 
-    def _increments(self, load: np.ndarray, reached: float, stop: float) -> None:
-        """Implicit increments of equal size from the present load to `load`."""
-        before = self.now.load
-        if np.array_equal(before, load):
-            return
-        count = max(1, round(self.increments * (stop - reached)))
-        for k in range(1, count + 1):
-            target = load if k == count else before + k / count * (load - before)
-            try:
+    def _increments(self, load: np.ndarray, parts: np.ndarray) -> None:
+        """Implicit increments from the present load to `load`, at the given parts of the way (the last one is 1)."""
+        before, done = self.now.load, 0.0
+        try:
+            for part in parts:
+                target = load if part == 1.0 else before + part * (load - before)
                 self._increment(self.now, target, MOST_HALVINGS)
-            except SolveError as error:
-                error.fraction = (k - 1) / count
-                raise
+                done = float(part)
+        except SolveError as error:
+            error.fraction = done
+            raise
 
     def _increment(self, start: Configuration, load: np.ndarray, halvings: int) -> None:
         """One implicit increment from `start` to `load`, halved where its iteration cycles."""
@@ -241,7 +244,9 @@ class Run:
             raise ArcError("the contact reaches an end of the arc; give a wider one, or none")
         found.work = start.work + system.work(start, found)
         slid = np.where(found.closed, found.slip - start.slip, 0.0)
-        found.dissipation = start.dissipation - 0.5 * float((system.weights * slid) @ (start.shear + found.shear))
+        found.dissipation = start.dissipation - 0.5 * float(
+            (system.weights * slid) @ (start.shear + found.shear)
+        )
         self.now = found
         self.touched |= found.closed
         self.statistics["increments"] += 1
@@ -263,7 +268,7 @@ class Run:
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
-        motion = now.motion - now.rest
+        moved = np.nan_to_num(now.rest - now.origin) + now.motion[:2]
         self.states.append(
             State(
                 step=step,
@@ -275,9 +280,9 @@ class Run:
                 gap=now.gap * scales.displacement,
                 slip=(now.slip - now.rest_slip) * scales.displacement,
                 status=now.status.copy(),
-                dx=float(motion[0]) * scales.displacement,
-                dy=float(motion[1]) * scales.displacement,
-                rotation=float(motion[2]) * scales.rotation,
+                dx=float(moved[0]) * scales.displacement,
+                dy=float(moved[1]) * scales.displacement,
+                rotation=float(now.motion[2]) * scales.rotation,
                 dissipation=now.dissipation * scales.energy,
                 work=now.work * scales.energy,
                 energy=system.energy(now) * scales.energy,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 
@@ -114,7 +115,12 @@ def _finished(run: Run, history: LoadHistory, values: np.ndarray, began: float) 
 
 
 def _grids(
-    problem: Problem, values: np.ndarray, force: float, nodes: int, arc: tuple[float, float] | None, grid: Grid | None
+    problem: Problem,
+    values: np.ndarray,
+    force: float,
+    nodes: int,
+    arc: tuple[float, float] | None,
+    grid: Grid | None,
 ) -> Iterator[Grid]:
     """The given grid, or those to try one after the other until the contact stays clear of the ends."""
     if grid is None and arc is None:
@@ -125,17 +131,24 @@ def _grids(
         whole = arc[1] - arc[0] >= 2.0 * np.pi
         grid = Grid.circle(nodes, arc[0]) if whole else Grid.arc(arc[0], arc[1], nodes)
     if problem.clearance < 0.0 and not grid.closed:
-        raise InputError("arc", "an interference fit is in contact all round: its grid must be the whole circle")
+        raise InputError(
+            "arc", "an interference fit is in contact all round: its grid must be the whole circle"
+        )
     yield grid
 
 
 def reference_force(problem: Problem, values: np.ndarray) -> float:
-    """The force F, N/m, in which a history is made dimensionless: its largest load."""
+    """The force F, N/m, in which a history is made dimensionless: its largest load, rounded up.
+
+    It is R/beta* times a power of two, so that no bit of a result depends on it.
+    """
     radius = problem.hole_radius
     pin = float(np.hypot(values[:, 0], values[:, 1]).max())
     moment = float(np.abs(values[:, 2]).max()) / radius
     remote = float(np.abs(values[:, 3:5]).max()) * radius
-    return max(pin, moment) or remote or problem.reference_force()
+    unit = radius / problem.pair.beta_star
+    largest = max(pin, moment) or remote or unit
+    return unit * 2.0 ** math.ceil(math.log2(largest / unit))
 
 
 def _fractions(between: int | Sequence[float]) -> np.ndarray:

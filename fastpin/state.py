@@ -86,9 +86,11 @@ class State:
 
     @cached_property
     def stick(self) -> list[Interval]:
-        """Stick intervals (start, stop), rad, read between nodes (mu N - |T| is extrapolated to zero)."""
-        reserve = self.problem.friction * self.pressure - np.abs(self.shear)
-        return zones.intervals(self.grid, self.status == STICK, reserve, self.contact)
+        """Stick intervals (start, stop), rad, read between nodes (mu N - |T| is extrapolated to zero).
+
+        Nodes that stick but have come to |T| = mu N at this very load count as slipping.
+        """
+        return zones.intervals(self.grid, self._sticking, self._reserve, self.contact)
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:
@@ -121,7 +123,17 @@ class State:
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
-        return zones.shear_peak(self)
+        return zones.shear_peak(
+            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick
+        )
+
+    @cached_property
+    def _reserve(self) -> np.ndarray:
+        return self.problem.friction * self.pressure - np.abs(self.shear)
+
+    @cached_property
+    def _sticking(self) -> np.ndarray:
+        return (self.status == STICK) & (self._reserve > 1e-9 * self._reserve.max())
 
     @cached_property
     def resultants(self) -> dict[str, float]:

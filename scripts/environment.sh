@@ -35,7 +35,7 @@ find_python() {
             return
         fi
     done
-    fail "Python 3.11 or later is needed (apt-get install python3 python3-venv), or set PYTHON to one."
+    fail "Python 3.11 or later is needed: apt-get install python3 python3-venv, or set PYTHON."
 }
 
 # Debian keeps the part of Python that makes environments in a package of its own.

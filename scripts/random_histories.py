@@ -22,7 +22,8 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
     """A random problem and a random history of up to six corners.
 
     L_p 1e-4 to 2.5, friction 0.02 to 1.2, stiffness ratio 1/30 to 30, nu 0 to 0.49, both planes, both pin loads, both
-    rotations, moments on free centre-loaded pins, remote stress in one case of five, load ratio 0 in one of five.
+    rotations, Q up to 1.2 mu P, moments on free centre-loaded pins up to what friction at a point can carry, remote
+    stress in one case of five, load ratio 0 in one of five.
     """
     rng = np.random.default_rng(seed)
     ratio = 30.0 ** rng.uniform(-1.0, 1.0)
@@ -42,11 +43,14 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
     corners = []
     for _ in range(int(rng.integers(1, 7))):
         pull = rng.uniform(0.2, 1.0)
-        corner = {"P": pull, "Q": pull * friction * rng.uniform(-0.9, 0.9)}
+        corner = {"P": pull, "Q": pull * friction * rng.uniform(-1.2, 1.2)}
         if with_moment:
-            corner["M"] = 0.5 * pull * friction / np.hypot(1.0, friction) * rng.uniform(-1.0, 1.0)
+            corner["M"] = pull * friction / np.hypot(1.0, friction) * rng.uniform(-1.0, 1.0)
         if with_stress:
-            corner |= {"sxx": load_parameter * rng.uniform(-0.3, 0.3), "syy": load_parameter * rng.uniform(-0.3, 0.3)}
+            corner |= {
+                "sxx": load_parameter * rng.uniform(-0.3, 0.3),
+                "syy": load_parameter * rng.uniform(-0.3, 0.3),
+            }
         corners.append(corner)
     if back_to_zero:
         corners[1:1] = [dict.fromkeys(corners[0], 0.0), dict(corners[0])]
@@ -56,7 +60,11 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
 def violation(state: State) -> float:
     """Largest relative violation of Signorini, Coulomb and equilibrium, from what the user sees."""
     if not state.in_contact:
-        return max(-state.gap.min() / state.problem.clearance, np.abs(state.pressure).max(), np.abs(state.shear).max())
+        return max(
+            -state.gap.min() / state.problem.clearance,
+            np.abs(state.pressure).max(),
+            np.abs(state.shear).max(),
+        )
     peak, length = state.pressure.max(), max(np.abs(state.slip).max(), np.abs(state.gap).max())
     mu = state.problem.friction
     force = np.hypot(state.load["P"], state.load["Q"])

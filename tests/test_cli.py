@@ -290,10 +290,11 @@ def test_a_file_that_can_not_be_written_does_not_cost_the_others(
     assert path.exists()
 
 
-def test_a_reader_that_leaves_is_no_error(case: Path) -> None:
-    command = f"{sys.executable} -m fastpin example | true"
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ROOT, check=False)
-    assert done.stderr == ""
+def test_a_reader_that_leaves_is_no_error() -> None:
+    command = '"$0" -m fastpin example | true; exit "${PIPESTATUS[0]}"'
+    words = ["bash", "-c", command, sys.executable]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert (done.returncode, done.stderr) == (141, "")
 
 
 def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -304,7 +305,7 @@ def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.Cap
     assert first["peak_pressure"] * 0.01 / 2.42e6 == pytest.approx(0.5288, rel=3e-3)
     (start, stop), *rest = first["contact"]
     assert not rest
-    assert (start, stop) == pytest.approx((-np.degrees(1.136), np.degrees(1.136)), abs=1.0)
+    assert (start, stop) == pytest.approx((-np.degrees(1.136), np.degrees(1.136)), abs=2.0)
 
 
 # -- pieces --------------------------------------------------------------------------------------------------

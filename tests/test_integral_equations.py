@@ -40,8 +40,7 @@ def displacements(problem, grid, N, T):
     kernels.fill_log(
         grid.theta, left, right, False, grid.closed, pair.alpha_star / pair.beta_star, direct, cross
     )
-    cosine, sine = np.empty((2, n))
-    kernels.trig_moments(left, grid.theta, right, cosine, sine)
+    cosine, sine = grid.trig_moments()
     c, s = np.cos(grid.theta), np.sin(grid.theta)
     C, S = np.outer(c, cosine) + np.outer(s, sine), np.outer(s, cosine) - np.outer(c, sine)
     w = 1.0 if problem.pin_load == "centre" else 0.5

@@ -370,38 +370,3 @@ def test_harmonics_on_the_circle():
     coarse, fine = np.array(errors(60)), np.array(errors(120))
     assert np.all(np.abs(np.log2(coarse / fine) - 2.0) < 0.05)
     assert np.all(fine < 2e-2)
-
-
-# --- moments ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "call", [kernels.trig_moments, python(kernels.trig_moments)], ids=["compiled", "python"]
-)
-@pytest.mark.parametrize("width", [1e-7, 1e-3, 0.49, 0.51, 3.0])
-def test_trig_moments_against_mpmath(call, width):
-    mpmath.mp.dps = 30
-    theta = np.array([-1.3, -1.3, -1.3])
-    left = theta - np.array([1.0, 0.0, 0.4]) * width
-    right = theta + np.array([0.5, 1.0, 0.0]) * width
-    cosine, sine = np.empty((2, 3))
-    call(left, theta, right, cosine, sine)
-    for j in range(3):
-        node, a, b = (mpmath.mpf(v) for v in (theta[j], theta[j] - left[j], right[j] - theta[j]))
-        for got, wave in ((cosine[j], mpmath.cos), (sine[j], mpmath.sin)):
-            exact = mpmath.mpf(0)
-            if b > 0:
-                exact += mpmath.quad(lambda t, w=wave, n=node, b=b: w(n + t) * (1 - t / b), [0, b])
-            if a > 0:
-                exact += mpmath.quad(lambda t, w=wave, n=node, a=a: w(n - t) * (1 - t / a), [0, a])
-            assert got == pytest.approx(float(exact), rel=1e-14, abs=1e-15 * width)
-
-
-def test_trig_moments_add_up_to_the_integrals_over_the_arc():
-    # sum of hats is 1
-    grid = Grid(graded_nodes(31, -3.0, 0.5))
-    left, right = grid.knots()
-    cosine, sine = np.empty((2, grid.size))
-    kernels.trig_moments(left, grid.theta, right, cosine, sine)
-    assert cosine.sum() == pytest.approx(math.sin(0.5) - math.sin(-3.0), abs=1e-14)
-    assert sine.sum() == pytest.approx(math.cos(-3.0) - math.cos(0.5), abs=1e-14)

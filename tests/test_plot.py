@@ -56,6 +56,17 @@ def test_legend_names_what_differs_and_the_title_what_does_not() -> None:
     assert figure.get_suptitle() == "A case\nP = 2.42 MN/m"
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6])
+def test_legend_lies_within_the_figure(count: int) -> None:
+    corners = [{"P": 1e6 + k, "Q": 1.234e5 * k, "sxx": 1.234e7 * k} for k in range(count)]
+    figure = plot_tractions(sample_result(corners))
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= figure.bbox.width
+    assert 0.0 <= box.y0 < box.y1 < figure.axes[-1].get_window_extent().y0
+
+
 def test_zones_of_each_state() -> None:
     result = sample_result()
     panel = plot_tractions(result).axes[-1]

@@ -132,7 +132,7 @@ def test_too_old_a_python_is_refused_in_one_sentence(project: Path) -> None:
     done = run(project, "run")
     assert done.returncode == 1
     assert done.stderr == (
-        "fastpin: Python 3.11 or later is needed (apt-get install python3 python3-venv), or set PYTHON to one.\n"
+        "fastpin: Python 3.11 or later is needed: apt-get install python3 python3-venv, or set PYTHON.\n"
     )
     done = run(project, "run", PYTHON="python3.11")
     assert done.stderr == "fastpin: PYTHON=python3.11 is not a Python of version 3.11 or later.\n"

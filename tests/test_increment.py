@@ -1,0 +1,51 @@
+"""The increment solver: the second road to the same states."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin import Problem, solve
+
+ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
+
+
+def test_tends_to_the_path_at_first_order(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    exact = solve(problem, [{"P": 1.0}], nodes=201, arc=ARC)[-1]
+    counts = [20, 40, 80, 160]
+    runs = [
+        solve(problem, [{"P": 1.0}], nodes=201, arc=ARC, method="increment", increments=m)[-1] for m in counts
+    ]
+    errors = [abs(state.peak_pressure - exact.peak_pressure) for state in runs]
+    order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert 0.9 < order < 1.6
+    assert errors[-1] < 1e-4 * exact.peak_pressure
+    shears = [np.abs(state.shear - exact.shear).sum() for state in runs]
+    assert -np.polyfit(np.log(counts), np.log(shears), 1)[0] > 0.7
+
+
+@pytest.mark.parametrize(("load", "rotation", "lp"), [("body", "free", 0.05), ("centre", "fixed", 0.5)])
+def test_fretting_cycle_agrees(similar, load, rotation, lp):
+    problem = Problem.from_load_parameter(similar, lp, 0.55, load, rotation)
+    history = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}]
+    path = solve(problem, history, nodes=91)
+    arc = (path.grid.theta[0], path.grid.theta[-1])
+    counts = [40, 120, 360]
+    runs = [solve(problem, history, nodes=91, arc=arc, method="increment", increments=m) for m in counts]
+    for k, exact in enumerate(path):
+        errors = [np.abs(run[k].shear - exact.shear).sum() / exact.pressure.sum() for run in runs]
+        assert 0.6 < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < 1.6
+        assert errors[-1] < 1e-3
+        finest = runs[-1][k]
+        assert finest.peak_pressure == pytest.approx(exact.peak_pressure, rel=2e-4)
+        assert finest.dissipation == pytest.approx(exact.dissipation, rel=0.02, abs=1e-6 * exact.work)
+        assert max(finest.residuals.values()) < 1e-9
+
+
+def test_too_large_increments_are_halved(similar):
+    problem = Problem.from_load_parameter(similar, 0.05, 0.55, "body")
+    history = [{"P": 1.0}, {"Q": 0.5}, {"Q": -0.5}]
+    result = solve(problem, history, nodes=161, method="increment", increments=1)
+    assert result.complete
+    assert all(max(state.residuals.values()) < 1e-9 for state in result)

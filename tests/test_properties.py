@@ -1,0 +1,208 @@
+"""What must hold whatever the numbers are: symmetry, splitting, energy, scale, and random histories."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fastpin import Grid, LoadHistory, Problem, solve
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
+from random_histories import NODES, outcome, random_case
+
+BOTTOM = -0.5 * np.pi
+ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
+HISTORY = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}]
+
+
+@pytest.fixture
+def problem(titanium_in_aluminium):
+    return Problem.from_load_parameter(titanium_in_aluminium, 0.05, 0.5, "body")
+
+
+@pytest.mark.parametrize("method", ["path", "increment"])
+def test_mirror(problem, method):
+    """Turning Q round mirrors the state: theta -> -pi - theta, T and slip and rotation change sign."""
+    one, two = (
+        solve(
+            problem,
+            [{"P": 1.0}, {"Q": s * 0.3}, {"Q": -s * 0.3}],
+            nodes=101,
+            arc=ARC,
+            method=method,
+            increments=20,
+        )
+        for s in (1.0, -1.0)
+    )
+    for here, there in zip(one, two, strict=True):
+        assert np.abs(here.pressure - there.pressure[::-1]).max() < 1e-10
+        assert np.abs(here.shear + there.shear[::-1]).max() < 1e-10
+        assert np.abs(here.slip + there.slip[::-1]).max() < 1e-10
+        assert np.abs(here.gap - there.gap[::-1]).max() < 1e-10
+        assert here.rotation == pytest.approx(-there.rotation, abs=1e-10)
+        assert here.dx == pytest.approx(-there.dx, abs=1e-10)
+        assert here.dissipation == pytest.approx(there.dissipation, rel=1e-9)
+
+
+@pytest.mark.parametrize("method", ["path", "increment"])
+@pytest.mark.parametrize("cut", [1, 2, 3])
+def test_a_split_history_gives_the_same_bits(problem, method, cut):
+    history = LoadHistory(HISTORY)
+    whole = solve(problem, history, nodes=81, arc=ARC, method=method, increments=10)
+    first = solve(problem, history[:cut], nodes=81, arc=ARC, method=method, increments=10)
+    second = solve(problem, history[cut:], start=first, method=method, increments=10)
+    for one, two in zip(whole, [*first, *second], strict=True):
+        for name in ("pressure", "shear", "gap", "slip", "status"):
+            assert np.array_equal(getattr(one, name), getattr(two, name))
+        assert (one.dx, one.dy, one.rotation) == (two.dx, two.dy, two.rotation)
+        assert (one.dissipation, one.work, one.energy) == (two.dissipation, two.work, two.energy)
+        assert one.load == two.load
+
+
+def test_states_between_corners_do_not_change_the_corners(problem):
+    plain = solve(problem, HISTORY, nodes=81, arc=ARC)
+    dense = solve(problem, HISTORY, nodes=81, arc=ARC, between=[0.25, 0.5])
+    assert [(state.step, state.fraction) for state in dense[:3]] == [(0, 0.25), (0, 0.5), (0, 1.0)]
+    for state in plain:
+        same = next(s for s in dense if s.step == state.step and s.fraction == 1.0)
+        assert np.abs(same.shear - state.shear).max() < 1e-12
+    half = next(s for s in dense if s.step == 1 and s.fraction == 0.5)
+    corner = solve(problem, [{"P": 1.0}, {"Q": 0.15}], nodes=81, arc=ARC)[-1]
+    assert half.load["Q"] == 0.15
+    assert np.abs(half.shear - corner.shear).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("load", "rotation", "extra"),
+    [
+        ("body", "free", {}),
+        ("centre", "fixed", {}),
+        ("centre", "free", {"M": 0.05}),
+        ("body", "free", {"sxx": 0.03}),
+    ],
+)
+def test_work_is_energy_plus_dissipation(titanium_in_aluminium, load, rotation, extra):
+    """Exactly along the path; what is left is the asymmetry of collocation, which falls with the mesh."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, load, rotation)
+    history = [
+        {"P": 1.0},
+        {"Q": 0.3, **extra},
+        {"Q": -0.3, **{k: -v for k, v in extra.items()}},
+        {"P": 0.5, "Q": 0.1},
+    ]
+    worst = []
+    for nodes in (101, 201, 401):
+        result = solve(problem, history, nodes=nodes, arc=(BOTTOM - 1.6, BOTTOM + 1.6))
+        assert result[-1].dissipation > result[1].dissipation > 0.0
+        worst.append(max(abs(s.work - s.energy - s.dissipation) / s.energy for s in result))
+    assert worst[-1] < 1e-4
+    assert -np.polyfit(np.log([1, 2, 4]), np.log(worst), 1)[0] > 1.4
+
+
+def test_loads_and_clearance_scale_together(titanium_in_aluminium):
+    """All of it linear in scale: three times the clearance and the loads give three times everything."""
+    small = Problem(titanium_in_aluminium, 0.01, 10e-6, 0.4, "body")
+    large = Problem(titanium_in_aluminium, 0.01, 30e-6, 0.4, "body")
+    history = [{"P": 1.2e6}, {"Q": 3e5}, {"Q": -3e5}]
+    tripled = [{name: 3.0 * value for name, value in corner.items()} for corner in history]
+    for one, three in zip(solve(small, history, nodes=101), solve(large, tripled, nodes=101), strict=True):
+        assert np.allclose(3.0 * one.pressure, three.pressure, rtol=1e-9, atol=1e-9 * three.pressure.max())
+        assert np.allclose(3.0 * one.slip, three.slip, rtol=1e-9, atol=1e-9 * np.abs(three.slip).max())
+        assert three.rotation == pytest.approx(3.0 * one.rotation, rel=1e-8, abs=1e-15)
+        assert three.dissipation == pytest.approx(9.0 * one.dissipation, rel=1e-8)
+
+
+def test_si_and_dimensionless_problems_agree(titanium_in_aluminium):
+    radius, force = 0.015, 2.0e6
+    clearance = 0.1 * force * titanium_in_aluminium.beta_star
+    real = Problem(titanium_in_aluminium, radius, clearance, 0.4, "centre", "fixed")
+    plain = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")
+    si = solve(real, [{"P": force}, {"Q": 0.2 * force}], nodes=81)[-1]
+    one = solve(plain, [{"P": 1.0}, {"Q": 0.2}], nodes=81)[-1]
+    assert np.allclose(si.pressure * radius / force, one.pressure, atol=1e-10)
+    assert np.allclose(si.slip / (force * titanium_in_aluminium.beta_star), one.slip, atol=1e-10)
+    assert si.resultants["Q"] == pytest.approx(0.2 * force, rel=1e-10)
+    assert si.resultants["M"] / (force * radius) == pytest.approx(one.resultants["M"], rel=1e-9)
+    assert si.dy / (force * titanium_in_aluminium.beta_star) == pytest.approx(one.dy, rel=1e-9)
+
+
+def test_without_friction_centre_and_body_loads_give_the_same_pressure(titanium_in_aluminium):
+    centre, body = (
+        solve(Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0, load), HISTORY, nodes=101, arc=ARC)
+        for load in ("centre", "body")
+    )
+    for one, two in zip(centre, body, strict=True):
+        assert np.abs(one.pressure - two.pressure).max() < 1e-11
+
+
+def test_steady_cycles_repeat(similar):
+    """With fixed rotation the second forward state is the steady one (section 5.3); it repeats to rounding."""
+    problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
+    result = solve(problem, LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 5), nodes=121)
+    assert np.abs(result[3].shear - result[1].shear).max() > 1e-3
+    for state in result[5::2]:
+        assert np.abs(state.shear - result[3].shear).max() < 1e-11
+    per_cycle = [b.dissipation - a.dissipation for a, b in zip(result[3::2], result[5::2], strict=False)]
+    assert np.ptp(per_cycle) < 1e-9 * per_cycle[0]
+
+
+def test_free_pins_settle_over_some_cycles(similar):
+    problem = Problem.from_load_parameter(similar, 0.05, 0.55, "body")
+    result = solve(problem, LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 12), nodes=81)
+    drift = [np.abs(b.shear - a.shear).max() for a, b in zip(result[1::2], result[3::2], strict=False)]
+    assert drift[-1] < 1e-3 * drift[0]
+
+
+def test_graded_nodes_give_the_same_answer(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    t = np.linspace(-1.0, 1.0, 201)
+    graded = Grid(BOTTOM + 1.5 * (t + 0.1 * np.sin(np.pi * t)))
+    one = solve(problem, [{"P": 1.0}, {"Q": 0.2}], grid=graded)[-1]
+    two = solve(problem, [{"P": 1.0}, {"Q": 0.2}], nodes=201, arc=(BOTTOM - 1.5, BOTTOM + 1.5))[-1]
+    assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=1e-4)
+    assert one.rotation == pytest.approx(two.rotation, rel=1e-2)
+    assert np.allclose(one.contact, two.contact, atol=3e-3)
+
+
+def test_arc_and_circle_agree(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    circle = solve(problem, HISTORY, grid=Grid.circle(180))
+    arc = solve(problem, HISTORY, grid=Grid(circle.grid.theta[30:150]))
+    for whole, part in zip(circle, arc, strict=True):
+        assert np.abs(whole.pressure[30:150] - part.pressure).max() < 1e-11
+        assert np.abs(whole.shear[30:150] - part.shear).max() < 1e-11
+
+
+@pytest.mark.parametrize("block", range(10))
+def test_random_histories(block):
+    """No wrong state, and no error: all of these have an equilibrium. scripts/random_histories.py runs a thousand."""
+    for seed in range(1000 + 12 * block, 1012 + 12 * block):
+        ending, violation, result = outcome(seed)
+        assert ending == "solved", f"seed {seed}"
+        assert violation < 1e-9
+        assert result.complete
+        assert len(result) == len(random_case(seed)[1])
+
+
+@pytest.mark.parametrize("seed", [3, 11, 19, 24, 30, 42])
+def test_random_histories_by_increments(seed):
+    problem, history = random_case(seed)
+    path = solve(problem, history, nodes=NODES)
+    grid = path.grid
+    steps = solve(problem, history, grid=grid, method="increment", increments=200)
+    for one, two in zip(path, steps, strict=True):
+        assert np.abs(one.pressure - two.pressure).sum() < 0.01 * one.pressure.sum() + 1e-12
+        assert np.abs(one.shear - two.shear).sum() < 0.03 * problem.friction * one.pressure.sum() + 1e-12
+
+
+def test_rotation_of_the_whole_problem_turns_the_state(similar):
+    """The theory knows no bottom: loads turned by a right angle give the same state, turned."""
+    problem = Problem.from_load_parameter(similar, 0.2, 0.4, "centre")
+    down = solve(problem, [{"P": 1.0}, {"Q": 0.2}], nodes=101, arc=(BOTTOM - 1.4, BOTTOM + 1.4))[-1]
+    right = solve(problem, [{"Q": 1.0}, {"P": -0.2}], nodes=101, arc=(-1.4, 1.4))[-1]
+    assert np.abs(down.pressure - right.pressure).max() < 1e-10
+    assert np.abs(down.shear - right.shear).max() < 1e-10
+    assert (down.dx, down.dy) == pytest.approx((right.dy, -right.dx), abs=1e-10)

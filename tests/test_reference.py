@@ -1,0 +1,234 @@
+"""Closed forms, reference values of an independent trial, and finite-element tractions."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fastpin import Grid, Material, MaterialPair, Problem, analytic, solve
+
+BOTTOM = -0.5 * math.pi
+CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}, {"Q": -0.275}]
+
+
+def half_angle(state):
+    start, stop = state.contact[0]
+    return 0.5 * (stop - start)
+
+
+# --- frictionless: closed forms -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("load_parameter", [1e-4, 0.01, 0.1, 0.5, 2.0])
+@pytest.mark.parametrize("pin_load", ["centre", "body"])
+def test_persson(similar, load_parameter, pin_load):
+    state = solve(
+        Problem.from_load_parameter(similar, load_parameter, 0.0, pin_load), [{"P": 1.0}], nodes=400
+    )[-1]
+    exact = analytic.persson_half_angle(load_parameter)
+    assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, exact), rel=1e-5)
+    assert half_angle(state) == pytest.approx(exact, abs=1e-3)
+    inside = np.abs(state.theta - BOTTOM) < 0.9 * exact
+    expected = analytic.persson_pressure(state.theta[inside] - BOTTOM, exact)
+    assert np.abs(state.pressure[inside] - expected).max() < 1e-3 * expected.max()
+
+
+@pytest.mark.parametrize("load_parameter", [0.01, 0.5, 2.0])
+def test_persson_contact_angle_with_many_nodes(similar, load_parameter):
+    state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=1600)[-1]
+    assert half_angle(state) == pytest.approx(analytic.persson_half_angle(load_parameter), abs=1e-4)
+
+
+@pytest.mark.parametrize("alpha", [-0.2, 0.5])
+@pytest.mark.parametrize("load_parameter", [0.05, 0.5])
+def test_dissimilar_frictionless_without_coupling(alpha, load_parameter):
+    """alpha* = 0: the pressure is Persson's as a function of the contact angle (Ciavarella and Decuzzi)."""
+    pair = MaterialPair.from_dundurs(alpha, 0.0, nu_pin=0.3)
+    state = solve(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}], nodes=400)[-1]
+    exact = analytic.persson_half_angle(load_parameter, -alpha)
+    assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, exact), rel=1e-5)
+    assert half_angle(state) == pytest.approx(exact, abs=1e-3)
+
+
+def test_order_of_edge_and_peak_pressure(similar):
+    """Edges read between nodes: no stair steps, and better than first order. Peaks: second order."""
+    rng = np.random.default_rng(3)
+    sizes = np.array([100, 200, 400, 800])
+    edge, peak = np.zeros((2, sizes.size))
+    for load_parameter in 10.0 ** rng.uniform(-2.0, 0.3, 6):
+        exact = analytic.persson_half_angle(load_parameter)
+        top = analytic.persson_pressure(0.0, exact)
+        wide = exact * rng.uniform(1.08, 1.3, 2)
+        for k, nodes in enumerate(sizes):
+            arc = (BOTTOM - wide[0], BOTTOM + wide[1])
+            state = solve(
+                Problem.from_load_parameter(similar, load_parameter, 0.0),
+                [{"P": 1.0}],
+                nodes=int(nodes),
+                arc=arc,
+            )[-1]
+            edge[k] += (state.contact[0][1] - BOTTOM - exact) ** 2 + (
+                state.contact[0][0] - BOTTOM + exact
+            ) ** 2
+            peak[k] += (state.peak_pressure / top - 1.0) ** 2
+    edge_order = -np.polyfit(np.log(sizes), 0.5 * np.log(edge), 1)[0]
+    peak_order = -np.polyfit(np.log(sizes), 0.5 * np.log(peak), 1)[0]
+    assert edge_order > 1.3
+    assert peak_order > 1.8
+
+
+# --- with friction: trial values ----------------------------------------------------------------------------
+
+
+def test_monotonic_reference_values(similar, titanium_in_aluminium):
+    for pair, peak, stick in ((titanium_in_aluminium, 0.52882, 0.435), (similar, 0.54031, None)):
+        state = solve(Problem.from_load_parameter(pair, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=401)[-1]
+        assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
+        assert abs(state.peak_shear) == pytest.approx(0.2011, abs=1e-4)
+        if stick is not None:
+            assert half_angle(state) == pytest.approx(1.136, abs=2e-3)
+            assert 0.5 * (state.stick[0][1] - state.stick[0][0]) == pytest.approx(stick, abs=1e-3)
+
+
+def test_fretting_with_fixed_rotation_reference_values(similar):
+    result = solve(Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed"), CYCLE, nodes=601)
+    peaks = [0.91864, 0.93755, 0.94690, 0.94671, 0.94690]
+    shears = [0.1385, -0.4095, 0.4046, -0.402, 0.4046]
+    integrals = [0.0, -0.213796, 0.220463, -0.219292, 0.220463]
+    for state, peak, shear, integral in zip(result, peaks, shears, integrals, strict=True):
+        assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
+        assert abs(state.peak_shear) == pytest.approx(abs(shear), abs=1e-3)  # theirs are nodal maxima
+        assert shear * state.peak_shear > 0.0 or integral == 0.0
+        assert -state.resultants["M"] == pytest.approx(integral, abs=4e-6)
+
+
+def test_fretting_with_free_rotation_reference_values(similar):
+    result = solve(Problem.from_load_parameter(similar, 0.05, 0.55, "body", "free"), CYCLE, nodes=601)
+    peaks = [0.46529, 0.50477, 0.55305, 0.54587, 0.55164]
+    shears = [0.2272, -0.2347, 0.2309, -0.2228, 0.2312]
+    rotations = [0.0, -0.0250, 0.0357, -0.0325, 0.0352]
+    for state, peak, shear, rotation in zip(result, peaks, shears, rotations, strict=True):
+        assert state.peak_pressure == pytest.approx(peak, abs=2e-5)
+        assert abs(state.peak_shear) == pytest.approx(abs(shear), abs=1e-3)  # theirs are nodal maxima
+        assert shear * state.peak_shear > 0.0 or rotation == 0.0
+        assert state.rotation == pytest.approx(rotation, abs=6e-5)
+        assert state.resultants["M"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("hub", "integral"), [(1.0, -0.230), (None, -0.214), (0.3, -0.160), (0.1, -0.043)])
+def test_where_the_rotation_is_held(similar, hub, integral):
+    """int T after the first +Q for a pin held at the rim, at the paper's datum and at hubs (finite elements)."""
+    problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed", hub_radius=hub)
+    state = solve(problem, CYCLE[:2], nodes=301)[-1]
+    assert -state.resultants["M"] == pytest.approx(integral, abs=5e-4)
+    if hub is None:
+        assert state.rotation == 0.0
+
+
+def test_hub_at_the_papers_datum_is_the_default(similar):
+    datum = 1.0 / math.sqrt(similar.pin_kolosov + 1.0)
+    one, two = (
+        solve(
+            Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed", hub_radius=hub),
+            CYCLE[:2],
+            nodes=81,
+        )
+        for hub in (None, datum)
+    )
+    assert np.abs(one[-1].shear - two[-1].shear).max() < 1e-10
+
+
+# --- finite elements ----------------------------------------------------------------------------------------
+
+
+def finite_elements(name):
+    text = (Path(__file__).parent / "reference" / name).read_text().splitlines()
+    rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
+    return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+
+
+def on_their_nodes(table, half_width):
+    """The finite-element nodes themselves, without the rounding of the file."""
+    theta = table["theta"][0] + math.pi / 720.0 * np.round(
+        (table["theta"] - table["theta"][0]) * 720.0 / math.pi
+    )
+    return Grid(theta[np.abs(theta - BOTTOM) < half_width])
+
+
+def differences(state, table, suffix):
+    """int |dN|, int |dT| in parts of int N, and the relative difference in peak pressure."""
+    width = math.pi / 720.0
+    pressure = np.interp(table["theta"], state.theta, state.pressure, 0.0, 0.0)
+    shear = np.interp(table["theta"], state.theta, state.shear, 0.0, 0.0)
+    total = width * table[f"N_{suffix}"].sum()
+    return (
+        width * np.abs(pressure - table[f"N_{suffix}"]).sum() / total,
+        width * np.abs(shear - table[f"T_{suffix}"]).sum() / total,
+        abs(state.pressure.max() / table[f"N_{suffix}"].max() - 1.0),
+    )
+
+
+def test_finite_elements_without_friction(similar):
+    table = finite_elements("fem_frictionless.csv")
+    problem = Problem.from_load_parameter(similar, 0.05, 0.0, "body")
+    normal, _, peak = differences(
+        solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.4))[-1], table, "P"
+    )
+    assert normal < 5e-4
+    assert peak < 2e-5
+
+
+def test_finite_elements_monotonic(similar):
+    table = finite_elements("fem_monotonic.csv")
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    state = solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.3))[-1]
+    normal, tangential, peak = differences(state, table, "P")
+    assert normal < 1.5e-4
+    assert tangential < 1.1e-3
+    assert peak < 5e-5
+
+
+def test_finite_elements_fretting(similar):
+    """The stated errors are 5e-4, 2e-3 and 1.5e-4; docs/accuracy.md says where the rest comes from."""
+    table = finite_elements("fem_fretting_fixed_rotation.csv")
+    problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
+    result = solve(problem, CYCLE[:4], grid=on_their_nodes(table, 1.0))
+    for state, suffix in zip(result, ("P", "plusQ", "minusQ", "plusQ2"), strict=True):
+        normal, tangential, peak = differences(state, table, suffix)
+        assert normal < (8e-4 if suffix == "minusQ" else 5e-4)
+        assert tangential < (2.5e-3 if suffix == "plusQ2" else 2e-3)
+        assert peak < 1.7e-4
+        theta = table["theta"]
+        integral = math.pi / 720.0 * table[f"T_{suffix}"].sum()
+        assert -state.resultants["M"] == pytest.approx(integral, abs=3e-5)
+        assert theta.size > state.theta.size
+
+
+# --- rigid limits -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rigid", ["pin", "plate"])
+def test_rigid_bodies_are_the_limit_of_stiff_ones(rigid):
+    soft = Material(70e9, 0.3)
+    peaks = []
+    for stiff in (Material(70e12, 0.3), Material(70e14, 0.3), Material.rigid()):
+        pair = MaterialPair(stiff, soft) if rigid == "pin" else MaterialPair(soft, stiff)
+        state = solve(
+            Problem.from_load_parameter(pair, 0.2, 0.3, "centre"), [{"P": 1.0}, {"Q": 0.1}], nodes=121
+        )[-1]
+        peaks.append(state.peak_pressure)
+    assert abs(peaks[1] - peaks[2]) < 0.05 * abs(peaks[0] - peaks[2])
+    assert peaks[1] == pytest.approx(peaks[2], rel=1e-4)
+
+
+def test_rigid_pin_does_not_feel_where_it_is_loaded():
+    pair = MaterialPair(Material.rigid(), Material(70e9, 0.3))
+    centre, body = (
+        solve(Problem.from_load_parameter(pair, 0.1, 0.4, load), CYCLE[:3], nodes=101)[-1]
+        for load in ("centre", "body")
+    )
+    assert np.array_equal(centre.shear, body.shear)
