@@ -289,9 +289,7 @@ def _half_angle(lp: float, a: float) -> float:
         high += 1.0
         if high > 150.0:
             return math.pi
-    return 2.0 * math.atan(
-        math.exp(brentq(lambda x: _load_parameter(math.exp(x), a) - lp, low, high, xtol=1e-15))
-    )
+    return 2.0 * math.atan(math.exp(brentq(lambda x: _load_parameter(math.exp(x), a) - lp, low, high, xtol=1e-15)))
 
 
 def _partial_slip(x: np.ndarray, a: float, ratio: float, e: float) -> np.ndarray:
@@ -305,9 +303,7 @@ def _partial_slip(x: np.ndarray, a: float, ratio: float, e: float) -> np.ndarray
 
 def _inside(e: float, c: float, a: float, field: str = "eccentricity") -> None:
     if abs(e) + c > a * (1.0 + 1e-12):
-        raise InputError(
-            field, f"the stick zone, {c:g} wide and {abs(e):g} off, leaves the contact, {a:g} wide"
-        )
+        raise InputError(field, f"the stick zone, {c:g} wide and {abs(e):g} off, leaves the contact, {a:g} wide")
 
 
 def _modulus(nome: np.ndarray) -> np.ndarray:

@@ -310,9 +310,7 @@ class _Reader:
             return None
         return number
 
-    def _text(
-        self, table: Mapping[str, Any], key: str, allowed: tuple[str, ...], *section: str | int
-    ) -> str | None:
+    def _text(self, table: Mapping[str, Any], key: str, allowed: tuple[str, ...], *section: str | int) -> str | None:
         value = table.get(key)
         if value is None or value is _BAD:
             return None
@@ -322,9 +320,7 @@ class _Reader:
             return None
         if allowed and value not in allowed:
             choices = " or ".join(f'"{choice}"' for choice in allowed)
-            self._report(
-                f"{key}: must be {choices}, not {_shown(value)}{_closest(value, allowed)}", *section, key
-            )
+            self._report(f"{key}: must be {choices}, not {_shown(value)}{_closest(value, allowed)}", *section, key)
             return None
         return value
 
@@ -352,9 +348,7 @@ class _Reader:
         options = self._options()
         arc = options.arc if options else None
         if problem is not None and problem.clearance < 0.0 and arc and arc[1] - arc[0] < 2.0 * math.pi:
-            message = (
-                "arc: an interference fit is in contact all round, the arc must span 2 pi or be left out"
-            )
+            message = "arc: an interference fit is in contact all round, the arc must span 2 pi or be left out"
             self._report(message, "solve", "arc")
         if problem is None or history is None or options is None:
             return None
@@ -463,11 +457,7 @@ class _Reader:
             self._report(message, "dundurs", "beta_star")
         for key in needed:
             if key not in table:
-                why = (
-                    " (the scale of the moduli; with load_parameter none is needed)"
-                    if key == "beta_star"
-                    else ""
-                )
+                why = " (the scale of the moduli; with load_parameter none is needed)" if key == "beta_star" else ""
                 self._report(f"[dundurs]: {key} is missing{why}", "dundurs")
         numbers = {key: self._number(table, key, "dundurs") for key in needed}
         before = len(self.problems)
@@ -608,9 +598,7 @@ class _Reader:
                 first = next(iter(lengths))
                 wrong = next(name for name in lengths if lengths[name] != lengths[first])
                 counts = f"{first} has {lengths[first]} values and {wrong} {lengths[wrong]}"
-                self._report(
-                    f"{wrong}: lists in one block must be equally long, {counts}", "load", index, wrong
-                )
+                self._report(f"{wrong}: lists in one block must be equally long, {counts}", "load", index, wrong)
                 continue
             if len(corners) + length * repeat > MAX_CORNERS:
                 key = "repeat" if "repeat" in block else "load"
@@ -637,8 +625,7 @@ class _Reader:
             self._report(message, "load", index, name)
             return None
         numbers = [
-            self._as_number(item, f"value {k} of {name}", "load", index, name)
-            for k, item in enumerate(value, start=1)
+            self._as_number(item, f"value {k} of {name}", "load", index, name) for k, item in enumerate(value, start=1)
         ]
         return None if None in numbers else cast(list[float], numbers)
 

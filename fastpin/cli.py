@@ -78,9 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     example = commands.add_parser("example", help="print a commented case file", allow_abbrev=False)
     example.set_defaults(command=_example)
 
-    check = commands.add_parser(
-        "check", help="say what a case file means, or all that is wrong", allow_abbrev=False
-    )
+    check = commands.add_parser("check", help="say what a case file means, or all that is wrong", allow_abbrev=False)
     check.add_argument("case", type=Path, help="case file (TOML)")
     check.set_defaults(command=_check)
 
@@ -173,9 +171,7 @@ def _overridden(case: Case, options: argparse.Namespace) -> Case:
 
 def _between(text: str) -> int | tuple[float, ...]:
     try:
-        value: object = (
-            int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
-        )
+        value: object = int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
     except ValueError:
         value = text
     try:
@@ -192,13 +188,9 @@ def _check_outputs(options: argparse.Namespace) -> None:
     for name, path in chosen.items():
         # "fastpin run --json case.toml" takes the case file for the output.
         if path.suffix == ".toml" or (options.case is not None and path.resolve() == options.case.resolve()):
-            raise InputError(
-                name, f"won't overwrite the case file {path}; write the case file before the options"
-            )
+            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
         if name == "--plot" and path.suffix.lower() not in FIGURE_FORMATS:
-            raise InputError(
-                name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}"
-            )
+            raise InputError(name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
         check_writable(path)
         other = seen.setdefault(path.resolve(), name)
         if other != name:

@@ -6,14 +6,16 @@ With a reference force F, tractions are in F/R, displacements in F beta*, rotati
     gap   h = rest gap + direct N + cross T  - c_x cos - c_y sin             + (loads)    Eqs. (9)-(12), (15)
     slip  s =           - cross N + direct T  - c_x sin + c_y cos + omega     + (loads)    Eqs. (9)-(12), (18)
 
-where the rest gap is that of the rigid pin in the undeformed hole, and the terms of the displacement kernels that depend on the resultants only (the w terms of the pin's load) stand
-with the loads: they are known once P and Q are. What is left is symmetric.
+where the rest gap is that of the rigid pin in the undeformed hole, and the terms of the displacement kernels that
+depend on the resultants only (the w terms of the pin's load) stand with the loads: they are known once P and Q are.
+What is left is symmetric.
 """
 
 from __future__ import annotations
 
+import copy
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lapack
@@ -77,8 +79,8 @@ class Configuration:
     work: float = 0.0
 
     def copy(self) -> Configuration:
-        arrays = {k: v.copy() for k, v in vars(self).items() if isinstance(v, np.ndarray)}
-        return replace(self, **arrays)
+        """A copy that shares no array with this one."""
+        return copy.deepcopy(self)
 
     @property
     def closed(self) -> np.ndarray:
@@ -89,9 +91,11 @@ class Configuration:
 class System:
     """The collocation matrices of one problem on one grid.
 
-    ``operator`` (2n, 2n) maps (N, T) to (h, s); ``motion`` (2n, 3) the rigid motion; ``loads`` (2n, 6) the loads;
-    ``gap0`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). ``equilibrium @ (N, T) + motion_rows @ motion = forces @ load`` are the equilibrium
-    conditions (50), (51) or, where the rotation is held, its prescription.
+    ``operator`` (2n, 2n) maps (N, T) to (h, s), ``motion`` (2n, 3) the rigid motion and ``loads`` (2n, 6) the loads.
+    ``gap0`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). The equilibrium
+    conditions (50), (51), or the prescription of a rotation that is held, are
+
+        equilibrium @ (N, T) + motion_rows @ motion = forces @ load.
     """
 
     problem: Problem
@@ -122,9 +126,7 @@ class System:
         spacing = np.diff(theta)
         uniform = bool(np.ptp(spacing) <= 1e-12 * spacing[0] * n)
         direct, cross = np.empty((n, n)), np.empty((n, n))
-        kernels.fill_log(
-            theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross
-        )
+        kernels.fill_log(theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
 
         operator = np.empty((2 * n, 2 * n), order="F")
         weights = grid.weights
@@ -224,9 +226,7 @@ class System:
         gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
         slip_error = np.where(closed, np.abs(true[n:] - configuration.slip), 0.0)
         on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
-        cone_error = np.where(
-            closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear))
-        )
+        cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
         balance = self.equilibrium @ tractions + self.motion_rows @ configuration.motion
         balance_error = np.abs(balance - self.forces @ configuration.load)
         elastic = np.abs(self.operator @ tractions)
@@ -266,16 +266,14 @@ class ActiveSet:
         self.tangential = np.flatnonzero(status == STICK)
         self.rows = np.r_[self.normal, n + self.tangential]
         self.count = self.rows.size
-        self.coupling = np.where(
-            np.abs(status) == 1, -system.friction * status, 0.0
-        )  # T = coupling N where slipping
+        self.coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
         self._nodes = n
         matrix = np.empty((self.count + 3, self.count + 3), order="F")
         matrix[:-3, :-3] = self.columns(system.operator, self.rows)
         matrix[:-3, -3:] = system.motion[self.rows]
         matrix[-3:, :-3] = self.columns(system.equilibrium, slice(None))
         matrix[-3:, -3:] = system.motion_rows
-        # Unknown forces instead of tractions: all entries are then of order one and the condition number means something.
+        # Unknown forces instead of tractions: entries are then of order one, and the condition number means something.
         self._width = float(system.weights.mean())
         matrix[:, :-3] /= self._width
         norm = float(np.abs(matrix).sum(axis=0).max())

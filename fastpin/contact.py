@@ -17,7 +17,7 @@ LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
 
 
 def unloaded(system: System) -> Configuration:
-    """The configuration before any load: concentric, without contact, or the uniform pressure of an interference fit."""
+    """The configuration before any load: concentric without contact, or an interference fit's uniform pressure."""
     n = system.grid.size
     zeros = np.zeros(n)
     configuration = Configuration(
@@ -64,9 +64,7 @@ def released(system: System, last: Configuration, load: np.ndarray) -> Configura
     return new
 
 
-def _put_at_rest(
-    system: System, configuration: Configuration, rest: np.ndarray, rest_gap: np.ndarray
-) -> None:
+def _put_at_rest(system: System, configuration: Configuration, rest: np.ndarray, rest_gap: np.ndarray) -> None:
     """Let motion and slip count from the position `rest`, in which nothing is in contact."""
     n = system.grid.size
     configuration.rest, configuration.rest_gap = rest, rest_gap

@@ -67,15 +67,11 @@ def _iterate(
     return None
 
 
-def _wanted_status(
-    system: System, start: Configuration, solution: Solution, status: np.ndarray
-) -> np.ndarray:
+def _wanted_status(system: System, start: Configuration, solution: Solution, status: np.ndarray) -> np.ndarray:
     """Statuses that the solution of the present ones asks for."""
     traction_tol = TOLERANCE * max(float(np.abs(solution.pressure).max()), 1e-300)
     slid = solution.slip - start.slip
-    length_tol = TOLERANCE * max(
-        float(np.abs(solution.gap - start.rest_gap).max()), float(np.abs(slid).max()), 1e-300
-    )
+    length_tol = TOLERANCE * max(float(np.abs(solution.gap - start.rest_gap).max()), float(np.abs(slid).max()), 1e-300)
     wanted = status.copy()
     closing = (status == OPEN) & (solution.gap < -length_tol)
     wanted[closing] = np.where(slid[closing] < 0.0, -1, 1)
@@ -86,9 +82,7 @@ def _wanted_status(
         return wanted
     slipping = closed & (status != STICK)
     wanted[slipping & (status * slid < -length_tol)] = STICK
-    letting_go = (status == STICK) & (
-        np.abs(solution.shear) > system.friction * solution.pressure + traction_tol
-    )
+    letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
     wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
     wanted[opening] = OPEN
     if system.problem.rotation == "free" and not np.any(wanted == STICK):
@@ -96,10 +90,8 @@ def _wanted_status(
     return wanted
 
 
-def _hold_one(
-    wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: float, slid: np.ndarray
-) -> None:
-    """Let one of the closed nodes stick in `wanted`, where all of them slip and nothing would keep the pin from turning.
+def _hold_one(wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: float, slid: np.ndarray) -> None:
+    """Let one of the closed nodes stick in `wanted`, where all of them slip and nothing would hold the pin.
 
     Of several nodes that let go it is the one nearest to sticking; if the last one lets go, the pin turns until the
     first of those stick that slip the other way.
@@ -116,9 +108,7 @@ def _hold_one(
         wanted[others[np.argmin(np.abs(slid[others]))]] = STICK
 
 
-def _accepted(
-    start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray
-) -> Configuration:
+def _accepted(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
     new = start.copy()
     closed = status != OPEN
     new.status = status

@@ -51,9 +51,7 @@ class LoadHistory:
         rows = []
         for index, corner in enumerate(corners):
             if not isinstance(corner, Mapping):
-                raise InputError(
-                    "history", f"corner {index + 1} must map load names to numbers, not {corner!r}"
-                )
+                raise InputError("history", f"corner {index + 1} must map load names to numbers, not {corner!r}")
             row = np.full(len(LOADS), np.nan)
             for name, value in corner.items():
                 row[_load_index(name, f"corner {index + 1}")] = finite(f"{name} of corner {index + 1}", value)
@@ -118,9 +116,7 @@ class LoadHistory:
         try:
             text = path.read_text(encoding="utf-8-sig")
         except (OSError, UnicodeDecodeError) as error:
-            raise InputError(
-                "csv", f"can't read {path}: {getattr(error, 'strerror', None) or error}"
-            ) from None
+            raise InputError("csv", f"can't read {path}: {getattr(error, 'strerror', None) or error}") from None
         header: list[int] = []
         rows: list[np.ndarray] = []
         for number, line in enumerate(text.splitlines(), start=1):
@@ -141,9 +137,7 @@ class LoadHistory:
                     try:
                         row[index] = finite(LOADS[index], float(cell))
                     except ValueError:
-                        raise InputError(
-                            LOADS[index], f"{where}: must be a finite number, not {cell!r}"
-                        ) from None
+                        raise InputError(LOADS[index], f"{where}: must be a finite number, not {cell!r}") from None
             rows.append(row)
         if not rows:
             raise InputError("csv", f"{path} holds no load corners")
@@ -190,9 +184,7 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
             '(section 4 of the paper); use pin_load = "centre"',
         )
     if problem.rotation == "fixed" and not np.all(np.isnan(moment)):
-        raise InputError(
-            "M", 'the moment is a reaction where rotation = "fixed"; leave it out or let the pin rotate'
-        )
+        raise InputError("M", 'the moment is a reaction where rotation = "fixed"; leave it out or let the pin rotate')
     if problem.rotation == "free" and not np.all(np.isnan(rotation)):
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed"')
 

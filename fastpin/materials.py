@@ -195,9 +195,7 @@ class MaterialPair:
             kolosov = plus / inverse_g - 1.0
             nu = (3.0 - kolosov) / 4.0 if plane == "strain" else (3.0 - kolosov) / (1.0 + kolosov)
         if not -1e-12 <= nu <= 0.5 + 1e-12:
-            raise InputError(
-                "beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}"
-            )
+            raise InputError("beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}")
         return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
 
     def scaled(self, beta_star: float) -> MaterialPair:
@@ -230,9 +228,7 @@ class MaterialPair:
     @property
     def alpha_star(self) -> float:
         """Composite constant alpha* of Eq. (32), 1/Pa."""
-        return (self.plate_kolosov - 1.0) * self.plate_compliance - (
-            self.pin_kolosov - 1.0
-        ) * self.pin_compliance
+        return (self.plate_kolosov - 1.0) * self.plate_compliance - (self.pin_kolosov - 1.0) * self.pin_compliance
 
     @property
     def beta_star(self) -> float:

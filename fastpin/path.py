@@ -54,6 +54,8 @@ class PathStep:
         self.touched = np.zeros(n, dtype=bool)
         self.rebuilds = 0
         self._wholesale = max(32, n // 20)
+        self._matrix: np.ndarray
+        self._rates: np.ndarray
         self._rebuild()
 
     @property
@@ -74,7 +76,7 @@ class PathStep:
 
         Raises
         ------
-        StepLost
+        StepLostError
             If the load can't be followed any further.
         """
         system, now = self.system, self.now
@@ -96,7 +98,7 @@ class PathStep:
             elif code == tableau.REACHED:
                 break
             else:
-                raise StepLost(code, self.fraction)
+                raise StepLostError(code, self.fraction)
         now.load = self.before + stop * self.rate
         now.dissipation = float(self._sums[tableau.DISSIPATION])
         now.work = float(self._sums[tableau.WORK])
@@ -116,7 +118,7 @@ class PathStep:
         self.rebuilds += 1
         self._counts[tableau.PENDING] = 0
         if self.rebuilds > MOST_REBUILDS:
-            raise StepLost(tableau.CYCLING, self.fraction)
+            raise StepLostError(tableau.CYCLING, self.fraction)
         built = build_tableau(self.system, self.now.status, self.rate)
         if built is None and fallback is not None and not np.array_equal(fallback, self.now.status):
             # Changing all at once left nothing that holds the pin: change one by one instead.
@@ -125,11 +127,11 @@ class PathStep:
             self._counts[tableau.NEXT] = self._counts[tableau.QUEUED] = 0
             built = build_tableau(self.system, self.now.status, self.rate)
         if built is None:
-            raise StepLost(tableau.NO_SUPPORT, self.fraction)
+            raise StepLostError(tableau.NO_SUPPORT, self.fraction)
         self._matrix, self._rates = built
 
 
-class StepLost(Exception):
+class StepLostError(Exception):
     """Internal: the step could not be followed; `code` is one of tableau.py."""
 
     def __init__(self, code: int, fraction: float) -> None:
@@ -138,9 +140,7 @@ class StepLost(Exception):
         self.fraction = fraction
 
 
-def build_tableau(
-    system: System, status: np.ndarray, load_rate: np.ndarray
-) -> tuple[np.ndarray, np.ndarray] | None:
+def build_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """Tableau (2n+3, 2n) and rates (2n+3,) for given statuses; None if the closed nodes can't hold the pin.
 
     The zero-rate variables of the unknown tractions' pairs are h and s, of the others N and tau.
@@ -175,9 +175,7 @@ def build_tableau(
 
 def refined(system: System, configuration: Configuration) -> Configuration:
     """The same configuration with its tractions, gap and slip recomputed from statuses, held slip and load."""
-    solution = system.solve(
-        configuration.status, configuration.slip, configuration.load, configuration.rest_gap
-    )
+    solution = system.solve(configuration.status, configuration.slip, configuration.load, configuration.rest_gap)
     if solution is None:
         return configuration.copy()
     new = configuration.copy()

@@ -243,9 +243,7 @@ def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame:
                 panel.barh(row, width, left=left, height=0.66, color=colour, alpha=0.22, linewidth=0)
                 if width > 0.03 * (frame.limits[1] - frame.limits[0]):
                     arrow = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}.get(int(sign), "")
-                    panel.text(
-                        left + 0.5 * width, row, arrow, ha="center", va="center", fontsize=7.0, color="0.25"
-                    )
+                    panel.text(left + 0.5 * width, row, arrow, ha="center", va="center", fontsize=7.0, color="0.25")
         for start, stop in state.stick:
             for left, width in frame.place(start, stop):
                 panel.barh(row, width, left=left, height=0.66, color=colour, linewidth=0)

@@ -61,9 +61,7 @@ class Problem:
             raise InputError("hole_radius", f"must be positive, not {radius:g}")
         clearance = finite("clearance", self.clearance)
         if not self.dimensionless and abs(clearance) >= radius:
-            raise InputError(
-                "clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}"
-            )
+            raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
         friction = finite("friction", self.friction)
         if friction < 0.0:
             raise InputError("friction", f"must not be negative, not {friction:g}")
@@ -80,9 +78,7 @@ class Problem:
             if self.rotation == "free":
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
             if not 0.0 < hub <= radius:
-                raise InputError(
-                    "hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}"
-                )
+                raise InputError("hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}")
             object.__setattr__(self, "hub_radius", hub)
         object.__setattr__(self, "hole_radius", radius)
         object.__setattr__(self, "clearance", clearance)

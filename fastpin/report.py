@@ -107,9 +107,7 @@ def describe(case: Case) -> str:
     else:
         scale = f"beta* = {pair.beta_star:.4g} 1/Pa"
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
-        size = (
-            f"hole radius {_quantity(problem.hole_radius, 'm')}, {kind} {_quantity(problem.clearance, 'm')}"
-        )
+        size = f"hole radius {_quantity(problem.hole_radius, 'm')}, {kind} {_quantity(problem.clearance, 'm')}"
     pin_load = {"centre": "force at the centre", "body": "uniform body force"}[problem.pin_load]
     hub = ""
     if problem.rotation == "fixed":
@@ -144,9 +142,7 @@ def _load_table(problem: Problem, loads: list[dict[str, float]]) -> str:
     columns = [("corner", "", [f"{number}" for number in range(1, len(loads) + 1)])]
     columns += _load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
-    columns.append(
-        ("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces])
-    )
+    columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
     return _table(columns)
 
 
@@ -201,10 +197,7 @@ def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
     widths = [max(len(cell) for cell in (name, unit, *cells)) for name, unit, cells in columns]
     lines = [[name for name, _, _ in columns], [unit for _, unit, _ in columns]]
     lines += [[cells[k] for _, _, cells in columns] for k in range(len(columns[0][2]))]
-    text = [
-        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
-        for line in lines
-    ]
+    text = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
     if count > _MAX_ROWS:
         text.insert(2 + _MAX_ROWS // 2, f"... {count - _MAX_ROWS} more ...")
     return "\n".join(text)

@@ -14,7 +14,7 @@ from fastpin.contact import first_contact, released, unloaded
 from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
 from fastpin.loading import LoadHistory, named_load
-from fastpin.path import PathStep, StepLost
+from fastpin.path import PathStep, StepLostError
 from fastpin.state import Restart, Result, State
 
 Method = Literal["path", "increment"]
@@ -45,7 +45,7 @@ class _Piece:
 
 
 def _pieces(before: np.ndarray, after: np.ndarray) -> list[_Piece]:
-    """A step, cut in two where the pin's force passes through zero and changes its sense (the contact is lost there)."""
+    """A step, cut in two where the pin's force passes through zero and changes its sense: contact is lost there."""
     first, last = before[[P, Q]], after[[P, Q]]
     if first @ last < 0.0 and abs(first[0] * last[1] - first[1] * last[0]) <= 1e-12 * abs(first @ last):
         cut = float(np.linalg.norm(first) / (np.linalg.norm(first) + np.linalg.norm(last)))
@@ -61,7 +61,7 @@ def _equal_parts(count: int) -> np.ndarray:
 
 
 def _growing_parts(count: int, done: float) -> np.ndarray:
-    """Ends of `count` increments that grow linearly, in parts of what is left of a way when `done` of it lies behind."""
+    """Ends of `count` increments that grow linearly, in parts of what is left of a way with `done` of it behind."""
     ends = np.arange(1, count + 1) * np.arange(2, count + 2) / (count * (count + 1.0))
     ahead = ends[ends > done]
     return (ahead - done) / (1.0 - done) if done < 1.0 else ahead
@@ -138,9 +138,7 @@ class Run:
             except SolveError as error:
                 load = (before + error.fraction * (target - before)) * self.system.scales.loads
                 error.step, error.load = step, named_load(load)
-                place = ", ".join(
-                    f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0
-                )
+                place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
                 where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
                 error.args = (f"{where}: {error}",)
                 raise
@@ -184,7 +182,7 @@ class Run:
                     self._keep(step, reached)
                 if self.progress is not None:
                     self.progress(step + reached, steps)
-        except StepLost as lost:
+        except StepLostError as lost:
             last_nodes = path is not None and int(path.now.closed.sum()) <= FEW_NODES
             if not _pushed(piece.after) and (last_nodes or lost.fraction > ALMOST_UNLOADED):
                 self.now = released(self.system, self.now if path is None else path.now, piece.after)
@@ -194,9 +192,7 @@ class Run:
                 fraction = piece.end if path is None else origin + lost.fraction * (piece.end - origin)
                 raise _solve_error(lost.code, fraction, int(self.now.closed.sum())) from None
         except SolveError as error:
-            error.fraction = reached + error.fraction * (
-                stop - reached
-            )  # so far relative to the way to this stop
+            error.fraction = reached + error.fraction * (stop - reached)  # so far relative to the way to this stop
             raise
         finally:
             if path is not None:
@@ -244,9 +240,7 @@ class Run:
             raise ArcError("the contact reaches an end of the arc; give a wider one, or none")
         found.work = start.work + system.work(start, found)
         slid = np.where(found.closed, found.slip - start.slip, 0.0)
-        found.dissipation = start.dissipation - 0.5 * float(
-            (system.weights * slid) @ (start.shear + found.shear)
-        )
+        found.dissipation = start.dissipation - 0.5 * float((system.weights * slid) @ (start.shear + found.shear))
         self.now = found
         self.touched |= found.closed
         self.statistics["increments"] += 1

@@ -88,6 +88,8 @@ def solve(
     if start is not None:
         if start.problem != problem:
             raise InputError("start", "the result to go on from belongs to another problem")
+        if start.restart is None:
+            raise InputError("start", "this result can't be gone on from: it was read from a file")
         system = System.build(problem, start.grid, start.restart.force)
         run = Run(system, method, increments, fractions, progress, start.restart.configuration.copy())
         return _finished(run, history, history.values(initial=start.restart.load), began)
@@ -131,9 +133,7 @@ def _grids(
         whole = arc[1] - arc[0] >= 2.0 * np.pi
         grid = Grid.circle(nodes, arc[0]) if whole else Grid.arc(arc[0], arc[1], nodes)
     if problem.clearance < 0.0 and not grid.closed:
-        raise InputError(
-            "arc", "an interference fit is in contact all round: its grid must be the whole circle"
-        )
+        raise InputError("arc", "an interference fit is in contact all round: its grid must be the whole circle")
     yield grid
 
 

@@ -123,9 +123,7 @@ class State:
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
-        return zones.shear_peak(
-            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick
-        )
+        return zones.shear_peak(self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick)
 
     @cached_property
     def _reserve(self) -> np.ndarray:

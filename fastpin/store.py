@@ -109,17 +109,13 @@ def load(path: str | Path) -> Result:
     try:
         file = h5py.File(path, "r")
     except OSError:
-        raise InputError(
-            str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind"
-        ) from None
+        raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
     with file:
         if file.attrs.get("format") != FORMAT:
             raise InputError(str(path), "is an HDF5 file, but not a result of fastpin")
         made_by = file.attrs.get("version_fastpin", "unknown")
         if file.attrs.get("format_version") != FORMAT_VERSION:
-            raise InputError(
-                str(path), f"was written by fastpin {made_by} in a format that this version can't read"
-            )
+            raise InputError(str(path), f"was written by fastpin {made_by} in a format that this version can't read")
         try:
             return _load_result(file)
         except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
@@ -235,9 +231,7 @@ def _load_states(group: h5py.Group, problem: Problem, grid: Grid) -> list[State]
         per_node = {name: array[k] for name, array in nodes.items()}
         for array in per_node.values():
             array.setflags(write=False)
-        kept = {
-            name: float(value) for name, value in zip(names, residuals[k], strict=True) if not np.isnan(value)
-        }
+        kept = {name: float(value) for name, value in zip(names, residuals[k], strict=True) if not np.isnan(value)}
         states.append(
             State(
                 **per_node,

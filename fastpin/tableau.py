@@ -163,9 +163,7 @@ def _rate_scales(rates, status):
 
 
 @compiled
-def _friction_violators(
-    pressure, shear, status, rates, friction, traction_tol, length_tol, node_queue, status_queue
-):
+def _friction_violators(pressure, shear, status, rates, friction, traction_tol, length_tol, node_queue, status_queue):
     """Queue the nodes whose friction status contradicts the rates: first those that stick, then those that slip."""
     n = status.size
     queued = 0
@@ -362,15 +360,11 @@ def follow(
                     other = _relief(left[:, pending], status, rates, node, slipping)
                     if other < 0:
                         return NO_SUPPORT
-                    appended, _ = _change_status(
-                        matrix, left, right, pending, rates, status, friction, other, STICK
-                    )
+                    appended, _ = _change_status(matrix, left, right, pending, rates, status, friction, other, STICK)
                     pending += appended
                     if abs(_diagonal(matrix, left, right, pending, n + node)) * typical < SMALL_PIVOT:
                         return NO_SUPPORT
-                appended, pivot = _change_status(
-                    matrix, left, right, pending, rates, status, friction, node, slipping
-                )
+                appended, pivot = _change_status(matrix, left, right, pending, rates, status, friction, node, slipping)
                 pending += appended
                 unusual = pivot * typical < UNUSUAL_PIVOT
             else:
@@ -378,9 +372,7 @@ def follow(
             if status[node] != new:
                 if new == OPEN and abs(_diagonal(matrix, left, right, pending, node)) * typical < SMALL_PIVOT:
                     return NO_SUPPORT
-                appended, pivot = _change_status(
-                    matrix, left, right, pending, rates, status, friction, node, new
-                )
+                appended, pivot = _change_status(matrix, left, right, pending, rates, status, friction, node, new)
                 pending += appended
                 ratio = pivot * typical if new == OPEN else typical / pivot
                 unusual = unusual or ratio < UNUSUAL_PIVOT

@@ -84,9 +84,7 @@ def test_persson_pressure_against_its_printed_form():
     phi = np.linspace(-1.0999, 1.0999, 41)
     b, y = math.tan(half_angle / 2.0), np.tan(phi / 2.0)
     r, q = np.sqrt(b**2 - y**2), math.sqrt(b**2 + 1.0)
-    printed = 2.0 / np.pi * r / (q * (1.0 + y**2)) + np.log((q + r) / (q - r)) / (
-        2.0 * np.pi * b**2 * (b**2 + 1.0)
-    )
+    printed = 2.0 / np.pi * r / (q * (1.0 + y**2)) + np.log((q + r) / (q - r)) / (2.0 * np.pi * b**2 * (b**2 + 1.0))
     np.testing.assert_allclose(analytic.persson_pressure(phi, half_angle), printed, rtol=1e-12)
     assert np.all(analytic.persson_pressure([-math.pi, -1.2, 1.1, 2.0, math.pi], half_angle) == 0.0)
 
@@ -96,9 +94,7 @@ def test_persson_solves_the_equation_of_frictionless_contact(mismatch):
     # (58) with mu = 0, alpha* = 0 and kappa'/(G beta*) = (1 - a)/2, at several places of the contact
     half_angle = 1.3
     n = 4000
-    s = np.cos(
-        (np.arange(n) + 0.5) * np.pi / n
-    )  # N is sqrt(1 - s^2) times a smooth function of phi = half_angle s
+    s = np.cos((np.arange(n) + 0.5) * np.pi / n)  # N is sqrt(1 - s^2) times a smooth function of phi = half_angle s
     phi = half_angle * s
     area = half_angle * np.pi / n * np.sqrt(1.0 - s**2)
     pressure = analytic.persson_pressure(phi, half_angle)
@@ -232,9 +228,7 @@ def test_spence_solves_the_equation_of_elliptic_integrals():
         assert ellipk(k * k) / ellipkm1(k * k) == pytest.approx(ratio, rel=1e-9 if ratio < 2.0 else 2e-4)
     # k(1/r) is the complementary modulus of k(r)
     r = np.array([0.5, 0.9, 1.0, 1.4])
-    np.testing.assert_allclose(
-        analytic.spence_stick_ratio(r) ** 2 + analytic.spence_stick_ratio(1.0 / r) ** 2, 1.0
-    )
+    np.testing.assert_allclose(analytic.spence_stick_ratio(r) ** 2 + analytic.spence_stick_ratio(1.0 / r) ** 2, 1.0)
     assert analytic.spence_stick_ratio(0.0) == 0.0
     assert analytic.spence_stick_ratio(math.inf) == 1.0
     assert analytic.spence_stick_ratio(0.5) == pytest.approx(3.0 - 2.0 * math.sqrt(2.0), rel=1e-14)

@@ -63,9 +63,7 @@ def test_builtin_case_is_the_example() -> None:
 
 def test_every_commented_line_of_the_example_is_valid() -> None:
     """The alternatives that the example mentions can be switched on as they stand."""
-    text = (
-        EXAMPLE.replace("# between", "between").replace("# increments", "increments").replace("# arc", "arc")
-    )
+    text = EXAMPLE.replace("# between", "between").replace("# increments", "increments").replace("# arc", "arc")
     text = text.replace("# repeat = 1\n\n# Instead", "repeat = 1\n\n# Instead")
     case = parse_case(text)
     assert case.options.between == 3
@@ -133,10 +131,7 @@ def test_history_from_csv_beside_the_case_file(tmp_path: Path) -> None:
 
 
 def test_solver_options() -> None:
-    text = (
-        GOOD
-        + '[solve]\nnodes = 51\nmethod = "increment"\nincrements = 7\narc = [-3, 0]\nbetween = [0.25, 0.5]\n'
-    )
+    text = GOOD + '[solve]\nnodes = 51\nmethod = "increment"\nincrements = 7\narc = [-3, 0]\nbetween = [0.25, 0.5]\n'
     options = parse_case(text).options
     assert options.keywords() == {
         "nodes": 51,
@@ -304,9 +299,7 @@ nodes = 3
 
 
 def test_message_names_file_and_line() -> None:
-    with pytest.raises(
-        InputError, match=r"case\.toml, line 8: friction: must not be negative, not -1"
-    ) as caught:
+    with pytest.raises(InputError, match=r"case\.toml, line 8: friction: must not be negative, not -1") as caught:
         parse_case(replaced("friction = 0.3", "friction = -1"), "case.toml")
     assert "\n" not in str(caught.value)
 

@@ -32,9 +32,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """The solver is replaced by a result made by hand; what it was called with is recorded."""
     calls: list[dict[str, Any]] = []
 
-    def solve(
-        problem: object, history: object, progress: Callable[[float, int], None], **options: Any
-    ) -> object:
+    def solve(problem: object, history: object, progress: Callable[[float, int], None], **options: Any) -> object:
         calls.append(options)
         progress(0.5, 3)
         progress(3.0, 3)
@@ -47,9 +45,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 @pytest.fixture
 def lost(monkeypatch: pytest.MonkeyPatch) -> NoEquilibriumError:
     """The solver loses the load in the third step."""
-    error = NoEquilibriumError(
-        "the pin slides away at 40 % of step 4", 3, 0.4, {}, sample_result(complete=False)
-    )
+    error = NoEquilibriumError("the pin slides away at 40 % of step 4", 3, 0.4, {}, sample_result(complete=False))
 
     def solve(*_: object, **__: object) -> object:
         raise error
@@ -126,9 +122,7 @@ def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], case: Pa
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_run_prints_a_line_for_each_state(
-    solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run"]) == 0
     assert solved == [builtin_case().options.keywords()]
     captured = capsys.readouterr()

@@ -219,9 +219,7 @@ def test_pin_body_force(kappa):
     normal = np.exp(1j * angle)
     inner = np.sum(problem.traction(small * normal, -normal)) * small * 2.0 * PI / 2000
     assert inner == pytest.approx(-problem.body * PI * (RADIUS**2 - small**2), abs=1e-12)
-    move, turn, rest = rigid_part(
-        problem.displacement(z) - printed("body N", THETA, kappa) * np.exp(1j * THETA), z
-    )
+    move, turn, rest = rigid_part(problem.displacement(z) - printed("body N", THETA, kappa) * np.exp(1j * THETA), z)
     assert rest < 1e-14
     assert turn == pytest.approx(0.0, abs=1e-14)
     assert move.imag == pytest.approx(0.0, abs=1e-14)
@@ -272,14 +270,10 @@ def test_plate(kappa, name, force):
     angle = (np.arange(4000) + 0.5) * 2.0 * PI / 4000
     normal = np.exp(1j * angle)
     for r in (3.0, 50.0):
-        assert np.sum(problem.traction(r * normal, normal)) * r * 2.0 * PI / 4000 == pytest.approx(
-            -force, abs=1e-12
-        )
+        assert np.sum(problem.traction(r * normal, normal)) * r * 2.0 * PI / 4000 == pytest.approx(-force, abs=1e-12)
     far = [np.abs(problem.traction(r * normal, normal)).max() for r in (1e3, 2e3)]
     assert math.log2(far[0] / far[1]) == pytest.approx(1.0, abs=1e-2)
-    move, turn, rest = rigid_part(
-        problem.displacement(z) - printed(name, THETA, kappa) * np.exp(1j * THETA), z
-    )
+    move, turn, rest = rigid_part(problem.displacement(z) - printed(name, THETA, kappa) * np.exp(1j * THETA), z)
     assert rest < 1e-14
     assert turn == pytest.approx(0.0, abs=1e-14)
     assert move == pytest.approx(-force * kappa * math.log(RADIUS) / (PI * (1.0 + kappa)), abs=1e-14)
@@ -328,9 +322,7 @@ def test_compiled_kernels_are_the_ones_without_resultant_terms(pair):
     for theta in THETA[::7]:
         direct, cross = kernels.log_kernels(theta, ratio)
         rN, rT, tN, tT = displacement_kernels(pair, 0.0, np.array([theta]))
-        assert direct * pair.beta_star == pytest.approx(
-            rN[0] + constant, rel=1e-12, abs=1e-13 * pair.beta_star
-        )
+        assert direct * pair.beta_star == pytest.approx(rN[0] + constant, rel=1e-12, abs=1e-13 * pair.beta_star)
         assert cross * pair.beta_star == pytest.approx(rT[0], rel=1e-12, abs=1e-13 * pair.beta_star)
         assert cross * pair.beta_star == pytest.approx(tN[0], rel=1e-12, abs=1e-13 * pair.beta_star)
         assert -direct * pair.beta_star == pytest.approx(tT[0], rel=1e-12, abs=1e-13 * pair.beta_star)

@@ -18,9 +18,7 @@ def test_trig_moments_against_mpmath(width):
     left, right = grid.knots()
     cosine, sine = grid.trig_moments()
     for j in range(grid.size):
-        node, a, b = (
-            mpmath.mpf(v) for v in (grid.theta[j], grid.theta[j] - left[j], right[j] - grid.theta[j])
-        )
+        node, a, b = (mpmath.mpf(v) for v in (grid.theta[j], grid.theta[j] - left[j], right[j] - grid.theta[j]))
         for got, wave in ((cosine[j], mpmath.cos), (sine[j], mpmath.sin)):
             exact = mpmath.mpf(0)
             if b > 0:

@@ -24,8 +24,7 @@ def cattaneo_mindlin_differences(pair, load_parameter, nodes):
         # the traction on the pin opposes Q and theta runs along +x at the bottom
         shear = -analytic.cattaneo_mindlin_shear(x, half, peak, FRICTION, now, most, branch)
         differences.append(
-            (state.grid.weights @ np.abs(state.shear - shear))
-            / (FRICTION * state.grid.weights @ state.pressure)
+            (state.grid.weights @ np.abs(state.shear - shear)) / (FRICTION * state.grid.weights @ state.pressure)
         )
     start, stop = result[1].stick[0]
     return differences, 0.5 * (stop - start) / half, result[0].peak_pressure / peak - 1.0

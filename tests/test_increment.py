@@ -14,9 +14,7 @@ def test_tends_to_the_path_at_first_order(titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     exact = solve(problem, [{"P": 1.0}], nodes=201, arc=ARC)[-1]
     counts = [20, 40, 80, 160]
-    runs = [
-        solve(problem, [{"P": 1.0}], nodes=201, arc=ARC, method="increment", increments=m)[-1] for m in counts
-    ]
+    runs = [solve(problem, [{"P": 1.0}], nodes=201, arc=ARC, method="increment", increments=m)[-1] for m in counts]
     errors = [abs(state.peak_pressure - exact.peak_pressure) for state in runs]
     order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert 0.9 < order < 1.6

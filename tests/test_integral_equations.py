@@ -37,9 +37,7 @@ def displacements(problem, grid, N, T):
     pair, n = problem.pair, grid.size
     left, right = grid.knots()
     direct, cross = np.empty((2, n, n))
-    kernels.fill_log(
-        grid.theta, left, right, False, grid.closed, pair.alpha_star / pair.beta_star, direct, cross
-    )
+    kernels.fill_log(grid.theta, left, right, False, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
     cosine, sine = grid.trig_moments()
     c, s = np.cos(grid.theta), np.sin(grid.theta)
     C, S = np.outer(c, cosine) + np.outer(s, sine), np.outer(s, cosine) - np.outer(c, sine)
@@ -123,12 +121,7 @@ def manufactured_errors(problem, grid, start, stop):
     remote_r = plate * (0.5 * (sxx + syy) + (sxx - syy) * np.cos(2.0 * theta))  # (42)
     remote_t = -plate * (sxx - syy) * np.sin(2.0 * theta)
     cos, sin = np.cos(theta), np.sin(theta)
-    gap = (
-        problem.clearance / length * (1.0 + sin)
-        - cx * cos
-        + delta * sin
-        + (radial + remote_r) / pair.beta_star
-    )
+    gap = problem.clearance / length * (1.0 + sin) - cx * cos + delta * sin + (radial + remote_r) / pair.beta_star
     slip = omega - delta * cos - cx * sin - (tangential + remote_t) / pair.beta_star
     r46, r47 = residuals(
         problem, force, grid, N * force / radius, T * force / radius, slip * length, omega * length / radius,
@@ -144,9 +137,7 @@ def manufactured_errors(problem, grid, start, stop):
 def test_manufactured_tractions(pair, pin_load):
     problem = Problem(pair, 0.02, 1.5e-5, 0.4, pin_load)
     start, stop = -2.6, -0.3
-    errors = np.array(
-        [manufactured_errors(problem, graded(start, stop, n), start, stop) for n in (61, 121, 241)]
-    )
+    errors = np.array([manufactured_errors(problem, graded(start, stop, n), start, stop) for n in (61, 121, 241)])
     assert np.all(errors[-1] < 1e-3)
     assert rate(errors[:, 0]) == pytest.approx(2.0, abs=0.15)
     assert rate(errors[:, 1]) == pytest.approx(2.0, abs=0.15)
@@ -154,9 +145,7 @@ def test_manufactured_tractions(pair, pin_load):
 
 def test_manufactured_tractions_all_round():
     problem = Problem(PAIRS[1], 0.02, -1.5e-5, 0.4)
-    errors = np.array(
-        [manufactured_errors(problem, Grid.circle(n, -math.pi), -2.9, 2.6) for n in (100, 200, 400)]
-    )
+    errors = np.array([manufactured_errors(problem, Grid.circle(n, -math.pi), -2.9, 2.6) for n in (100, 200, 400)])
     assert np.all(errors[-1] < 1e-3)
     assert np.all([rate(column) == pytest.approx(2.0, abs=0.15) for column in errors.T])
 

@@ -50,12 +50,7 @@ def graded(function: Kernel, start: float, stop: float) -> float:
     width = stop - start
     total = 0.0
     for a, b in pairwise(share):
-        total += (
-            0.5
-            * (b - a)
-            * width
-            * np.dot(WEIGHT, function(start + width * (a + 0.5 * (b - a) * (1.0 + POINT))))
-        )
+        total += 0.5 * (b - a) * width * np.dot(WEIGHT, function(start + width * (a + 0.5 * (b - a) * (1.0 + POINT))))
     return float(total)
 
 
@@ -143,15 +138,11 @@ def test_clausen_is_odd_and_periodic():
 # --- kernels and antiderivatives --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "call", [kernels.log_kernels, python(kernels.log_kernels)], ids=["compiled", "python"]
-)
+@pytest.mark.parametrize("call", [kernels.log_kernels, python(kernels.log_kernels)], ids=["compiled", "python"])
 def test_log_kernels_against_their_definition(call):
     for x in (-7.0, -4.0, -1e-3, 1e-6, 0.4, 2.0, 3.2, 6.2, 6.4, 9.0):
         one = np.array([x])
-        assert call(x, RATIO) == pytest.approx(
-            (direct_kernel(one)[0], cross_kernel(one)[0]), rel=1e-12, abs=1e-13
-        )
+        assert call(x, RATIO) == pytest.approx((direct_kernel(one)[0], cross_kernel(one)[0]), rel=1e-12, abs=1e-13)
 
 
 @pytest.mark.parametrize("call", [kernels.log_antiderivatives, python(kernels.log_antiderivatives)])
@@ -186,9 +177,7 @@ HATS = [(1.0, 1.0), (0.0, 1.0), (1.0, 0.0), (1.0, 0.3), (0.05, 1.0)]
 def test_hat_log_against_graded_quadrature(n, shape):
     h = 2.0 * math.pi / n
     h_left, h_right = shape[0] * h, shape[1] * h
-    offsets = np.unique(
-        np.concatenate([np.arange(-10, 11), [0.37, -2.5, 7.9, 8.3, 9.01], [n // 3, -n // 3, n // 2]])
-    )
+    offsets = np.unique(np.concatenate([np.arange(-10, 11), [0.37, -2.5, 7.9, 8.3, 9.01], [n // 3, -n // 3, n // 2]]))
     largest = naive_hat(direct_kernel, 0.0, h_left, h_right)
     assert largest > 0.0
     for offset in offsets:
@@ -223,9 +212,7 @@ def test_hat_log_against_mpmath():
 def test_plain_python_hats_agree_with_compiled_ones(function):
     widths = (0.01, 0.02) if function is kernels.hat_log else (0.02,)
     for u in (-3.0, -0.1, -0.01, 0.0, 0.02, 0.5, math.pi):
-        assert python(function)(u, *widths, RATIO) == pytest.approx(
-            function(u, *widths, RATIO), rel=1e-12, abs=1e-15
-        )
+        assert python(function)(u, *widths, RATIO) == pytest.approx(function(u, *widths, RATIO), rel=1e-12, abs=1e-15)
 
 
 def test_hats_wider_than_half_a_turn():
@@ -305,9 +292,7 @@ def test_fills_against_naive_quadrature(grid):
                 assert pv[i, j] == pytest.approx(naive_cauchy(u, a, b), abs=1e-10)
 
 
-@pytest.mark.parametrize(
-    "grid", [Grid.arc(-2.5, 0.4, 12), Grid.circle(12), Grid(graded_nodes(12, -3.0, 0.0))]
-)
+@pytest.mark.parametrize("grid", [Grid.arc(-2.5, 0.4, 12), Grid.circle(12), Grid(graded_nodes(12, -3.0, 0.0))])
 @pytest.mark.parametrize("uniform", [True, False])
 def test_plain_python_fills_agree_with_compiled_ones(grid, uniform):
     if uniform and np.ptp(np.diff(grid.theta)) > 1e-9:

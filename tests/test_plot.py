@@ -15,11 +15,7 @@ from fastpin.problem import Problem
 
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
-    return [
-        line.get_xydata()
-        for line in panel.lines
-        if len(line.get_xdata()) > 2 and line.get_lw() > thicker_than
-    ]
+    return [line.get_xydata() for line in panel.lines if len(line.get_xdata()) > 2 and line.get_lw() > thicker_than]
 
 
 def labels(figure: mpl.figure.Figure) -> list[str]:
@@ -74,9 +70,7 @@ def test_zones_of_each_state() -> None:
     expected = sum(len(state.stick) + len(state.slip_zones) for state in result)
     assert len(bars) == expected
     start, stop = result[0].stick[0]
-    assert any(
-        np.allclose(bar[1:], (np.degrees(start) + 90, np.degrees(stop - start)), atol=1e-6) for bar in bars
-    )
+    assert any(np.allclose(bar[1:], (np.degrees(start) + 90, np.degrees(stop - start)), atol=1e-6) for bar in bars)
 
 
 def test_one_state_is_shaded_where_it_slips() -> None:

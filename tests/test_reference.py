@@ -26,9 +26,7 @@ def half_angle(state):
 @pytest.mark.parametrize("load_parameter", [1e-4, 0.01, 0.1, 0.5, 2.0])
 @pytest.mark.parametrize("pin_load", ["centre", "body"])
 def test_persson(similar, load_parameter, pin_load):
-    state = solve(
-        Problem.from_load_parameter(similar, load_parameter, 0.0, pin_load), [{"P": 1.0}], nodes=400
-    )[-1]
+    state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0, pin_load), [{"P": 1.0}], nodes=400)[-1]
     exact = analytic.persson_half_angle(load_parameter)
     assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, exact), rel=1e-5)
     assert half_angle(state) == pytest.approx(exact, abs=1e-3)
@@ -71,9 +69,7 @@ def test_order_of_edge_and_peak_pressure(similar):
                 nodes=int(nodes),
                 arc=arc,
             )[-1]
-            edge[k] += (state.contact[0][1] - BOTTOM - exact) ** 2 + (
-                state.contact[0][0] - BOTTOM + exact
-            ) ** 2
+            edge[k] += (state.contact[0][1] - BOTTOM - exact) ** 2 + (state.contact[0][0] - BOTTOM + exact) ** 2
             peak[k] += (state.peak_pressure / top - 1.0) ** 2
     edge_order = -np.polyfit(np.log(sizes), 0.5 * np.log(edge), 1)[0]
     peak_order = -np.polyfit(np.log(sizes), 0.5 * np.log(peak), 1)[0]
@@ -153,9 +149,7 @@ def finite_elements(name):
 
 def on_their_nodes(table, half_width):
     """The finite-element nodes themselves, without the rounding of the file."""
-    theta = table["theta"][0] + math.pi / 720.0 * np.round(
-        (table["theta"] - table["theta"][0]) * 720.0 / math.pi
-    )
+    theta = table["theta"][0] + math.pi / 720.0 * np.round((table["theta"] - table["theta"][0]) * 720.0 / math.pi)
     return Grid(theta[np.abs(theta - BOTTOM) < half_width])
 
 
@@ -175,9 +169,7 @@ def differences(state, table, suffix):
 def test_finite_elements_without_friction(similar):
     table = finite_elements("fem_frictionless.csv")
     problem = Problem.from_load_parameter(similar, 0.05, 0.0, "body")
-    normal, _, peak = differences(
-        solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.4))[-1], table, "P"
-    )
+    normal, _, peak = differences(solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.4))[-1], table, "P")
     assert normal < 5e-4
     assert peak < 2e-5
 
@@ -217,9 +209,7 @@ def test_rigid_bodies_are_the_limit_of_stiff_ones(rigid):
     peaks = []
     for stiff in (Material(70e12, 0.3), Material(70e14, 0.3), Material.rigid()):
         pair = MaterialPair(stiff, soft) if rigid == "pin" else MaterialPair(soft, stiff)
-        state = solve(
-            Problem.from_load_parameter(pair, 0.2, 0.3, "centre"), [{"P": 1.0}, {"Q": 0.1}], nodes=121
-        )[-1]
+        state = solve(Problem.from_load_parameter(pair, 0.2, 0.3, "centre"), [{"P": 1.0}, {"Q": 0.1}], nodes=121)[-1]
         peaks.append(state.peak_pressure)
     assert abs(peaks[1] - peaks[2]) < 0.05 * abs(peaks[0] - peaks[2])
     assert peaks[1] == pytest.approx(peaks[2], rel=1e-4)

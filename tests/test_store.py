@@ -50,9 +50,7 @@ def test_every_field_of_a_state_is_stored() -> None:
         sample_result(),
         sample_result(closed=True, complete=False),
         sample_result(problem=Problem(PAIR, 0.01, 0.0, 0.0, "centre", "fixed", 0.004)),
-        sample_result(
-            problem=Problem(MaterialPair(Material.rigid(), MATERIALS["steel"], "stress"), 0.01, -1e-6, 0.4)
-        ),
+        sample_result(problem=Problem(MaterialPair(Material.rigid(), MATERIALS["steel"], "stress"), 0.01, -1e-6, 0.4)),
         sample_result(problem=Problem.from_load_parameter(PAIR, 0.1, 0.4)),
     ],
     ids=["arc", "circle", "fixed", "rigid", "dimensionless"],
