@@ -1,4 +1,4 @@
-"""The integral equations (46), (47) on manufactured states.
+"""The integral equations (46), (47) on manufactured and on solved states.
 
 Their displacements come from the logarithmic kernels: two forms of the theory are held against each other.
 """
@@ -16,6 +16,7 @@ from fastpin.grid import Grid
 from fastpin.integral_equations import cauchy_matrix, residuals
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
+from fastpin.solver import solve
 
 STEEL = MATERIALS["steel"]
 PAIRS = [
@@ -196,3 +197,42 @@ def test_bad_input_names_the_argument():
         with pytest.raises(InputError) as error:
             residuals(problem, *arguments)
         assert error.value.field == field
+
+
+# --- solved states ----------------------------------------------------------------------------------------
+
+
+def test_solved_states_satisfy_the_papers_equations(titanium_in_aluminium):
+    """Log kernels and no derivatives in the solver, Cauchy kernels here: the residuals fall with the mesh."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    first, second = [], []
+    for nodes in (101, 201, 401):
+        state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
+        one, two = residuals(problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation)
+        x = np.abs(state.theta + 0.5 * math.pi)
+        away = (x < 1.05) & (np.abs(x - 0.4356) > 0.085)
+        first.append(np.abs(one[away]).max())
+        second.append(np.abs(two[away]).max())
+    assert rate(first) > 1.5
+    assert rate(second) > 1.5
+    assert first[-1] < 2e-5
+    assert second[-1] < 5e-6
+
+
+def test_solved_states_under_remote_stress_satisfy_them(titanium_in_aluminium):
+    """Q, remote stress and a rotation: the second equation in stick zones, where it holds without derivatives."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.5, "centre")
+    history = [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}]
+    worst = []
+    for nodes in (101, 201, 401):
+        state = solve(problem, history, nodes=nodes)[-1]
+        _, two = residuals(
+            problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation, sxx=0.3, syy=-0.1
+        )
+        (contact,) = state.contact
+        away = (state.theta > contact[0] + 0.15) & (state.theta < contact[1] - 0.15)
+        for border in np.ravel(state.stick):
+            away &= np.abs(state.theta - border) > 0.15
+        worst.append(np.abs(two[away]).max())
+    assert worst[-1] < 1e-4
+    assert rate(worst) > 1.0

@@ -1,0 +1,230 @@
+"""The tables of docs/accuracy.md: errors against closed forms, finite elements and the other solver.
+
+``python scripts/accuracy.py`` prints them as Markdown; it takes some minutes. ``--quick`` uses small grids.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, analytic, integral_equations, solve
+
+BOTTOM = -0.5 * math.pi
+SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
+TITANIUM_ALUMINIUM = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+FIXED_CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}]
+REFERENCE = Path(__file__).parents[1] / "tests" / "reference"
+
+
+def order(sizes: list[int], errors: list[float]) -> float:
+    return float(-np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
+def table(header: list[str], rows: list[list[object]]) -> None:
+    print("\n| " + " | ".join(header) + " |")
+    print("|" + "---|" * len(header))
+    for row in rows:
+        print("| " + " | ".join(f"{v:.3g}" if isinstance(v, float) else str(v) for v in row) + " |")
+
+
+def closed_form(sizes: list[int]) -> None:
+    print("\n## Frictionless: Persson's closed form")
+    print("\nRoot mean square over 16 load parameters between 0.01 and 2 and as many arcs, both edges.")
+    rng = np.random.default_rng(0)
+    cases = [(10.0 ** rng.uniform(-2.0, 0.3), rng.uniform(1.08, 1.3, 2)) for _ in range(16)]
+    edges, peaks = [], []
+    for nodes in sizes:
+        edge, peak = [], []
+        for load_parameter, wide in cases:
+            exact = analytic.persson_half_angle(load_parameter)
+            arc = (BOTTOM - wide[0] * exact, BOTTOM + wide[1] * exact)
+            problem = Problem.from_load_parameter(SIMILAR, load_parameter, 0.0)
+            state = solve(problem, [{"P": 1.0}], nodes=nodes, arc=arc)[-1]
+            edge += [state.contact[0][1] - BOTTOM - exact, state.contact[0][0] - BOTTOM + exact]
+            peak.append(state.peak_pressure / analytic.persson_pressure(0.0, exact) - 1.0)
+        edges.append(math.sqrt(np.mean(np.square(edge))))
+        peaks.append(math.sqrt(np.mean(np.square(peak))))
+    rows = [[n, e, p] for n, e, p in zip(sizes, edges, peaks, strict=True)]
+    table(["nodes", "edge, rad", "peak pressure, relative"], rows)
+    print(f"\nOrders: edge {order(sizes, edges):.2f}, peak pressure {order(sizes, peaks):.2f}.")
+
+
+def with_friction(sizes: list[int]) -> None:
+    print("\n## With friction: the mesh")
+    print(
+        "\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, and similar materials, centre load, held, mu = 0.55,"
+    )
+    print("L_p = 0.5, after P, +0.275, -0.275 (N and T in F/R).")
+    rows = []
+    for nodes in sizes:
+        one = solve(Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=nodes)[-1]
+        two = solve(Problem.from_load_parameter(SIMILAR, 0.5, 0.55, "centre", "fixed"), FIXED_CYCLE[:3], nodes=nodes)[
+            -1
+        ]
+        rows.append(
+            [
+                nodes,
+                f"{one.peak_pressure:.6f}",
+                f"{abs(one.peak_shear):.6f}",
+                f"{0.5 * (one.contact[0][1] - one.contact[0][0]):.5f}",
+                f"{0.5 * (one.stick[0][1] - one.stick[0][0]):.5f}",
+                f"{two.peak_pressure:.6f}",
+                f"{two.peak_shear:.5f}",
+                f"{-two.resultants['M']:.7f}",
+            ]
+        )
+    table(["nodes", "peak N", "peak T", "contact", "stick", "peak N, -Q", "peak T, -Q", "int T, -Q"], rows)
+
+
+def finite_elements() -> None:
+    print("\n## Finite-element tractions")
+    print(
+        "\nOn the finite elements' own nodes; integrals in parts of int N. *Away*: without six nodes on either side of"
+    )
+    print("each contact edge, and of each border between stick and slip, old or new.")
+    rows = []
+    for name, problem, width in (
+        ("frictionless", Problem.from_load_parameter(SIMILAR, 0.05, 0.0, "body"), 1.4),
+        ("monotonic", Problem.from_load_parameter(SIMILAR, 0.1, 0.4, "body"), 1.3),
+        ("fretting_fixed_rotation", Problem.from_load_parameter(SIMILAR, 0.5, 0.55, "centre", "fixed"), 1.0),
+    ):
+        text = (REFERENCE / f"fem_{name}.csv").read_text().splitlines()
+        data = list(csv.DictReader(line for line in text if not line.startswith("#")))
+        values = {key: np.array([float(row[key]) for row in data]) for key in data[0]}
+        h = math.pi / 720.0
+        theta = values["theta"][0] + h * np.round((values["theta"] - values["theta"][0]) / h)
+        inside = np.abs(theta - BOTTOM) < width
+        history = FIXED_CYCLE if name.startswith("fretting") else FIXED_CYCLE[:1]
+        result = solve(problem, history, grid=Grid(theta[inside]))
+        borders: set[int] = set()
+        for state, suffix in zip(result, ("P", "plusQ", "minusQ", "plusQ2"), strict=False):
+            borders |= {int(i) for i in np.flatnonzero(np.diff(state.status))}
+            away = np.ones(theta[inside].size, dtype=bool)
+            for i in borders:
+                away[max(i - 5, 0) : i + 7] = False
+            normal = np.abs(state.pressure - values[f"N_{suffix}"][inside])
+            shear = np.abs(state.shear - values[f"T_{suffix}"][inside])
+            total = values[f"N_{suffix}"].sum()
+            peak = abs(state.pressure.max() / values[f"N_{suffix}"].max() - 1.0)
+            sums = [normal.sum(), normal[away].sum(), shear.sum(), shear[away].sum()]
+            rows.append([f"{name}, {suffix}", *[float(s / total) for s in sums], float(peak)])
+    table(["case, state", "int dN", "away", "int dT", "away", "peak N"], rows)
+
+
+def increments(counts: list[int]) -> None:
+    print("\n## Increments against the path")
+    print("\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, 301 nodes; increments that grow linearly.")
+    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body")
+    arc = (BOTTOM - 1.25, BOTTOM + 1.25)
+    exact = solve(problem, [{"P": 1.0}], nodes=301, arc=arc)[-1]
+    rows, errors = [], []
+    for count in counts:
+        state = solve(problem, [{"P": 1.0}], nodes=301, arc=arc, method="increment", increments=count)[-1]
+        errors.append(abs(state.peak_pressure / exact.peak_pressure - 1.0))
+        shear = float(np.abs(state.shear - exact.shear).sum() / exact.pressure.sum())
+        rows.append([count, f"{state.peak_pressure:.6f}", errors[-1], shear])
+    table(["increments", "peak N", "difference, relative", "int dT / int N"], rows)
+    print(f"\nPath: {exact.peak_pressure:.6f}. Order: {order(counts, errors):.2f}.")
+
+
+def half_plane(nodes: int) -> None:
+    print("\n## Cattaneo-Mindlin")
+    print(f"\nSimilar materials, held, mu = 0.5, Q = 0.6 mu P, {nodes} nodes; int |dT| / int mu N against L_p.")
+    rows, parameters, loading = [], [2.0, 20.0, 200.0, 2000.0], []
+    for parameter in parameters:
+        problem = Problem.from_load_parameter(SIMILAR, parameter, 0.5, "centre", "fixed")
+        result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}], nodes=nodes)
+        half, top = analytic.hertz_half_angle(parameter), analytic.hertz_peak_pressure(parameter)
+        row: list[object] = [f"{parameter:g}", result[0].peak_pressure / top - 1.0]
+        branches = [(0.6, None, "loading"), (-0.6, 0.6, "unloading"), (0.6, 0.6, "reloading")]
+        for state, (now, most, branch) in zip(result[1:], branches, strict=True):
+            x = state.theta - BOTTOM
+            shear = -analytic.cattaneo_mindlin_shear(x, half, top, 0.5, now, most, branch)
+            row.append(float(np.abs(state.shear - shear).sum() / (0.5 * state.pressure.sum())))
+        loading.append(row[2])
+        start, stop = result[1].stick[0]
+        rows.append([*row, f"{0.5 * (stop - start) / half:.5f}"])
+    table(["L_p", "peak N over Hertz - 1", "+Q", "-Q", "+Q again", "c/a"], rows)
+    print(f"\nFalls as L_p^-{order([int(p) for p in parameters], loading):.2f}; c/a tends to {math.sqrt(0.4):.5f}.")
+
+
+def singular_equations(sizes: list[int]) -> None:
+    print("\n## The singular integral equations (46), (47)")
+    print(
+        "\nLargest residual, in units of F beta*, of the case Ti-6Al-4V in aluminium above, with Cauchy matrices built on"
+    )
+    print("their own, inside the contact and away from edges and borders (0.085 rad).")
+    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body")
+    rows, first, second = [], [], []
+    for nodes in sizes:
+        state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
+        one, two = integral_equations.residuals(
+            problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation
+        )
+        x = np.abs(state.theta - BOTTOM)
+        away = (x < 1.05) & (np.abs(x - 0.4356) > 0.085)
+        first.append(float(np.abs(one[away]).max()))
+        second.append(float(np.abs(two[away]).max()))
+        rows.append([nodes, first[-1], second[-1]])
+    table(["nodes", "(46)", "(47)"], rows)
+    print(f"\nOrders: {order(sizes, first):.2f} and {order(sizes, second):.2f}.")
+
+
+def times(sizes: list[int]) -> None:
+    print("\n## Time and memory")
+    print("\nSimilar materials, body load, free rotation, mu = 0.55, L_p = 0.05: the load P and one steady cycle of")
+    print("Q = +-0.275 on an arc of 3.5 rad, each size in a process of its own; LAPACK is one solve with 2n unknowns.")
+    rows = []
+    for nodes in sizes:
+        done = subprocess.run(
+            [sys.executable, __file__, "--one-size", str(nodes)], capture_output=True, text=True, check=True
+        )
+        rows.append([nodes, *done.stdout.split()])
+    table(["nodes", "P, s", "cycle, s", "events", "LAPACK, s", "memory, MB"], rows)
+
+
+def one_size(nodes: int) -> None:
+    problem = Problem.from_load_parameter(SIMILAR, 0.05, 0.55, "body")
+    arc = (BOTTOM - 1.75, BOTTOM + 1.75)
+    solve(problem, FIXED_CYCLE, nodes=41, arc=arc)  # compiles
+    first = solve(problem, FIXED_CYCLE[:1], nodes=nodes, arc=arc)
+    second = solve(problem, FIXED_CYCLE[1:2], start=first)
+    cycle = solve(problem, [{"Q": -0.275}, {"Q": 0.275}], start=second)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    matrix = np.random.default_rng(0).random((2 * nodes, 2 * nodes)) + nodes * np.eye(2 * nodes)
+    began = time.perf_counter()
+    np.linalg.solve(matrix, matrix[0])
+    lapack = time.perf_counter() - began
+    seconds = [result.statistics["seconds"] for result in (first, cycle)]
+    print(f"{seconds[0]:.2f} {seconds[1]:.2f} {cycle.statistics['events']:.0f} {lapack:.3f} {peak:.0f}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="small grids")
+    parser.add_argument("--one-size", type=int, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one_size:
+        one_size(options.one_size)
+        return
+    quick = options.quick
+    closed_form([50, 100, 200] if quick else [100, 200, 400, 800, 1600])
+    with_friction([101, 201] if quick else [101, 201, 401, 801, 1601])
+    finite_elements()
+    increments([20, 40] if quick else [20, 40, 80, 160, 320])
+    half_plane(101 if quick else 401)
+    singular_equations([101, 201] if quick else [101, 201, 401, 801, 1601])
+    times([101] if quick else [401, 1201, 2401, 4096])
+
+
+if __name__ == "__main__":
+    main()

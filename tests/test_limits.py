@@ -1,0 +1,208 @@
+"""The limits of the problem: contacts of any size, contacts lost and found again, interference, remote stress, no equilibrium."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin import (
+    OPEN,
+    ArcError,
+    ConvergenceError,
+    Grid,
+    NoEquilibriumError,
+    Problem,
+    analytic,
+    solve,
+)
+
+BOTTOM = -0.5 * math.pi
+
+
+def half_angle(state):
+    start, stop = state.contact[0]
+    return 0.5 * (stop - start)
+
+
+# --- any size -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("half", [0.01, 0.05, 0.3])
+def test_small_contacts_are_found_and_resolved(similar, half):
+    """Hertz: the half-angle tends to 1/sqrt(pi L_p)."""
+    load_parameter = 1.0 / (math.pi * half**2)
+    problem = Problem.from_load_parameter(similar, load_parameter, 0.4, "centre", "fixed")
+    result = solve(problem, [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}], nodes=201)
+    assert half_angle(result[0]) == pytest.approx(half, rel=0.2 * half + 2e-3)
+    assert result[0].peak_pressure == pytest.approx(analytic.hertz_peak_pressure(load_parameter), rel=half**2 + 1e-4)
+    for state in result:
+        assert np.count_nonzero(state.status != OPEN) > 80
+
+
+def test_neat_fit_is_reached_smoothly(similar):
+    tight, neat = (
+        solve(Problem.from_load_parameter(similar, value, 0.4, "body"), [{"P": 1.0}, {"Q": 0.2}], nodes=121)
+        for value in (1e-6, 0.0)
+    )
+    for one, two in zip(tight, neat, strict=True):
+        assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=1e-4)
+    frictionless = solve(Problem.from_load_parameter(similar, 0.0, 0.0), [{"P": 1.0}], nodes=401)[-1]
+    assert half_angle(frictionless) == pytest.approx(math.radians(84.8279456), abs=1e-3)
+
+
+def test_contact_all_round_under_compression(similar):
+    """A plate squeezed on a pin: uniform pressure on the whole circle, whatever the clearance was."""
+    problem = Problem.from_load_parameter(similar, 0.1, 0.3, "centre")
+    state = solve(problem, [{"sxx": -1.0, "syy": -1.0}], nodes=101)[-1]
+    assert len(state.contact) == 1
+    assert state.contact[0][1] - state.contact[0][0] == pytest.approx(2.0 * math.pi)
+    assert np.ptp(state.pressure) < 1e-9
+    assert np.abs(state.shear).max() < 1e-9
+    # hole: v_r = (1 - k) / 2 * A / 2 and the pair's compliance under uniform pressure, from (9)-(12)
+    share = 0.5  # (kappa_I + 1)/(2 G_I beta*) of like bodies
+    remote = 0.5 * (1.0 - share) * 0.5 * -2.0
+    # int K_rN = [alpha* int S A - beta* int C L - 2 pi k] / 4 pi with int C L = -2 pi, int S A = -pi (alpha* = 0 here)
+    compliance = (2.0 * math.pi - 2.0 * math.pi * share) / (4.0 * math.pi)
+    assert state.pressure.mean() == pytest.approx(-(0.1 + remote) / compliance, rel=1e-3)
+
+
+def test_oval_hole_pinches_the_pin_at_two_places(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "centre")
+    result = solve(problem, [{"sxx": -0.5, "syy": 0.5}, {"P": 0.3}, {"P": 0.0}, {"sxx": 0.0, "syy": 0.0}], nodes=201)
+    assert [len(state.contact) for state in result] == [2, 2, 2, 0]
+    assert result[1].resultants["P"] == pytest.approx(0.3, abs=1e-10)
+    assert np.all(result[-1].pressure == 0.0)
+
+
+# --- lost and found -----------------------------------------------------------------------------------------
+
+
+def test_load_ratio_zero(titanium_in_aluminium):
+    """Unloaded completely the contact is gone and its memory too: the next load is a first load again."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    result = solve(problem, [{"P": 1.0}, {"P": 0.0}, {"P": 1.0}, {"P": 0.0}, {"P": 1.0}], nodes=151)
+    assert [state.in_contact for state in result] == [True, False, True, False, True]
+    assert np.all(result[1].shear == 0.0)
+    assert result[1].gap.min() >= 0.0
+    for state in result[2::2]:
+        assert np.abs(state.shear - result[0].shear).max() < 1e-10
+    assert result[4].dissipation > result[2].dissipation > result[0].dissipation
+
+
+def test_almost_complete_unloading_keeps_the_memory(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    result = solve(problem, [{"P": 1.0}, {"P": 1e-4}, {"P": 1.0}], nodes=401)
+    assert result[1].in_contact
+    assert result[1].resultants["P"] == pytest.approx(1e-4, rel=1e-9)
+    assert result[2].peak_pressure == pytest.approx(result[0].peak_pressure, rel=1e-3)
+
+
+def test_reversed_load_crosses_the_clearance(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    down, up = solve(problem, [{"P": 1.0}, {"P": -1.0}], nodes=161)
+    assert up.dy == pytest.approx(0.2 - down.dy, abs=1e-3)
+    assert np.mean(up.contact[0]) % (2.0 * math.pi) == pytest.approx(0.5 * math.pi, abs=1e-3)
+    assert up.peak_pressure == pytest.approx(down.peak_pressure, rel=1e-4)
+
+
+def test_force_that_turns_round_takes_the_contact_along(similar):
+    problem = Problem.from_load_parameter(similar, 0.2, 0.4, "body")
+    result = solve(problem, [{"P": 1.0}, {"P": 0.0, "Q": 1.0}, {"P": -1.0, "Q": 0.0}, {"P": 0.0, "Q": -1.0}], nodes=241)
+    middles = [float(np.mean(state.contact[0])) for state in result]
+    turned = np.unwrap([m - middles[0] for m in middles])
+    assert turned == pytest.approx([0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi], abs=0.25)
+    for state in result:
+        assert state.resultants["P"] == pytest.approx(state.load["P"], abs=1e-9)
+        assert state.resultants["Q"] == pytest.approx(state.load["Q"], abs=1e-9)
+
+
+def test_interference_fit(similar):
+    problem = Problem.from_load_parameter(similar, -0.1, 0.4, "centre")
+    result = solve(problem, [{"P": 0.05}, {"Q": 0.02}, {"P": 2.0}, {"P": 0.0, "Q": 0.0}], nodes=121)
+    assert all(state.contact[0][1] - state.contact[0][0] == pytest.approx(2.0 * math.pi) for state in result[:2])
+    assert len(result[2].contact) == 1
+    assert result[2].contact[0][1] - result[2].contact[0][0] < 2.0 * math.pi
+    # 4 pi / (2 pi) * 0.1 / (1 - k): the press-fit pressure, and round again when the load is gone
+    assert result[-1].pressure.mean() == pytest.approx(0.4, rel=2e-2)
+
+
+# --- no equilibrium -----------------------------------------------------------------------------------------
+
+
+def test_a_moment_beyond_friction_is_lost_where_statics_says(similar):
+    """A small contact carries |M| = P R mu / sqrt(1 + mu^2): the pin climbs the hole and then spins."""
+    problem = Problem.from_load_parameter(similar, 200.0, 0.3, "centre", "free")
+    with pytest.raises(NoEquilibriumError) as caught:
+        solve(problem, [{"P": 1.0}, {"M": 0.1}, {"M": 0.6}], nodes=301)
+    error = caught.value
+    assert error.step == 2
+    assert error.load["M"] == pytest.approx(0.3 / math.hypot(1.0, 0.3), rel=2e-3)
+    assert error.load["M"] == pytest.approx(0.1 + error.fraction * 0.5)
+    assert len(error.result) == 2
+    assert not error.result.complete
+    assert error.result[-1].resultants["M"] == pytest.approx(0.1)
+    assert "M = " in str(error)
+
+
+def test_increments_lose_the_same_load(similar):
+    problem = Problem.from_load_parameter(similar, 2.0, 0.3, "centre", "free")
+    lost = []
+    for method in ("path", "increment"):
+        with pytest.raises((NoEquilibriumError, ConvergenceError)) as caught:
+            solve(problem, [{"P": 1.0}, {"M": 0.6}], nodes=81, method=method, increments=60)
+        lost.append(caught.value.load["M"])
+        assert len(caught.value.result) == 1
+    assert lost[1] == pytest.approx(lost[0], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("history", "step"),
+    [([{"M": 0.1}], 0), ([{"P": 1.0}, {"P": 0.0}, {"M": 0.1}], 2), ([{"P": 1.0, "M": 0.5}], 0)],
+)
+def test_a_moment_that_nothing_holds(similar, history, step):
+    problem = Problem.from_load_parameter(similar, 0.5, 0.3, "centre", "free")
+    with pytest.raises(NoEquilibriumError) as caught:
+        solve(problem, history, nodes=61)
+    assert caught.value.step == step
+    assert len(caught.value.result) == step
+
+
+def test_a_frictionless_pin_carries_no_moment(similar):
+    problem = Problem.from_load_parameter(similar, 0.5, 0.0, "centre", "free")
+    with pytest.raises(NoEquilibriumError):
+        solve(problem, [{"P": 1.0}, {"M": 0.1}], nodes=61)
+
+
+def test_contact_that_leaves_a_given_arc(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    with pytest.raises(ArcError) as caught:
+        solve(problem, [{"P": 0.2}, {"P": 1.0}], nodes=101, arc=(BOTTOM - 0.8, BOTTOM + 0.8))
+    assert caught.value.step == 1
+    assert 0.0 < caught.value.fraction < 1.0
+    assert len(caught.value.result) == 1
+
+
+def test_loads_that_do_nothing(similar):
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    result = solve(problem, [{}, {"P": 1.0}, {"P": 1.0}, {"Q": 0.0}], nodes=61)
+    assert [state.in_contact for state in result] == [False, True, True, True]
+    assert np.array_equal(result[1].shear, result[3].shear)
+
+
+def test_prescribed_rotation_slides_the_pin(similar):
+    """Enough rotation brings full slip: |T| = mu N everywhere, against the rotation."""
+    problem = Problem.from_load_parameter(similar, 0.5, 0.2, "centre", "fixed")
+    state = solve(problem, [{"P": 1.0}, {"rotation": 2.0}], nodes=121)[-1]
+    assert state.rotation == pytest.approx(2.0)
+    assert state.stick == []
+    assert np.allclose(state.shear, -0.2 * state.pressure, atol=1e-12)
+    assert state.resultants["M"] > 0.0
+
+
+def test_grids_can_be_given(similar):
+    problem = Problem.from_load_parameter(similar, 0.5, 0.3, "body")
+    grid = Grid.arc(BOTTOM - 1.0, BOTTOM + 1.0, 77)
+    assert solve(problem, [{"P": 1.0}], grid=grid).grid is grid
+    assert solve(problem, [{"P": 1.0}], nodes=77, arc=(-3.0, 4.0)).grid.closed

@@ -1,0 +1,197 @@
+"""Bad input: one clear sentence that names the field."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin import (
+    MATERIALS,
+    FastpinError,
+    InputError,
+    LoadHistory,
+    Material,
+    MaterialPair,
+    Problem,
+    solve,
+)
+
+STEEL = Material(210e9, 0.3)
+PAIR = MaterialPair(STEEL, STEEL)
+
+
+def problem(**changes):
+    given = {"pair": PAIR, "hole_radius": 0.01, "clearance": 1e-5, "friction": 0.3, **changes}
+    return Problem(**given)
+
+
+def plain(**changes):
+    return Problem.from_load_parameter(PAIR, 0.1, 0.3, **changes)
+
+
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [
+        (lambda: Material(-1.0, 0.3), "E"),
+        (lambda: Material(math.nan, 0.3), "E"),
+        (lambda: Material(0.0, 0.3), "E"),
+        (lambda: Material("70e9", 0.3), "E"),
+        (lambda: Material(1.0, 0.51), "nu"),
+        (lambda: Material(1.0, -0.01), "nu"),
+        (lambda: Material(1.0, math.nan), "nu"),
+        (lambda: MaterialPair(Material.rigid(), Material.rigid()), "plate"),
+        (lambda: MaterialPair(STEEL, STEEL, "planar"), "plane"),
+        (lambda: MaterialPair(STEEL, 70e9), "plate"),
+        (lambda: MaterialPair.from_dundurs(1.2, 0.0, 0.3), "alpha"),
+        (lambda: MaterialPair.from_dundurs(0.3, 0.5, 0.3), "beta"),
+        (lambda: problem(hole_radius=0.0), "hole_radius"),
+        (lambda: problem(hole_radius=-1.0), "hole_radius"),
+        (lambda: problem(clearance=0.02), "clearance"),
+        (lambda: problem(clearance=math.inf), "clearance"),
+        (lambda: problem(friction=-0.1), "friction"),
+        (lambda: problem(pin_load="center"), "pin_load"),
+        (lambda: problem(rotation="locked"), "rotation"),
+        (lambda: problem(pin_load="body", rotation="fixed"), "rotation"),
+        (lambda: problem(hub_radius=0.005), "hub_radius"),
+        (lambda: problem(rotation="fixed", hub_radius=0.02), "hub_radius"),
+        (lambda: problem(pair="steel"), "pair"),
+        (lambda: LoadHistory([]), "history"),
+        (lambda: LoadHistory([{"P": math.nan}]), "P of corner 1"),
+        (lambda: LoadHistory([{"P": 1.0}, {"F": 1.0}]), "F"),
+        (lambda: LoadHistory([1.0]), "history"),
+        (lambda: LoadHistory.monotonic(0, P=1.0), "steps"),
+        (lambda: LoadHistory.cycles({"P": 1.0}, {"Q": 1.0}, 0), "count"),
+        (lambda: LoadHistory.cycles({"P": 1.0}, {"Q": 1.0}, start=0), "start"),
+        (lambda: LoadHistory([{"P": 1.0}]).repeated(0), "count"),
+        (lambda: solve(plain(), [{"P": 1.0}], nodes=4), "nodes"),
+        (lambda: solve(plain(), [{"P": 1.0}], nodes=100.0), "nodes"),
+        (lambda: solve(plain(), [{"P": 1.0}], method="newton"), "method"),
+        (lambda: solve(plain(), [{"P": 1.0}], increments=0), "increments"),
+        (lambda: solve(plain(), [{"P": 1.0}], arc=(1.0, 0.0)), "arc"),
+        (lambda: solve(plain(), [{"P": 1.0}], between=-1), "between"),
+        (lambda: solve(plain(), [{"P": 1.0}], between=[0.5, 1.5]), "between"),
+        (lambda: solve(plain(), []), "history"),
+        (lambda: solve("problem", [{"P": 1.0}]), "problem"),
+        (lambda: solve(plain(pin_load="body"), [{"P": 1.0, "M": 0.1}]), "M"),
+        (lambda: solve(plain(rotation="fixed"), [{"P": 1.0, "M": 0.1}]), "M"),
+        (lambda: solve(plain(), [{"P": 1.0, "rotation": 0.1}]), "rotation"),
+        (lambda: solve(problem(clearance=-1e-5), [{"P": 1.0}], arc=(-2.5, -0.5)), "arc"),
+    ],
+)
+def test_bad_input_names_its_field(make, field):
+    with pytest.raises(InputError) as caught:
+        make()
+    assert caught.value.field == field
+    assert isinstance(caught.value, FastpinError)
+    assert isinstance(caught.value, ValueError)
+    assert "\n" not in str(caught.value)
+    assert len(caught.value.reason.split()) > 4
+
+
+def test_the_papers_restriction_is_explained():
+    with pytest.raises(InputError, match="section 4 of the paper"):
+        problem(pin_load="body", rotation="fixed")
+    with pytest.raises(InputError, match="section 4 of the paper"):
+        solve(plain(pin_load="body"), [{"P": 1.0, "M": 0.1}])
+
+
+def test_a_result_of_another_problem_can_not_be_gone_on_from():
+    result = solve(plain(), [{"P": 1.0}], nodes=31)
+    with pytest.raises(InputError, match="another problem"):
+        solve(plain(pin_load="body"), [{"Q": 0.1}], start=result)
+
+
+# --- histories from files -----------------------------------------------------------------------------------
+
+
+def test_csv_history(tmp_path):
+    path = tmp_path / "loads.csv"
+    path.write_text("# a comment\nP, Q\n1.0,\n,0.2\n\n,-0.2\n", encoding="utf-8")
+    history = LoadHistory.from_csv(path)
+    assert np.array_equal(history.values()[:, :2], [[1.0, 0.0], [1.0, 0.2], [1.0, -0.2]])
+
+
+@pytest.mark.parametrize(
+    ("text", "field", "words"),
+    [
+        ("P,Q\n1,0\n1,nan\n", "Q", "line 3"),
+        ("P,Q\n1,inf\n", "Q", "line 2"),
+        ("P,Q\n1,0\n1,two\n", "Q", "line 3"),
+        ("P,Q\n1\n", "csv", "line 2"),
+        ("P,q\n1,0\n", "q", 'did you mean "Q"'),
+        ("P,P\n1,0\n", "csv", "line 1"),
+        ("P,Q\n", "csv", "no load corners"),
+        ("", "csv", "no load corners"),
+    ],
+)
+def test_bad_csv_names_its_line(tmp_path, text, field, words):
+    path = tmp_path / "loads.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        LoadHistory.from_csv(path)
+    assert caught.value.field == field
+    assert words in str(caught.value)
+
+
+def test_missing_csv():
+    with pytest.raises(InputError, match="can't read"):
+        LoadHistory.from_csv("nowhere/loads.csv")
+
+
+# --- helpers ------------------------------------------------------------------------------------------------
+
+
+def test_history_helpers():
+    assert np.array_equal(LoadHistory.monotonic(4, P=2.0).values()[:, 0], [0.5, 1.0, 1.5, 2.0])
+    cycles = LoadHistory.cycles({"P": 1.0}, {"Q": 0.2}, 2)
+    assert np.array_equal(cycles.values()[:, 1], [0.0, 0.2, -0.2, 0.2, -0.2, 0.2])
+    minus_first = LoadHistory.cycles({"P": 1.0, "Q": 0.1}, {"Q": 0.2}, 1, start=-1, return_to_mean=True)
+    assert np.allclose(minus_first.values()[:, 1], [0.1, -0.1, 0.3, -0.1, 0.1])
+    block = LoadHistory([{"Q": 0.1}, {"Q": -0.1}])
+    whole = LoadHistory([{"P": 1.0}]) + block.repeated(3)
+    assert len(whole) == 7
+    assert np.array_equal(whole.values()[:, 0], np.ones(7))
+    assert np.array_equal(whole[2:].values(initial=whole.values()[1])[0], whole.values()[2])
+
+
+# --- materials ----------------------------------------------------------------------------------------------
+
+
+def test_composite_constants_of_the_papers_pair():
+    pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+    assert pair.dundurs("paper") == pytest.approx((-0.2507, -0.0595), abs=1e-4)
+    assert pair.dundurs("usual") == pytest.approx((0.2507, 0.0595), abs=1e-4)
+    G, G_I = 69e9 / 2.66, 116e9 / 2.64
+    k, k_I = 3.0 - 4.0 * 0.33, 3.0 - 4.0 * 0.32
+    assert pair.alpha_star == pytest.approx((k - 1.0) / G - (k_I - 1.0) / G_I)
+    assert pair.beta_star == pytest.approx((k + 1.0) / (2.0 * G) + (k_I + 1.0) / (2.0 * G_I))
+    assert pair.gamma == pytest.approx(pair.beta_star + 0.5 * pair.alpha_star - 2.0 / G_I)
+    assert pair.gamma_prime - pair.gamma == pytest.approx(4.0 / G_I)
+    assert pair.gamma_body + pair.gamma_body_prime == pytest.approx(pair.gamma + pair.gamma_prime)
+    # 1/(G_I beta*) = (1 + alpha^D)/(kappa_I + 1) * 2 / 2 in the paper's sign
+    assert pair.pin_compliance / pair.beta_star == pytest.approx((1.0 + pair.dundurs("paper")[0]) / (k_I + 1.0))
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+@pytest.mark.parametrize("convention", ["usual", "paper"])
+def test_dundurs_round_trip(plane, convention):
+    pair = MaterialPair(Material(200e9, 0.28), Material(70e9, 0.34), plane)
+    again = MaterialPair.from_dundurs(*pair.dundurs(convention), 0.28, plane, convention, pair.beta_star)
+    assert again.pin.E == pytest.approx(200e9)
+    assert again.plate.E == pytest.approx(70e9)
+    assert again.plate.nu == pytest.approx(0.34)
+
+
+def test_rigid_limits_of_dundurs_pairs():
+    pair = MaterialPair(Material.rigid(), Material(70e9, 0.3))
+    alpha, beta = pair.dundurs()
+    assert alpha == 1.0
+    again = MaterialPair.from_dundurs(alpha, beta, 0.3, beta_star=pair.beta_star)
+    assert again.pin.is_rigid
+    assert again.plate.nu == pytest.approx(0.3)
+    plate = MaterialPair(Material(70e9, 0.3), Material.rigid())
+    back = MaterialPair.from_dundurs(*plate.dundurs(), 0.3, beta_star=plate.beta_star)
+    assert back.plate.is_rigid
+    assert back.pin.E == pytest.approx(70e9)

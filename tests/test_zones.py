@@ -1,0 +1,87 @@
+"""Edges, borders and peaks read between nodes, on made-up tractions whose answers are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin import OPEN, STICK, Grid, Problem, solve, zones
+
+
+def half_circle(theta, start, stop):
+    """sqrt((theta - start)(stop - theta)) inside, 0 outside."""
+    return np.sqrt(np.clip((theta - start) * (stop - theta), 0.0, None))
+
+
+@pytest.mark.parametrize("nodes", [60, 200, 1000])
+def test_square_root_edges_are_exact(nodes):
+    grid = Grid.arc(-2.0, 0.5, nodes)
+    start, stop = -1.7123, 0.2345
+    values = half_circle(grid.theta, start, stop)
+    assert zones.intervals(grid, values > 0.0, values)[0] == pytest.approx((start, stop), abs=1e-9)
+
+
+def test_edges_of_graded_nodes():
+    t = np.linspace(-1.0, 1.0, 300)
+    grid = Grid(1.5 * (t + 0.1 * np.sin(np.pi * t)))
+    values = half_circle(grid.theta, -1.1, 0.9)
+    assert zones.intervals(grid, values > 0.0, values)[0] == pytest.approx((-1.1, 0.9), abs=1e-3)
+
+
+def test_zones_across_the_seam_of_the_circle():
+    grid = Grid.circle(400, start=0.0)
+    values = half_circle(np.where(grid.theta > math.pi, grid.theta - 2.0 * math.pi, grid.theta), -0.5, 0.7)
+    found = zones.intervals(grid, values > 0.0, values)
+    assert len(found) == 1
+    assert found[0] == pytest.approx((2.0 * math.pi - 0.5, 2.0 * math.pi + 0.7), abs=1e-6)
+    full = zones.intervals(grid, np.ones(400, dtype=bool), np.ones(400))
+    assert full == [(0.0, 2.0 * math.pi)]
+    assert zones.intervals(grid, np.zeros(400, dtype=bool), np.zeros(400)) == []
+
+
+def test_several_zones_and_tiny_ones():
+    grid = Grid.arc(0.0, 3.0, 301)
+    values = half_circle(grid.theta, 0.3, 1.1) + half_circle(grid.theta, 1.9, 2.6)
+    values[150] = 0.1  # a zone of one node ends halfway to its neighbours
+    found = zones.intervals(grid, values > 0.0, values)
+    assert np.allclose(found, [(0.3, 1.1), (1.495, 1.505), (1.9, 2.6)], atol=1e-6)
+
+
+def test_slip_zones_are_what_is_left_of_the_contact():
+    grid = Grid.arc(-1.0, 1.0, 201)
+    status = np.full(201, OPEN, dtype=np.int8)
+    status[(grid.theta > -0.8) & (grid.theta < 0.8)] = 1
+    status[(grid.theta > -0.3) & (grid.theta < 0.2)] = STICK
+    status[(grid.theta > 0.2) & (grid.theta < 0.8)] = -1
+    left = zones.complement(grid, [(-0.8, 0.8)], [(-0.3, 0.2)], status)
+    assert left == [(-0.8, -0.3, 1), (0.2, 0.8, -1)]
+    status[(grid.theta > -0.305) & (grid.theta < 0.205)] = 1
+    assert [zone[2] for zone in zones.complement(grid, [(-0.8, 0.8)], [], status)] == [1, -1]
+
+
+def test_peaks_between_nodes():
+    grid = Grid.arc(-1.0, 1.0, 60)
+    smooth = 2.0 - 3.0 * (grid.theta - 0.1234) ** 2
+    assert zones.smooth_peak(grid, smooth) == pytest.approx((2.0, 0.1234), abs=1e-12)
+    kink = 2.0 - np.abs(grid.theta - grid.theta[20])
+    assert zones.smooth_peak(grid, kink) == (2.0, grid.theta[20])
+
+
+def test_the_parts_of_a_solved_contact_fit_together(similar):
+    problem = Problem.from_load_parameter(similar, 0.05, 0.55, "body")
+    for state in solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=301, between=4):
+        (contact,) = state.contact
+        parts = sorted([*state.stick, *[zone[:2] for zone in state.slip_zones]])
+        assert parts[0][0] == pytest.approx(contact[0])
+        assert parts[-1][1] == pytest.approx(contact[1])
+        for (_, end), (begin, _) in zip(parts, parts[1:], strict=False):
+            assert begin == pytest.approx(end, abs=1e-8)
+        for start, stop, sign in state.slip_zones:
+            middle = int(np.argmin(np.abs(state.theta - 0.5 * (start + stop))))
+            assert state.status[middle] in (sign, STICK)
+            assert sign * state.shear[middle] <= 0.0
+        assert abs(state.peak_shear) >= np.abs(state.shear).max()
+        assert abs(state.peak_shear) < 1.02 * np.abs(state.shear).max()
+        assert contact[0] <= state.peak_shear_angle <= contact[1]
