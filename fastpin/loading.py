@@ -204,8 +204,9 @@ def _checked(given: np.ndarray) -> np.ndarray:
 def _load_index(name: object, where: str) -> int:
     if name in LOADS:
         return LOADS.index(str(name))
-    close = difflib.get_close_matches(str(name), LOADS, n=1)
-    hint = f', did you mean "{close[0]}"?' if close else ""
+    folded = {load.lower(): load for load in LOADS}
+    close = difflib.get_close_matches(str(name).lower(), folded, n=1)
+    hint = f', did you mean "{folded[close[0]]}"?' if close else ""
     raise InputError(str(name), f"{where}: unknown load; the loads are {', '.join(LOADS)}{hint}")
 
 

@@ -7,6 +7,8 @@ grow along a history and a step depends on nothing but the configuration at its 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.linalg import blas
 
@@ -71,8 +73,10 @@ class PathStep:
     def exchanges(self) -> int:
         return int(self._counts[tableau.EXCHANGES])
 
-    def follow(self, stop: float) -> Configuration:
+    def follow(self, stop: float, report: Callable[[float], None] | None = None) -> Configuration:
         """Follow the step up to the fraction `stop` and return the configuration there.
+
+        `report` is called with the fraction reached whenever a block of updates has been applied.
 
         Raises
         ------
@@ -93,6 +97,8 @@ class PathStep:
             )  # fmt: skip
             if code == tableau.FULL:
                 self._apply_updates()
+                if report is not None:
+                    report(self.fraction)
             elif code == tableau.REBUILD:
                 self._rebuild(checkpoint)
             elif code == tableau.REACHED:

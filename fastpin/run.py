@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fastpin import tableau
-from fastpin.collocation import MAX_RESIDUAL, Configuration, P, Q, System
+from fastpin.collocation import MAX_RESIDUAL, Configuration, M, P, Q, System
 from fastpin.contact import first_contact, released, unloaded
 from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
@@ -156,9 +156,10 @@ class Run:
     def _follow_piece(self, piece: _Piece, step: int, steps: int) -> None:
         """One straight piece of the history, from stop to stop."""
         inside = self.fractions[(self.fractions > piece.begin) & (self.fractions <= piece.end)]
-        reached = piece.begin
+        reached = stop = piece.begin
         path: PathStep | None = None
         try:
+            self._check_moment(piece)
             for stop in np.unique(np.r_[inside, piece.end]):
                 load = piece.load_at(stop)
                 parts = _equal_parts(max(1, round(self.increments * (stop - reached))))
@@ -168,13 +169,13 @@ class Run:
                     reached += touched * (stop - reached)
                 if self.method == "increment":
                     if not np.array_equal(self.now.load, load):
-                        self._increments(load, parts)
+                        self._increments(load, parts, self._reporter(step, reached, float(stop), steps))
                 elif not np.array_equal(self.now.load, load):
                     if path is None:
                         path = PathStep(self.system, self.now, piece.after)
                         origin = reached
                     part = 1.0 if stop == piece.end else (stop - origin) / (piece.end - origin)
-                    self.now = path.follow(part)
+                    self.now = path.follow(part, self._reporter(step, origin, piece.end, steps))
                     self.now.load = load
                 self._release_if_unloaded(load)
                 reached = float(stop)
@@ -189,7 +190,7 @@ class Run:
                 if piece.end in inside:
                     self._keep(step, piece.end)
             else:
-                fraction = piece.end if path is None else origin + lost.fraction * (piece.end - origin)
+                fraction = reached if path is None else origin + lost.fraction * (piece.end - origin)
                 raise _solve_error(lost.code, fraction, int(self.now.closed.sum())) from None
         except SolveError as error:
             error.fraction = reached + error.fraction * (stop - reached)  # so far relative to the way to this stop
@@ -201,6 +202,18 @@ class Run:
                 self.statistics["exchanges"] += path.exchanges
                 self.statistics["rebuilds"] += path.rebuilds
 
+    def _check_moment(self, piece: _Piece) -> None:
+        problem = self.system.problem
+        if problem.frictionless and problem.rotation == "free" and piece.after[M] != 0.0:
+            raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
+
+    def _reporter(self, step: int, begin: float, end: float, steps: int) -> Callable[[float], None] | None:
+        """What reports the fraction of a way from `begin` to `end` of a step as progress of the history."""
+        if self.progress is None:
+            return None
+        progress = self.progress
+        return lambda part: progress(step + begin + part * (end - begin), steps)
+
     def _touch_down(self, load: np.ndarray) -> float:
         """Bring the floating pin into contact on the way to `load`; returns the fraction of the way at which it is.
 
@@ -210,7 +223,7 @@ class Run:
         self.touched |= self.now.closed
         return fraction
 
-    def _increments(self, load: np.ndarray, parts: np.ndarray) -> None:
+    def _increments(self, load: np.ndarray, parts: np.ndarray, report: Callable[[float], None] | None) -> None:
         """Implicit increments from the present load to `load`, at the given parts of the way (the last one is 1)."""
         before, done = self.now.load, 0.0
         try:
@@ -218,6 +231,8 @@ class Run:
                 target = load if part == 1.0 else before + part * (load - before)
                 self._increment(self.now, target, MOST_HALVINGS)
                 done = float(part)
+                if report is not None:
+                    report(done)
         except SolveError as error:
             error.fraction = done
             raise

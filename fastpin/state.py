@@ -90,7 +90,8 @@ class State:
 
         Nodes that stick but have come to |T| = mu N at this very load count as slipping.
         """
-        return zones.intervals(self.grid, self._sticking, self._reserve, self.contact)
+        closed = self.status != OPEN
+        return zones.stick_intervals(self.grid, self._sticking, self._reserve, closed, self.contact)
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:

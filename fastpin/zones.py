@@ -34,25 +34,40 @@ def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
     return parts
 
 
-def intervals(
-    grid: Grid, mask: np.ndarray, quantity: np.ndarray, within: list[Interval] | None = None
-) -> list[Interval]:
-    """Intervals of the zones in `mask`, at whose ends `quantity` (>= 0 inside) falls to zero.
-
-    Where intervals `within` are given, each zone is cut at the ends of the one that holds its middle.
-    """
+def intervals(grid: Grid, mask: np.ndarray, quantity: np.ndarray) -> list[Interval]:
+    """Intervals of the zones in `mask`, at whose ends `quantity` (>= 0 inside) falls to zero."""
     if mask.all() and grid.closed:
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
+    left, right = grid.knots()
     zones = []
     for run in runs(grid, mask):
         theta = _unrolled(grid, run)
-        left, right = grid.knots()
         start = _edge(theta, quantity[run], theta[0] - (grid.theta[run[0]] - left[run[0]]))
         stop = _edge(theta[::-1], quantity[run][::-1], theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
-        for outer in within or []:
-            if outer[0] <= 0.5 * (start + stop) <= outer[1]:
-                start, stop = max(start, outer[0]), min(stop, outer[1])
+        zones.append((start, stop))
+    return zones
+
+
+def stick_intervals(
+    grid: Grid, sticking: np.ndarray, reserve: np.ndarray, closed: np.ndarray, contact: list[Interval]
+) -> list[Interval]:
+    """Intervals of the stick zones, where `reserve` = mu N - |T| falls to zero or the contact ends.
+
+    `contact` are the intervals of the `closed` nodes. A zone that reaches the outermost closed node ends with the
+    contact: a slip zone without a node is none.
+    """
+    if closed.all() and grid.closed:
+        return intervals(grid, sticking, reserve)
+    zones = []
+    outer = list(zip(runs(grid, closed), contact, strict=True))
+    for run, (start, stop) in zip(runs(grid, sticking), intervals(grid, sticking, reserve), strict=True):
+        for nodes, (first, last) in outer:
+            if run[0] in nodes:
+                turn = 2.0 * math.pi * round((0.5 * (first + last) - 0.5 * (start + stop)) / (2.0 * math.pi))
+                start = first if run[0] == nodes[0] else max(start + turn, first)
+                stop = last if run[-1] == nodes[-1] else min(stop + turn, last)
+                break
         zones.append((start, stop))
     return zones
 
@@ -83,9 +98,9 @@ def _edge(theta: np.ndarray, quantity: np.ndarray, outside: float) -> float:
         return halfway  # kinks left by earlier borders: no shape to extrapolate
     places = np.roots(parabola)
     places = places[np.isreal(places)].real
-    low, high = (outside - float(theta[0])) / spacing, 1.0
-    places = places[(places >= low) & (places <= high)]
-    return float(theta[0]) + spacing * float(places.max()) if places.size else halfway
+    low = (outside - float(theta[0])) / spacing
+    places = places[(places >= 1.25 * low) & (places <= 1.0)]
+    return float(theta[0]) + spacing * max(float(places.max()), low) if places.size else halfway
 
 
 def complement(
@@ -94,6 +109,12 @@ def complement(
     """Parts of the contact intervals outside the stick intervals, with the sign of the slip of their nodes."""
     zones = []
     for start, stop in contact:
+        if stop - start >= 2.0 * math.pi - 1e-9 and stick:  # contact all round: begin with a stick zone
+            start = stick[0][0]
+            stop = start + 2.0 * math.pi
+            stick = [
+                (a - t, b - t) for a, b in stick for t in [2.0 * math.pi * math.floor((a - start) / (2.0 * math.pi))]
+            ]
         inside = sorted((a, b) for a, b in stick if a >= start - 1e-12 and b <= stop + 1e-12)
         ends = [start, *[end for interval in inside for end in interval], stop]
         for a, b in zip(ends[::2], ends[1::2], strict=True):

@@ -61,6 +61,21 @@ def test_slip_zones_are_what_is_left_of_the_contact():
     assert [zone[2] for zone in zones.complement(grid, [(-0.8, 0.8)], [], status)] == [1, -1]
 
 
+def test_stick_zones_of_a_contact_all_round():
+    grid = Grid.circle(100, start=0.0)
+    status = np.ones(100, dtype=np.int8)
+    sticking = (grid.theta < 1.0) | (grid.theta > 5.0)
+    status[sticking] = STICK
+    reserve = np.where(sticking, 1.0, 0.0)
+    closed = np.ones(100, dtype=bool)
+    contact = zones.intervals(grid, closed, np.ones(100))
+    stick = zones.stick_intervals(grid, sticking, reserve, closed, contact)
+    assert len(stick) == 1
+    assert stick[0] == pytest.approx((5.0, 2.0 * math.pi + 1.0), abs=0.07)
+    (slip,) = zones.complement(grid, contact, stick, status)
+    assert slip == (stick[0][1], stick[0][0] + 2.0 * math.pi, 1)
+
+
 def test_peaks_between_nodes():
     grid = Grid.arc(-1.0, 1.0, 60)
     smooth = 2.0 - 3.0 * (grid.theta - 0.1234) ** 2
