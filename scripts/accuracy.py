@@ -63,7 +63,7 @@ def with_friction(sizes: list[int]) -> None:
     print(
         "\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, and similar materials, centre load, held, mu = 0.55,"
     )
-    print("L_p = 0.5, after P, +0.275, -0.275 (N and T in F/R).")
+    print("L_p = 0.5, after P, +0.275, -0.275. N and T in F/R.")
     rows = []
     for nodes in sizes:
         one = solve(Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=nodes)[-1]
@@ -159,9 +159,7 @@ def half_plane(nodes: int) -> None:
 
 def singular_equations(sizes: list[int]) -> None:
     print("\n## The singular integral equations (46), (47)")
-    print(
-        "\nLargest residual, in units of F beta*, of the case Ti-6Al-4V in aluminium above, with Cauchy matrices built on"
-    )
+    print("\nLargest residual, in units of F beta*, of Ti-6Al-4V in aluminium as above, with Cauchy matrices built on")
     print("their own, inside the contact and away from edges and borders (0.085 rad).")
     problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body")
     rows, first, second = [], [], []

@@ -88,9 +88,9 @@ def test_check_says_what_was_understood(case: Path, capsys: pytest.CaptureFixtur
     rows = [line.split() for line in out.splitlines()]
     assert rows[-4:] == [
         ["1", "2.42", "0", "0.1"],
-        ["2", "2.42", "0.484", "0.0981"],
-        ["3", "2.42", "-0.484", "0.0981"],
-        ["4", "2.42", "0.484", "0.0981"],
+        ["2", "2.42", "0.726", "0.09582"],
+        ["3", "2.42", "-0.726", "0.09582"],
+        ["4", "2.42", "0.726", "0.09582"],
     ]
 
 

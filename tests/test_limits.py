@@ -1,4 +1,4 @@
-"""The limits of the problem: contacts of any size, contacts lost and found again, interference, remote stress, no equilibrium."""
+"""The limits: contacts of any size, lost and found again, interference, remote stress, no equilibrium."""
 
 from __future__ import annotations
 

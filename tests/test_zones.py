@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -91,7 +92,7 @@ def test_the_parts_of_a_solved_contact_fit_together(similar):
         parts = sorted([*state.stick, *[zone[:2] for zone in state.slip_zones]])
         assert parts[0][0] == pytest.approx(contact[0])
         assert parts[-1][1] == pytest.approx(contact[1])
-        for (_, end), (begin, _) in zip(parts, parts[1:], strict=False):
+        for (_, end), (begin, _) in pairwise(parts):
             assert begin == pytest.approx(end, abs=1e-8)
         for start, stop, sign in state.slip_zones:
             middle = int(np.argmin(np.abs(state.theta - 0.5 * (start + stop))))

@@ -1,0 +1,316 @@
+"""TOML text, read so that every fault is reported with its line, and all of them at once.
+
+The parser of the standard library stops at the first fault and does not tell where a value stands. Here the lines of
+all keys are found beside it, and reading goes on after a faulty line.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from fastpin.errors import InputError
+
+Place = tuple[str | int, ...]  # where a value stands in the text: ("load", 0, "P")
+T = TypeVar("T")
+
+_FAULTY = object()  # stands for a value that could not be parsed: reported already, and not missing
+
+
+class CaseText:
+    """The tables of a TOML text, and all faults found in it so far.
+
+    Attributes
+    ----------
+    faults : list of (int, str)
+        Line, from 1, and one sentence for each. Line 0 is the whole text.
+    readable : bool
+        Whether there are tables to look at; they hold everything but the values on faulty lines.
+    root : Section
+        The keys before the first section, and the sections.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.faults: list[tuple[int, str]] = []
+        self.readable = True
+        lines = text.replace("\r\n", "\n").split("\n")
+        self._lines, keys, starts = _locate(lines)
+        self.root = Section(self, (), self._parse(lines, keys, starts))
+
+    def _parse(self, lines: list[str], keys: dict[int, Place], starts: dict[int, int]) -> dict[str, Any]:
+        """Parse; after a faulty ``key = value`` line go on without it, to report the other faults as well."""
+        faulty: list[Place] = []
+        while True:
+            try:
+                tables = tomllib.loads("\n".join(lines))
+                break
+            except RecursionError:
+                self._add(0, "values are nested too deeply")
+                self.readable = False
+                return {}
+            except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
+                message, line = _syntax_message(str(error), lines)
+                start = starts.get(line, line)
+                if line != start:
+                    message = f"the value that begins here is not closed, or wrong in line {line}"
+                self._add(start, message)
+                alone = start == line and starts.get(line + 1) != line  # the value ends on its line
+                if start not in keys or not alone or not lines[start - 1]:
+                    self.readable = False
+                    return {}
+                faulty.append(keys[start])
+                lines[start - 1] = ""
+        for place in faulty:
+            _mark_faulty(tables, place)
+        return tables
+
+    def report(self, message: str, *place: str | int) -> None:
+        """Add a fault, on the line of the value at `place` or of the closest thing around it."""
+        around = (place[:length] for length in range(len(place), 0, -1))
+        self._add(next((self._lines[part] for part in around if part in self._lines), 0), message)
+
+    def _add(self, line: int, message: str) -> None:
+        if (line, message) not in self.faults:
+            self.faults.append((line, message))
+
+    def section(self, name: str, required: bool = False) -> Section:
+        """The section [name]; an empty one when it is missing or not a table, which is reported."""
+        table = self.root.value(name)
+        if isinstance(table, dict):
+            return Section(self, (name,), table)
+        if table is not None:
+            self.report(f"{name}: must be a section [{name}], not {shown(table)}", name)
+        elif required and name not in self.root:
+            self.report(f"the section [{name}] is missing", name)
+        return Section(self, (name,), {}, present=False)
+
+    def blocks(self, name: str) -> list[Section]:
+        """All tables of the name: [[name]] blocks, or the one [name]."""
+        value = self.root.value(name)
+        if isinstance(value, dict):
+            return [self.section(name)]
+        tables = enumerate(value) if isinstance(value, list) else ()
+        return [Section(self, (name, index), table) for index, table in tables if isinstance(table, dict)]
+
+
+class Section:
+    """One table of a text. Values come out checked; what is wrong with them is reported on their line."""
+
+    def __init__(self, text: CaseText, place: Place, table: dict[str, Any], present: bool = True) -> None:
+        self.table = table
+        self.present = present
+        self._text = text
+        self._place = place
+
+    @property
+    def name(self) -> str:
+        return str(self._place[0])
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.table
+
+    def report(self, message: str, *key: str) -> None:
+        """Add a fault of a key, or of the section."""
+        self._text.report(message, *self._place, *key)
+
+    def require(self, key: str, hint: str = "") -> None:
+        """Report a key that is missing."""
+        if key not in self:
+            self.report(f"[{self.name}]: {key} is missing{hint}")
+
+    def value(self, key: str) -> Any:
+        """A value as it was parsed; None when it is missing or faulty."""
+        value = self.table.get(key)
+        return None if value is _FAULTY else value
+
+    def checked(self, key: str, check: Callable[..., T], *limits: Any) -> T | None:
+        """``check(key, value, *limits)``; None when the value is missing, or does not pass and is reported."""
+        value = self.value(key)
+        if value is None:
+            return None
+        try:
+            return check(key, value, *limits)
+        except InputError as error:
+            self.report(str(error), key)
+            return None
+
+    def number(self, key: str) -> float | None:
+        return self.checked(key, number)
+
+    def choice(self, key: str, allowed: tuple[str, ...]) -> str | None:
+        """One of `allowed`; the first one when the key is missing."""
+        return self.checked(key, choice, allowed) if key in self else allowed[0]
+
+
+# -- checks of one value: return it, or raise InputError with what the user wrote --------------------------
+
+
+def number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
+    """A finite number."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise InputError(name, f"must be a number, not {shown(value)}")
+    try:
+        converted = float(value)
+    except OverflowError:
+        converted = math.inf
+    if not math.isfinite(converted):
+        raise InputError(name, f"must be a finite number, not {converted}")
+    if not least <= converted <= most:
+        raise InputError(name, f"must lie between {least:g} and {most:g}, not {converted:g}")
+    return converted
+
+
+def whole(name: str, value: object, least: int, most: int | None = None) -> int:
+    """A whole number."""
+    good = isinstance(value, int) and not isinstance(value, bool) and value >= least
+    if not isinstance(value, int) or not good or (most is not None and value > most):
+        limits = f"of at least {least}" if most is None else f"from {least} to {most}"
+        raise InputError(name, f"must be a whole number {limits}, not {shown(value)}")
+    return value
+
+
+def string(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise InputError(name, f"must be text in quotes, not {shown(value)}")
+    return value
+
+
+def choice(name: str, value: object, allowed: tuple[str, ...]) -> str:
+    """One of the words `allowed`."""
+    if isinstance(value, str) and value in allowed:
+        return value
+    hint = closest(value, allowed) if isinstance(value, str) else ""
+    choices = " or ".join(f'"{word}"' for word in allowed)
+    raise InputError(name, f"must be {choices}, not {shown(value)}{hint}")
+
+
+def shown(value: object) -> str:
+    """A TOML value as the user wrote it, more or less."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return "a list" if len(value) > 6 else f"[{', '.join(shown(item) for item in value)}]"
+    if isinstance(value, str):
+        return f'"{value}"' if len(value) < 60 else f'"{value[:56]}..."'
+    if isinstance(value, int) and abs(value) >= 10**18:
+        return "a number of more than 18 digits"
+    return str(value)
+
+
+def closest(word: str, known: tuple[str, ...]) -> str:
+    """A hint at the known word that is meant, or nothing."""
+    lower = {name.lower(): name for name in known}
+    close = difflib.get_close_matches(word.lower(), lower, n=1)
+    return f', did you mean "{lower[close[0]]}"?' if close else ""
+
+
+# -- lines -------------------------------------------------------------------------------------------------
+
+_KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
+_KEY_LINE = re.compile(rf"\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*=(.*)")
+_HEADER = re.compile(rf"\s*(\[\[?)\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*\]")
+_STRING_OR_COMMENT = re.compile(
+    r'''
+    """ (?:\\.|.)*? (?:"""|\Z)
+    | \'\'\' .*? (?:\'\'\'|\Z)
+    | " (?:\\[^\n]|[^"\\\n])* "?
+    | ' [^'\n]* '?
+    | \# [^\n]*
+    ''',
+    re.DOTALL | re.VERBOSE,
+)
+
+
+def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
+    """Where every key stands.
+
+    Returns
+    -------
+    places : dict
+        Line of every header and key; the first one wins.
+    keys : dict
+        The key that begins on a line.
+    starts : dict
+        For every line inside a value of several lines, the line on which the value begins.
+    """
+    places: dict[Place, int] = {}
+    keys: dict[int, Place] = {}
+    starts: dict[int, int] = {}
+    counts: dict[str, int] = {}
+    section: Place = ()
+    begin, depth = 0, 0
+    for number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
+        header, key = _HEADER.match(line), _KEY_LINE.match(line)
+        if depth > 0:
+            starts[number] = begin
+            depth = max(depth + change, 0)
+        elif header:
+            section = _parts(header[2])
+            if header[1] == "[[":
+                counts[header[2]] = counts.get(header[2], -1) + 1
+                places.setdefault(section, number)
+                section = (*section, counts[header[2]])
+            places.setdefault(section, number)
+        elif key:
+            begin, depth = number, max(change, 0)
+            keys[number] = (*section, *_parts(key[1]))
+            places.setdefault(keys[number], number)
+    return places, keys, starts
+
+
+def _parts(dotted: str) -> Place:
+    return tuple(part[0].strip("\"'") for part in re.finditer(_KEY, dotted))
+
+
+def _nesting(lines: list[str]) -> list[int]:
+    """By how many levels the brackets of each line open (or close) more than they close."""
+    # A string becomes a pair of brackets around its line ends, a comment an empty pair.
+    bare = _STRING_OR_COMMENT.sub(lambda found: "[" + "\n" * found[0].count("\n") + "]", "\n".join(lines))
+    return [len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line)) for line in bare.split("\n")]
+
+
+def _mark_faulty(tables: dict[str, Any], place: Place) -> None:
+    table: Any = tables
+    for part in place[:-1]:
+        if isinstance(table, dict):
+            table = table.setdefault(part, {})
+        elif isinstance(table, list) and isinstance(part, int) and part < len(table):
+            table = table[part]
+        else:
+            return
+    if isinstance(table, dict):
+        table[place[-1]] = _FAULTY
+
+
+def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
+    """A sentence and a line from what the TOML parser says."""
+    last = max((number for number, line in enumerate(lines, start=1) if line.strip()), default=1)
+    found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
+    if not found:
+        digits = next((n for n, line in enumerate(lines, start=1) if re.search(r"\d{4300}", line)), last)
+        return "a number of thousands of digits can't be read", digits
+    line = int(found[1]) if found[1] else last
+    reason = message[: found.start()]
+    if twice := re.match(r"Cannot declare \((.*?),?\) twice", reason):
+        name = twice[1].replace("'", "").replace(", ", ".")
+        hint = "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
+        return f"the section [{name}] appears twice{hint}", line
+    key = _KEY_LINE.match(lines[line - 1])
+    if reason.startswith("Cannot overwrite"):
+        return (f'"{key[1]}" is given twice' if key else "is given twice"), line
+    if key and reason.startswith("Invalid value"):
+        value = key[2].split("#")[0].strip()
+        if re.fullmatch(r"[A-Za-z][A-Za-z0-9 .-]*", value):
+            return f'{key[1]}: text must stand in quotes, "{value}"', line
+        if re.fullmatch(r"[+-]?\.\d.*", value):
+            return f"{key[1]}: a number needs a digit before its point, {value.replace('.', '0.', 1)}", line
+        return f'{key[1]}: must be a number, true, false, a [list] or "text in quotes"', line
+    if reason.startswith("Expected '='"):
+        return 'not of the form "key = value"', line
+    return f"not TOML: {reason[0].lower()}{reason[1:]}", line
