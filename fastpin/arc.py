@@ -70,6 +70,9 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
         return None
     loaded = pin > 0.0
     angles = np.unwrap(np.arctan2(-values[loaded, 0], values[loaded, 1]))
+    # A moment is carried where the pin has climbed the hole by the angle of friction that it takes.
+    climbed = angles + np.arcsin(np.clip(-values[loaded, 2] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
+    angles = np.r_[angles, climbed]
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half

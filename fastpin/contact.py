@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 
-from fastpin.collocation import MAX_RESIDUAL, ROTATION, SXX, SYY, Configuration, M, P, Q, System
-from fastpin.errors import ConvergenceError, NoEquilibriumError
+from fastpin.collocation import MAX_RESIDUAL, ROTATION, SYY, Configuration, M, P, Q, System
+from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError
 from fastpin.increment import implicit_step
 from fastpin.state import OPEN
+from fastpin.zones import runs
 
 FIRST_NODES = (4, 8)  # closed nodes wanted in the first contact
-FIRST_GUESS = 5  # nodes with which its iteration begins; odd, not to tilt a symmetric pin
+FIRST_BESIDE = 2  # nodes on either side of the nearest one with which its iteration begins
 LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
 
 
@@ -42,6 +43,7 @@ def unloaded(system: System) -> Configuration:
     configuration.origin = np.zeros(2)
     configuration.pressure = solution.pressure
     configuration.gap = zeros.copy()
+    configuration.work = system.energy(configuration)  # of the assembly
     return configuration
 
 
@@ -52,10 +54,11 @@ def released(system: System, last: Configuration, load: np.ndarray) -> Configura
     """
     n = system.grid.size
     new = last.copy()
+    new.work -= system.energy(last)  # what elastic energy is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
     position = new.rest + new.motion[:2]
-    width = system.gap0 + system.loads[:n] @ load
+    width = hole_gap(system, load, system.grid.theta)[0]
     approach = -system.motion[:n, :2] @ position
     deep = approach > width
     if deep.any():
@@ -68,7 +71,8 @@ def _put_at_rest(system: System, configuration: Configuration, rest: np.ndarray,
     """Let motion and slip count from the position `rest`, in which nothing is in contact."""
     n = system.grid.size
     configuration.rest, configuration.rest_gap = rest, rest_gap
-    configuration.motion = np.array([0.0, 0.0, configuration.motion[2]])
+    held = system.problem.rotation == "fixed"
+    configuration.motion = np.array([0.0, 0.0, configuration.load[ROTATION] if held else configuration.motion[2]])
     free = system.loads @ configuration.load
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
     configuration.slip = free[n:] + configuration.motion[2]
@@ -111,6 +115,7 @@ def at_rest(
     if size == 0.0:
         if system.problem.rotation == "free" and after[M] != 0.0:
             raise NoEquilibriumError("a moment acts on the pin, which is not in contact: it spins")
+        angle = 0.0
         begins = _pinch(system, before, after)
         if begins >= 1.0:
             return None
@@ -127,14 +132,39 @@ def at_rest(
         rest, rest_gap = rest_position(system, before, angle)
     resting = floating.copy()
     resting.load = before + begins * (after - before)
-    if system.problem.rotation == "fixed":
-        resting.motion[2] = before[ROTATION]
     if np.isnan(resting.origin).any():
         resting.origin = rest.copy()
     _put_at_rest(system, resting, rest, rest_gap)
     resting.load = before.copy()
-    resting.status[np.argsort(resting.gap, kind="stable")[:FIRST_GUESS]] = system.resting_status
+    nearness = resting.gap
+    if np.ptp(nearness) == 0.0:  # a neat fit: where the load will close it
+        nearness = system.loads[: system.grid.size] @ (after - before)
+        if size > 0.0:
+            nearness = nearness - np.cos(system.grid.theta - angle)
+    lowest = _lowest_places(system, nearness)
+    if not system.grid.closed and not 0 < lowest[0] < system.grid.size - 1:
+        raise ArcError("the pin rests on the hole outside the arc; give a wider one, or none")
+    beside = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
+    first = (lowest[:, None] + beside).ravel()
+    resting.status[first % system.grid.size if system.grid.closed else first.clip(1, system.grid.size - 2)] = (
+        system.resting_status
+    )
     return resting, begins
+
+
+def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
+    """Nodes where the pin at rest touches the hole, the nearest one first: one, or two in an oval hole."""
+    n = system.grid.size
+    if np.ptp(gap) <= 1e-12 * np.abs(gap).max():  # all round at once
+        return np.arange(n)
+    before, after = np.roll(gap, 1), np.roll(gap, -1)
+    if not system.grid.closed:
+        before[0], after[-1] = np.inf, np.inf
+    lowest = np.flatnonzero((gap <= before) & (gap < after))
+    lowest = lowest[np.argsort(gap[lowest], kind="stable")]
+    first = lowest[0]
+    near = np.maximum(gap[(first + FIRST_BESIDE) % n], gap[first - FIRST_BESIDE])  # a gap between neighbours
+    return lowest[gap[lowest] <= near]
 
 
 def first_contact(
@@ -199,9 +229,10 @@ def _first_patch(
     system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float]:
     """One implicit increment from rest to a load whose contact spans a few nodes."""
-    least, most = FIRST_NODES
+    patches = len(runs(system.grid, resting.closed))
+    least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
-    self_similar = system.gap0 == 0.0 and not before[SXX : SYY + 1].any() and not after[SXX : SYY + 1].any()
+    self_similar = system.gap0 == 0.0 and not before[: SYY + 1].any()  # everything grows in proportion
     part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
@@ -217,9 +248,17 @@ def _first_patch(
             break
         part = min(max(part * min(max((wanted / count) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
     if best is None:
-        raise ConvergenceError("no first contact was found on this grid; use more nodes or a smaller arc")
+        raise ConvergenceError(
+            "no first contact was found: at the first load asked for it is narrower than the nodes can tell; use more "
+            "nodes or leave that load out"
+        )
     _, found, fraction = best
-    found.work = resting.work + system.energy(found)
+    ends = np.array([0, system.grid.size - 1])
+    if not system.grid.closed and found.closed[ends].any():
+        raise ArcError("the contact reaches an end of the arc; give a wider one, or none")
+    slid = np.where(found.closed, found.slip - resting.slip, 0.0)
+    found.dissipation -= 0.5 * float((system.weights * slid) @ found.shear)
+    found.work += system.energy(found) + found.dissipation - resting.dissipation
     return found, fraction
 
 

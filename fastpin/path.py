@@ -100,15 +100,21 @@ class PathStep:
                 if report is not None:
                     report(self.fraction)
             elif code == tableau.REBUILD:
+                self._book()
                 self._rebuild(checkpoint)
             elif code == tableau.REACHED:
                 break
             else:
+                self._book()
                 raise StepLostError(code, self.fraction)
-        now.load = self.before + stop * self.rate
-        now.dissipation = float(self._sums[tableau.DISSIPATION])
-        now.work = float(self._sums[tableau.WORK])
+        self._book()
         return refined(system, now)
+
+    def _book(self) -> None:
+        """Write load, work and dissipation into the present configuration."""
+        self.now.load = self.before + self.fraction * self.rate
+        self.now.dissipation = float(self._sums[tableau.DISSIPATION])
+        self.now.work = float(self._sums[tableau.WORK])
 
     def _apply_updates(self) -> None:
         pending = int(self._counts[tableau.PENDING])

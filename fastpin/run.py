@@ -25,6 +25,12 @@ MOST_HALVINGS = 12
 FEW_NODES = 8
 """A contact of so few nodes that is lost while the pin is being unloaded completely has just opened."""
 
+NEGLIGIBLE = 1e-3
+"""Part of a step's force below which a contact narrower than the grid is given up and looked for again."""
+
+MOST_RELEASES = 20
+"""Times that this may happen in one step."""
+
 ALMOST_UNLOADED = 1.0 - 1e-8
 """So far into a complete unloading everything falls to zero together, and the order of events is rounding."""
 
@@ -55,32 +61,26 @@ def _pieces(before: np.ndarray, after: np.ndarray) -> list[_Piece]:
     return [_Piece(0.0, 1.0, before, after)]
 
 
-def _equal_parts(count: int) -> np.ndarray:
-    """Ends of `count` equal increments in parts of a way."""
-    return np.arange(1, count + 1) / count
-
-
-def _growing_parts(count: int, done: float) -> np.ndarray:
-    """Ends of `count` increments that grow linearly, in parts of what is left of a way with `done` of it behind."""
-    ends = np.arange(1, count + 1) * np.arange(2, count + 2) / (count * (count + 1.0))
-    ahead = ends[ends > done]
-    return (ahead - done) / (1.0 - done) if done < 1.0 else ahead
-
-
 def _pushed(load: np.ndarray) -> bool:
     """Whether a force acts on the pin."""
     return bool(load[P] != 0.0 or load[Q] != 0.0)
 
 
-def _solve_error(code: int, fraction: float, closed: int) -> SolveError:
+def _force(load: np.ndarray) -> float:
+    """Size of the force on the pin."""
+    return float(np.hypot(load[P], load[Q]))
+
+
+def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
+    """What to raise when the path is lost at the configuration `lost`; `held` if the pin can't rotate freely."""
+    closed = int(lost.closed.sum())
     if code == tableau.ARC_END:
-        return ArcError("the contact reaches an end of the arc; give a wider one, or none", fraction=fraction)
-    hint = f"; only {closed} nodes are in contact, use more of them" if closed <= FEW_NODES else ""
+        return ArcError("the contact reaches an end of the arc; give a wider one, or none")
+    if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
+        return ConvergenceError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == tableau.NO_SUPPORT:
-        return NoEquilibriumError(
-            f"nothing holds the pin any more, it spins, slides away or loses contact{hint}", fraction=fraction
-        )
-    return ConvergenceError(f"the stick and slip zones did not settle{hint}", fraction=fraction)
+        return NoEquilibriumError("nothing holds the pin any more: it spins, slides away or loses contact")
+    return ConvergenceError("the stick and slip zones did not settle")
 
 
 class Run:
@@ -126,18 +126,24 @@ class Run:
         self.states: list[State] = []
         self.touched = self.now.closed.copy()
         self.complete = False
+        self.reached = 0.0  # fraction of the present step
+        self.fresh = 0.0  # part of the way to a stop at which the contact was found
+        self.releases = 0
+        self.path: PathStep | None = None
+        self.path_begin = 0.0
         self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0}
 
     def follow(self, values: np.ndarray) -> None:
         """Follow all steps to the corners `values`, shape (corners, loads), SI units."""
         for step, target in enumerate(values / self.system.scales.loads):
-            before = self.now.load
+            before, self.reached = self.now.load, 0.0
             try:
                 for piece in _pieces(before, target):
                     self._follow_piece(piece, step, len(values))
             except SolveError as error:
-                load = (before + error.fraction * (target - before)) * self.system.scales.loads
-                error.step, error.load = step, named_load(load)
+                self._leave_path()
+                load = (before + self.reached * (target - before)) * self.system.scales.loads
+                error.step, error.fraction, error.load = step, self.reached, named_load(load)
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
                 where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
                 error.args = (f"{where}: {error}",)
@@ -155,56 +161,86 @@ class Run:
 
     def _follow_piece(self, piece: _Piece, step: int, steps: int) -> None:
         """One straight piece of the history, from stop to stop."""
-        inside = self.fractions[(self.fractions > piece.begin) & (self.fractions <= piece.end)]
-        reached = stop = piece.begin
-        path: PathStep | None = None
-        try:
-            self._check_moment(piece)
-            for stop in np.unique(np.r_[inside, piece.end]):
-                load = piece.load_at(stop)
-                parts = _equal_parts(max(1, round(self.increments * (stop - reached))))
-                if not self.now.closed.any() and not np.array_equal(self.now.load, load):
-                    touched = self._touch_down(load)
-                    parts = _growing_parts(self.increments, touched)
-                    reached += touched * (stop - reached)
-                if self.method == "increment":
-                    if not np.array_equal(self.now.load, load):
-                        self._increments(load, parts, self._reporter(step, reached, float(stop), steps))
-                elif not np.array_equal(self.now.load, load):
-                    if path is None:
-                        path = PathStep(self.system, self.now, piece.after)
-                        origin = reached
-                    part = 1.0 if stop == piece.end else (stop - origin) / (piece.end - origin)
-                    self.now = path.follow(part, self._reporter(step, origin, piece.end, steps))
-                    self.now.load = load
-                self._release_if_unloaded(load)
-                reached = float(stop)
-                if stop in inside:
-                    self._keep(step, reached)
-                if self.progress is not None:
-                    self.progress(step + reached, steps)
-        except StepLostError as lost:
-            last_nodes = path is not None and int(path.now.closed.sum()) <= FEW_NODES
-            if not _pushed(piece.after) and (last_nodes or lost.fraction > ALMOST_UNLOADED):
-                self.now = released(self.system, self.now if path is None else path.now, piece.after)
-                if piece.end in inside:
-                    self._keep(step, piece.end)
-            else:
-                fraction = reached if path is None else origin + lost.fraction * (piece.end - origin)
-                raise _solve_error(lost.code, fraction, int(self.now.closed.sum())) from None
-        except SolveError as error:
-            error.fraction = reached + error.fraction * (stop - reached)  # so far relative to the way to this stop
-            raise
-        finally:
-            if path is not None:
-                self.touched |= path.touched
-                self.statistics["events"] += path.events
-                self.statistics["exchanges"] += path.exchanges
-                self.statistics["rebuilds"] += path.rebuilds
+        self.releases = 0
+        kept = self.fractions[(self.fractions > piece.begin) & (self.fractions <= piece.end)]
+        for stop in np.unique(np.r_[kept, piece.end]):
+            self._go(piece, float(stop), step, steps)
+            if stop in kept:
+                self._keep(step, float(stop))
+            if self.progress is not None:
+                self.progress(step + float(stop), steps)
+        self._leave_path()
 
-    def _check_moment(self, piece: _Piece) -> None:
+    def _go(self, piece: _Piece, stop: float, step: int, steps: int) -> None:
+        """Bring the present configuration to the load at the fraction `stop` of the step."""
+        load = piece.load_at(stop)
+        self._check_moment(load)
+        while not np.array_equal(self.now.load, load):
+            if not self.now.closed.any():
+                self._touch_down(load, stop)
+            elif self.method == "increment":
+                parts = self._parts(stop)
+                self._increments(load, parts, stop, self._reporter(step, self.reached, stop, steps))
+            else:
+                self._follow_path(piece, load, stop, self._reporter(step, self.reached, piece.end, steps))
+        self.reached = stop
+        self._release_if_unloaded(piece, load)
+
+    def _touch_down(self, load: np.ndarray, stop: float) -> None:
+        """Bring the floating pin into contact on the way to `load`; it may also get there without contact."""
+        self._leave_path()
+        self.now, part = first_contact(self.system, self.now, self.now.load, load)
+        self.touched |= self.now.closed
+        self.reached += part * (stop - self.reached)
+        if part == 1.0:
+            self.now.load = load
+        self.fresh = part
+
+    def _follow_path(
+        self, piece: _Piece, load: np.ndarray, stop: float, report: Callable[[float], None] | None
+    ) -> None:
+        """Follow the piece exactly, up to the fraction `stop` of the step or to where the contact is lost."""
+        try:
+            if self.path is None:
+                self.path_begin = self.reached
+                self.path = PathStep(self.system, self.now, piece.after)
+            length = piece.end - self.path_begin
+            self.now = self.path.follow(1.0 if stop == piece.end else (stop - self.path_begin) / length, report)
+            self.now.load = load
+        except StepLostError as lost:
+            if self.path is not None:
+                self.reached = self.path_begin + lost.fraction * (piece.end - self.path_begin)
+                self.now = self.path.now
+            if not self._just_opened(piece, lost):
+                raise _solve_error(lost.code, self.now, self.system.problem.rotation == "fixed") from None
+            self._leave_path()
+            self.now = released(self.system, self.now, self.now.load)
+
+    def _just_opened(self, piece: _Piece, lost: StepLostError) -> bool:
+        """Whether a contact that lost its support has only become too small for the grid, or carried nothing."""
+        if lost.code != tableau.NO_SUPPORT or self.now.load[M] != 0.0:
+            return False
+        few = int(self.now.closed.sum()) <= FEW_NODES
+        self.releases += 1
+        if self.releases > MOST_RELEASES:
+            return False
+        if not _pushed(piece.after):
+            return few or lost.fraction > ALMOST_UNLOADED
+        return few and _force(self.now.load) <= NEGLIGIBLE * max(_force(piece.before), _force(piece.after))
+
+    def _leave_path(self) -> None:
+        """Forget the path that is being followed, and count what it took."""
+        if self.path is None:
+            return
+        self.touched |= self.path.touched
+        self.statistics["events"] += self.path.events
+        self.statistics["exchanges"] += self.path.exchanges
+        self.statistics["rebuilds"] += self.path.rebuilds
+        self.path = None
+
+    def _check_moment(self, load: np.ndarray) -> None:
         problem = self.system.problem
-        if problem.frictionless and problem.rotation == "free" and piece.after[M] != 0.0:
+        if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
             raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
 
     def _reporter(self, step: int, begin: float, end: float, steps: int) -> Callable[[float], None] | None:
@@ -214,34 +250,37 @@ class Run:
         progress = self.progress
         return lambda part: progress(step + begin + part * (end - begin), steps)
 
-    def _touch_down(self, load: np.ndarray) -> float:
-        """Bring the floating pin into contact on the way to `load`; returns the fraction of the way at which it is.
+    def _parts(self, stop: float) -> np.ndarray:
+        """Ends of the increments up to the fraction `stop` of the step, in parts of the way there."""
+        if self.fresh > 0.0:  # growing linearly from the first contact
+            ends = np.arange(1, self.increments + 1) * np.arange(2, self.increments + 2)
+            ends = ends / ends[-1]
+            parts = (ends[ends > self.fresh] - self.fresh) / (1.0 - self.fresh)
+            self.fresh = 0.0
+            return parts
+        count = max(1, round(self.increments * (stop - self.reached)))
+        return np.arange(1, count + 1) / count
 
-        The pin may also stay without contact; it is then at `load`, and the fraction is 1.
-        """
-        self.now, fraction = first_contact(self.system, self.now, self.now.load, load)
-        self.touched |= self.now.closed
-        return fraction
-
-    def _increments(self, load: np.ndarray, parts: np.ndarray, report: Callable[[float], None] | None) -> None:
+    def _increments(
+        self, load: np.ndarray, parts: np.ndarray, stop: float, report: Callable[[float], None] | None
+    ) -> None:
         """Implicit increments from the present load to `load`, at the given parts of the way (the last one is 1)."""
-        before, done = self.now.load, 0.0
-        try:
-            for part in parts:
-                target = load if part == 1.0 else before + part * (load - before)
-                self._increment(self.now, target, MOST_HALVINGS)
-                done = float(part)
-                if report is not None:
-                    report(done)
-        except SolveError as error:
-            error.fraction = done
-            raise
+        before, begin = self.now.load, self.reached
+        for part in parts:
+            target = load if part == 1.0 else before + part * (load - before)
+            self._increment(self.now, target, MOST_HALVINGS)
+            self.reached = begin + float(part) * (stop - begin)
+            if report is not None:
+                report(float(part))
 
     def _increment(self, start: Configuration, load: np.ndarray, halvings: int) -> None:
         """One implicit increment from `start` to `load`, halved where its iteration cycles."""
         system = self.system
         found = implicit_step(system, start, load)
         if found is None or system.worst_residual(found) > MAX_RESIDUAL:
+            if not _pushed(load) and load[M] == 0.0:  # unloaded completely
+                self.now = released(system, start, load)
+                return
             if halvings == 0:
                 raise ConvergenceError(
                     "no state that meets the contact conditions was found; either none carries a larger load, or the "
@@ -260,12 +299,12 @@ class Run:
         self.touched |= found.closed
         self.statistics["increments"] += 1
 
-    def _release_if_unloaded(self, load: np.ndarray) -> None:
+    def _release_if_unloaded(self, piece: _Piece, load: np.ndarray) -> None:
         """Forget a contact that carries nothing any more: the pin has been unloaded completely."""
         if _pushed(load) or not self.now.closed.any():
             return
-        before = max((float(state.pressure.max()) for state in self.states[-1:]), default=0.0)
-        if float(self.now.pressure.max()) * self.system.scales.traction <= 1e-9 * before:
+        if float(self.now.pressure.max()) <= 1e-9 * _force(piece.before):
+            self._leave_path()
             self.now = released(self.system, self.now, load)
 
     def _keep(self, step: int, fraction: float) -> None:

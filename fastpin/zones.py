@@ -84,7 +84,7 @@ def _edge(theta: np.ndarray, quantity: np.ndarray, outside: float) -> float:
     Nodal values are off by a part that dies out away from the edge, in a few nodes: the parabola is fitted to a
     window that moves inwards and widens with the square root of the number of nodes. Too small zones end halfway.
     """
-    halfway = 0.5 * (float(theta[0]) + outside)
+    halfway = 0.5 * float(theta[0] + outside)
     root = math.sqrt(0.5 * theta.size)
     first = max(2, round(0.3 * root))
     last = first + max(4, round(root))
@@ -100,7 +100,7 @@ def _edge(theta: np.ndarray, quantity: np.ndarray, outside: float) -> float:
     places = places[np.isreal(places)].real
     low = (outside - float(theta[0])) / spacing
     places = places[(places >= 1.25 * low) & (places <= 1.0)]
-    return float(theta[0]) + spacing * max(float(places.max()), low) if places.size else halfway
+    return float(theta[0]) + spacing * float(max(places.max(), low)) if places.size else halfway
 
 
 def complement(
