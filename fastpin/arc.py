@@ -11,35 +11,42 @@ from fastpin.collocation import System
 from fastpin.errors import ArcError, SolveError
 from fastpin.grid import Grid
 from fastpin.problem import Problem
-from fastpin.run import Run
+from fastpin.run import Progress, Run
 
 COARSE_NODES = 121
 WHOLE = 5.6  # an arc wider than this, rad, becomes the whole circle
 CORNERS_ONLY = np.array([1.0])
 
 
-def grids_to_try(problem: Problem, values: np.ndarray, force: float, nodes: int) -> Iterator[Grid]:
+def grids_to_try(
+    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
+) -> Iterator[Grid]:
     """Grids of `nodes` nodes, each wider than the one before; the last one is the whole circle.
 
     The first one spans the nodes that a coarse run had in contact, and a margin.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
-    arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force)
+    arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
         yield Grid.arc(*arc, nodes)
         arc = _widened(arc, 1.25)
     yield Grid.circle(nodes)
 
 
-def _touched_arc(problem: Problem, values: np.ndarray, force: float) -> tuple[float, float] | None:
-    """The arc of all places that are ever in contact, with a margin; None for the whole circle."""
+def _touched_arc(
+    problem: Problem, values: np.ndarray, force: float, progress: Progress | None
+) -> tuple[float, float] | None:
+    """The arc of all places that are ever in contact, with a margin; None for the whole circle.
+
+    `progress` sees every coarse run as a run of its own, before the one that counts.
+    """
     arc = _estimated_arc(problem, values)
     for _ in range(12):
         if arc is not None and arc[1] - arc[0] >= WHOLE:
             arc = None
         grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY)
+            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress)
             run.follow(values)
             margin = 4
         except ArcError:

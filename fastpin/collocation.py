@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import copy
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import lapack
@@ -165,6 +165,13 @@ class System:
             problem, grid, scales, problem.clearance / scales.displacement, problem.friction,
             operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
         )  # fmt: skip
+
+    def without_friction(self) -> System:
+        """The same system for mu = 0, with the rotation held at the load's ``rotation``."""
+        equilibrium, motion_rows, forces = self.equilibrium.copy(), np.zeros((3, 3)), self.forces.copy()
+        equilibrium[2], forces[2] = 0.0, 0.0
+        motion_rows[2, 2] = forces[2, ROTATION] = 1.0
+        return replace(self, friction=0.0, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
 
     def solve(
         self, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float

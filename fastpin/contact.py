@@ -12,7 +12,7 @@ from fastpin.increment import implicit_step
 from fastpin.state import OPEN
 from fastpin.zones import runs
 
-FIRST_NODES = (4, 8)  # closed nodes wanted in the first contact
+FIRST_NODES = (2, 4)  # closed nodes wanted in the first contact
 FIRST_BESIDE = 2  # nodes on either side of the nearest one with which its iteration begins
 LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
 
@@ -228,7 +228,12 @@ def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
 def _first_patch(
     system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float]:
-    """One implicit increment from rest to a load whose contact spans a few nodes."""
+    """One implicit increment from rest to a load whose contact spans a few nodes.
+
+    In one increment friction would leave a shear in these nodes that has nothing to do with the path there; they begin
+    without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds; and a
+    neat fit, where all grows in proportion to the load and the increment is exact.
+    """
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
@@ -237,7 +242,9 @@ def _first_patch(
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
-        found = implicit_step(system, resting, before + fraction * (after - before))
+        load = before + fraction * (after - before)
+        rough = self_similar or not load[[P, Q]].any() or (system.problem.rotation == "free" and load[M] != 0.0)
+        found = implicit_step(system, resting, load) if rough else _shearless_step(system, resting, load)
         if found is None or system.worst_residual(found) > MAX_RESIDUAL:
             part *= 0.7
             continue
@@ -262,6 +269,19 @@ def _first_patch(
     return found, fraction
 
 
+def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
+    """The implicit increment without friction, after which the closed nodes stick where they are."""
+    smooth, start, held = system.without_friction(), resting.copy(), load.copy()
+    start.status[start.closed] = smooth.resting_status
+    if system.problem.rotation == "free":
+        held[ROTATION] = resting.motion[2]
+    found = implicit_step(smooth, start, held)
+    if found is not None:
+        found.status[found.closed] = system.resting_status
+        found.load = load
+    return found
+
+
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
     """Part of the step's force at which a Hertz contact spans about five nodes."""
     force = float(np.hypot(change[Q], change[P]))
@@ -269,6 +289,6 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
         return 1e-4
     theta = system.grid.theta[np.argmin(resting.gap)]
     gap, _, curvature = hole_gap(system, resting.load, theta)
-    spacing = float(system.grid.weights.mean())
+    spacing = float(np.median(system.grid.weights))
     part = math.pi * max(float(gap + curvature), 0.0) * (2.5 * spacing) ** 2 / force
     return min(max(part, LEAST_PART), 1.0)

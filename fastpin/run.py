@@ -218,15 +218,15 @@ class Run:
 
     def _just_opened(self, piece: _Piece, lost: StepLostError) -> bool:
         """Whether a contact that lost its support has only become too small for the grid, or carried nothing."""
-        if lost.code != tableau.NO_SUPPORT or self.now.load[M] != 0.0:
+        if lost.code == tableau.ARC_END:
             return False
-        few = int(self.now.closed.sum()) <= FEW_NODES
+        unloading = not _pushed(piece.after) and piece.after[M] == 0.0
+        if unloading and lost.fraction > ALMOST_UNLOADED:
+            return True
+        if self.now.load[M] != 0.0 or int(self.now.closed.sum()) > FEW_NODES or self.releases == MOST_RELEASES:
+            return False
         self.releases += 1
-        if self.releases > MOST_RELEASES:
-            return False
-        if not _pushed(piece.after):
-            return few or lost.fraction > ALMOST_UNLOADED
-        return few and _force(self.now.load) <= NEGLIGIBLE * max(_force(piece.before), _force(piece.after))
+        return unloading or _force(self.now.load) <= NEGLIGIBLE * max(_force(piece.before), _force(piece.after))
 
     def _leave_path(self) -> None:
         """Forget the path that is being followed, and count what it took."""

@@ -7,13 +7,14 @@ import time
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from fastpin.arc import grids_to_try
 from fastpin.collocation import System
 from fastpin.errors import ArcError, InputError, SolveError
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory, check_loads
-from fastpin.materials import one_of
+from fastpin.materials import finite, one_of
 from fastpin.problem import Problem
 from fastpin.run import Method, Progress, Run
 from fastpin.state import Result
@@ -53,8 +54,8 @@ def solve(
     between : int or sequence of float
         Also return states inside each step: so many equally spaced ones, or at these fractions of a step.
     start : Result, optional
-        Go on from the last state of this result, on its grid. The states are those of an unsplit history, bit for
-        bit.
+        Go on from the last state of this result, on its grid. The states are those of an unsplit history on that grid,
+        bit for bit. If the contact will reach further than before, give the first part an `arc` wide enough.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
 
@@ -77,14 +78,40 @@ def solve(
     if not isinstance(problem, Problem):
         raise InputError("problem", f"must be a Problem, not {problem!r}")
     if not isinstance(history, LoadHistory):
+        if not isinstance(history, Sequence):
+            raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {history!r}")
         history = LoadHistory(history)
+    if grid is not None and not isinstance(grid, Grid):
+        raise InputError("grid", f"must be a Grid, not {grid!r}")
+    if start is not None and not isinstance(start, Result):
+        raise InputError("start", f"must be a Result, not {start!r}")
     one_of("method", method, ("path", "increment"))
     if isinstance(increments, bool) or not isinstance(increments, (int, np.integer)) or increments < 1:
         raise InputError("increments", f"must be a whole number of at least 1, not {increments!r}")
     check_loads(problem, history)
     fractions = _fractions(between)
+    if arc is not None:
+        arc = _checked_arc(arc)
     began = time.perf_counter()
+    # One thread: results don't depend on the machine, and below a thousand nodes it is the fastest way.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _solve(problem, history, nodes, method, increments, arc, grid, fractions, start, progress, began)
 
+
+def _solve(
+    problem: Problem,
+    history: LoadHistory,
+    nodes: int,
+    method: Method,
+    increments: int,
+    arc: tuple[float, float] | None,
+    grid: Grid | None,
+    fractions: np.ndarray,
+    start: Result | None,
+    progress: Progress | None,
+    began: float,
+) -> Result:
+    """:func:`solve` with checked input."""
     if start is not None:
         if start.problem != problem:
             raise InputError("start", "the result to go on from belongs to another problem")
@@ -96,7 +123,7 @@ def solve(
 
     values = history.values()
     force = reference_force(problem, values)
-    for chosen in _grids(problem, values, force, nodes, arc, grid):
+    for chosen in _grids(problem, values, force, nodes, arc, grid, progress):
         run = Run(System.build(problem, chosen, force), method, increments, fractions, progress)
         try:
             return _finished(run, history, values, began)
@@ -104,6 +131,12 @@ def solve(
             if arc is not None or grid is not None:
                 raise
     raise AssertionError("the whole circle has no ends")
+
+
+def _checked_arc(arc: tuple[float, float]) -> tuple[float, float]:
+    if not isinstance(arc, Sequence) or isinstance(arc, str) or len(arc) != 2:
+        raise InputError("arc", f"must be two angles, start and end in rad, not {arc!r}")
+    return finite("arc start", arc[0]), finite("arc stop", arc[1])
 
 
 def _finished(run: Run, history: LoadHistory, values: np.ndarray, began: float) -> Result:
@@ -123,10 +156,11 @@ def _grids(
     nodes: int,
     arc: tuple[float, float] | None,
     grid: Grid | None,
+    progress: Progress | None,
 ) -> Iterator[Grid]:
     """The given grid, or those to try one after the other until the contact stays clear of the ends."""
     if grid is None and arc is None:
-        yield from grids_to_try(problem, values, force, nodes)
+        yield from grids_to_try(problem, values, force, nodes, progress)
         return
     if grid is None:
         assert arc is not None
@@ -157,7 +191,10 @@ def _fractions(between: int | Sequence[float]) -> np.ndarray:
         if between < 0:
             raise InputError("between", f"must not be negative, not {between}")
         return np.arange(1, between + 2) / (between + 1)
-    inner = np.asarray(between, dtype=float)
+    try:
+        inner = np.asarray(between, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("between", f"must be a whole number or fractions of a step, not {between!r}") from None
     if inner.ndim != 1 or not np.all((inner > 0.0) & (inner < 1.0)):
         raise InputError("between", "must be a whole number or fractions of a step between 0 and 1")
     return np.r_[np.unique(inner), 1.0]

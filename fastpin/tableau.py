@@ -39,7 +39,7 @@ NEGATIVE, STICK, POSITIVE, OPEN = -1, 0, 1, 2  # as in state.py
 
 RATE_TOLERANCE = 1e-11  # rates below this part of the largest one are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
-PRESSURE_TOLERANCE = 1e-11  # likewise for pressures; wider, for mirrored nodes to open together
+PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, for mirrored nodes to open together
 SMALL_PIVOT = 1e-9  # pivots below this part of a typical one belong to a mechanism
 UNUSUAL_PIVOT = 1e-6  # pivots that differ by more than this from a typical one ask for a new tableau
 TOGETHER_ROUNDS = 12  # rounds in which all violators change at once; afterwards one at a time
