@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fastpin.state import Result
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
+LARGE_STRAIN = 0.05
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
@@ -235,6 +236,9 @@ def _print_states(case: Case, result: Result | None) -> None:
         print("no state was reached")
         return
     print(state_table(case.problem, list(result)))
+    strain = case.problem.pair.beta_star * max(state.peak_pressure for state in result)
+    if strain > LARGE_STRAIN and not case.problem.dimensionless:
+        print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
     statistics = result.statistics
     names = ("events", "exchanges", "increments", "seconds")
     known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]

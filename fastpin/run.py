@@ -15,7 +15,7 @@ from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError, Solve
 from fastpin.increment import implicit_step
 from fastpin.loading import LoadHistory, named_load
 from fastpin.path import PathStep, StepLostError
-from fastpin.state import Restart, Result, State
+from fastpin.state import OPEN, SLIP_POSITIVE, Restart, Result, State
 
 Method = Literal["path", "increment"]
 Progress = Callable[[float, int], None]
@@ -194,7 +194,7 @@ class Run:
         self.reached += part * (stop - self.reached)
         if part == 1.0:
             self.now.load = load
-        self.fresh = part
+        self.fresh = part if part < 1.0 else 0.0
 
     def _follow_path(
         self, piece: _Piece, load: np.ndarray, stop: float, report: Callable[[float], None] | None
@@ -310,6 +310,7 @@ class Run:
     def _keep(self, step: int, fraction: float) -> None:
         """Check the present configuration and keep it as a state."""
         system, now, scales = self.system, self.now, self.system.scales
+        frictionless = system.problem.frictionless
         residuals = system.residuals(now)
         if not max(residuals.values()) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
@@ -327,7 +328,7 @@ class Run:
                 shear=now.shear * scales.traction,
                 gap=now.gap * scales.displacement,
                 slip=(now.slip - now.rest_slip) * scales.displacement,
-                status=now.status.copy(),
+                status=np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8) if frictionless else now.status.copy(),
                 dx=float(moved[0]) * scales.displacement,
                 dy=float(moved[1]) * scales.displacement,
                 rotation=float(now.motion[2]) * scales.rotation,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -40,13 +41,14 @@ class State:
         Gap h >= 0 and slip s of the pin over the plate, positive along +theta, m. Slip counts from the position
         in which the pin first rested on the hole (for an interference fit: the concentric one).
     status : ndarray of int8, shape (n,)
-        OPEN, STICK, SLIP_POSITIVE or SLIP_NEGATIVE.
+        OPEN, STICK, SLIP_POSITIVE or SLIP_NEGATIVE. Without friction every closed node is SLIP_POSITIVE.
     dx, dy, rotation : float
         Rigid motion of the pin along +x, +y (m) and counter-clockwise (rad) from its first resting position.
-        In the paper's symbols C_0x, -Delta and C_omega.
+        In the paper's symbols C_0x, -Delta and C_omega; C_omega also where a hub of another radius is held.
     dissipation, work, energy : float
         Energy dissipated by friction so far, work of the loads so far and elastic energy now, J/m. Work and energy
-        are counted up to the same function of the load.
+        leave out what depends on the load alone (infinite for a load at a point), so they may be negative. An
+        interference fit begins with the energy of its assembly in both.
     residuals : dict of str to float
         Largest violation, recomputed from the matrices: "gap" and "slip" relative to the largest displacement,
         "cone" and "equilibrium" relative to the largest traction and the load.
@@ -105,7 +107,7 @@ class State:
 
     @property
     def peak_pressure_angle(self) -> float:
-        """Where the largest contact pressure acts, rad."""
+        """Where the largest contact pressure acts, rad; NaN without contact."""
         return self._pressure_peak[1]
 
     @property
@@ -115,15 +117,17 @@ class State:
 
     @property
     def peak_shear_angle(self) -> float:
-        """Where the shear traction of largest magnitude acts, rad."""
+        """Where the shear traction of largest magnitude acts, rad; NaN where there is no shear."""
         return self._shear_peak[1]
 
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
-        return zones.smooth_peak(self.grid, self.pressure)
+        return zones.smooth_peak(self.grid, self.pressure) if self.in_contact else (0.0, math.nan)
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
+        if not self.shear.any():
+            return 0.0, math.nan
         return zones.shear_peak(self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick)
 
     @cached_property
@@ -136,7 +140,10 @@ class State:
 
     @cached_property
     def resultants(self) -> dict[str, float]:
-        """Force and moment on the pin from the tractions, (50), (51): P and Q in N/m, M in N."""
+        """The loads that the tractions balance, (50), (51): P and Q in N/m, M in N.
+
+        Where the rotation is held, M is the moment that holds it.
+        """
         cos, sin = self.grid.trig_moments()
         radius = self.problem.hole_radius
         return {

@@ -305,6 +305,15 @@ def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.Cap
 # -- pieces --------------------------------------------------------------------------------------------------
 
 
+def test_values_that_are_not_in_si_units_are_noted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "gigapascals.toml"
+    path.write_text(EXAMPLE.replace('material = "Ti-6Al-4V"', "E = 116.0\nnu = 0.32"))
+    assert main(["run", str(path), "--nodes", "41"]) == 0
+    assert "SI units" in capsys.readouterr().out
+    assert main(["run", "--nodes", "41"]) == 0
+    assert "SI units" not in capsys.readouterr().out
+
+
 def test_angles_from_the_bottom() -> None:
     assert from_bottom(-0.5 * np.pi) == 0.0
     assert from_bottom(0.0) == pytest.approx(90.0)

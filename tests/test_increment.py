@@ -47,3 +47,11 @@ def test_too_large_increments_are_halved(similar):
     result = solve(problem, history, nodes=161, method="increment", increments=1)
     assert result.complete
     assert all(max(state.residuals.values()) < 1e-9 for state in result)
+
+
+def test_a_first_corner_on_few_nodes(similar):
+    """The whole first step is one increment; the next one goes on from there."""
+    problem = Problem.from_load_parameter(similar, 0.5, 0.3, "centre", "fixed")
+    result = solve(problem, [{"P": 0.01}, {"P": 1.0}], nodes=41, method="increment", increments=40)
+    exact = solve(problem, [{"P": 1.0}], nodes=41)[-1]
+    assert result[1].peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-2)

@@ -206,3 +206,122 @@ def test_grids_can_be_given(similar):
     grid = Grid.arc(BOTTOM - 1.0, BOTTOM + 1.0, 77)
     assert solve(problem, [{"P": 1.0}], grid=grid).grid is grid
     assert solve(problem, [{"P": 1.0}], nodes=77, arc=(-3.0, 4.0)).grid.closed
+
+
+# --- what is easily lost ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["path", "increment"])
+@pytest.mark.parametrize("load_parameter", [0.1, 0.0])
+def test_energy_balance_through_unloading_and_reloading(titanium_in_aluminium, method, load_parameter):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, load_parameter, 0.4, "body")
+    history = [{"P": 1.0}, {"P": 0.0}, {"P": 1.0}, {"P": 0.0}]
+    result = solve(problem, history, nodes=121, method=method)
+    dissipated = np.diff([0.0, *[state.dissipation for state in result]])
+    assert np.all(dissipated > 0.0)
+    assert dissipated[2] == pytest.approx(dissipated[0], rel=0.02)
+    for state in result:
+        balance = state.work - state.energy - state.dissipation
+        assert balance == pytest.approx(0.0, abs=(5e-4 if method == "path" else 1.5e-3) * result[0].energy)
+
+
+def test_dissipation_of_unloading_does_not_depend_on_the_states_between(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    plain = solve(problem, [{"P": 1.0}, {"P": 0.0}], nodes=101)
+    dense = solve(problem, [{"P": 1.0}, {"P": 0.0}], nodes=101, between=20)
+    assert len(dense) == 42
+    assert plain[-1].dissipation == pytest.approx(dense[-1].dissipation, rel=1e-6)
+    assert plain[-1].work == pytest.approx(dense[-1].work, rel=1e-4)
+
+
+def test_neat_fit_dissipates_like_an_almost_neat_one(titanium_in_aluminium):
+    neat, almost = (
+        solve(Problem.from_load_parameter(titanium_in_aluminium, value, 0.4, "body"), [{"P": 1.0}], nodes=121)[-1]
+        for value in (0.0, 1e-7)
+    )
+    assert neat.dissipation == pytest.approx(almost.dissipation, rel=1e-3)
+    assert neat.work == pytest.approx(almost.work, rel=1e-3)
+
+
+def test_states_between_corners_survive_a_loss_of_contact(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4)
+    result = solve(problem, [{"P": 1.0}, {"sxx": 1.0}, {"P": 0.0}, {"sxx": 0.0}], nodes=100, between=20)
+    assert len(result) == 84
+    assert not result[-1].in_contact
+
+
+@pytest.mark.parametrize(("load_parameter", "arc"), [(0.1, (-2.5, -1.55)), (0.0, (-1.6, -1.5)), (0.1, (0.0, 1.0))])
+def test_arcs_that_cut_the_contact_are_refused(titanium_in_aluminium, load_parameter, arc):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, load_parameter, 0.4)
+    with pytest.raises(ArcError):
+        solve(problem, [{"P": 1.0}], nodes=101, arc=arc)
+
+
+def test_the_arc_follows_a_pin_that_climbs_under_a_moment(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 50.0, 0.5)
+    state = solve(problem, [{"P": 1.0, "M": 0.3}], nodes=121)[-1]
+    assert np.mean(state.contact[0]) - BOTTOM == pytest.approx(-math.asin(0.3), abs=0.01)
+    assert state.resultants["M"] == pytest.approx(0.3, abs=1e-10)
+
+
+@pytest.mark.parametrize("nodes", [100, 101, 201])
+@pytest.mark.parametrize("load_parameter", [0.1, 0.0])
+def test_pinching_begins_on_any_grid(titanium_in_aluminium, nodes, load_parameter):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, load_parameter, 0.4)
+    state = solve(problem, [{"sxx": 1.0}], nodes=nodes)[-1]
+    assert len(state.contact) == 2
+    top, bottom = (state.pressure[np.sin(state.theta) * side > 0.0].max() for side in (1.0, -1.0))
+    assert top == pytest.approx(bottom, rel=2e-2)
+
+
+def test_rotation_may_change_without_contact(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")
+    plain = solve(problem, [{"P": 1.0}], nodes=81)[-1]
+    turned = solve(problem, [{"rotation": 0.01}, {"P": 1.0}], nodes=81)
+    assert turned[0].rotation == pytest.approx(0.01)
+    assert np.abs(turned[1].shear - plain.shear).max() < 1e-9
+    back = solve(problem, [{"P": 1.0, "rotation": 0.3}, {"P": 0.0, "rotation": 0.0}], nodes=81)[-1]
+    assert back.rotation == 0.0
+    assert not back.in_contact
+
+
+def test_a_held_pin_crosses_the_clearance_with_a_little_side_force(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")
+    result = solve(problem, [{"P": 1.0, "Q": 1e-6}, {"P": -1.0}], nodes=101)
+    assert result[1].resultants["P"] == pytest.approx(-1.0)
+    assert result[1].peak_pressure == pytest.approx(result[0].peak_pressure, rel=1e-3)
+
+
+def test_interference_fit_opens_evenly_under_one_sided_stress(titanium_in_aluminium):
+    problem = Problem(titanium_in_aluminium, 0.01, -1e-5, 0.4)
+    for nodes in (101, 201):
+        state = solve(problem, [{"sxx": 5e8}], nodes=nodes)[-1]
+        assert len(state.contact) == 2
+        assert state.work - state.energy - state.dissipation == pytest.approx(0.0, abs=1e-3 * abs(state.energy))
+
+
+def test_a_contact_narrower_than_the_grid_is_said_to_be_so(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    with pytest.raises(ConvergenceError, match="more nodes"):
+        solve(problem, [{"P": 1e-4}, {"P": 1.0}], nodes=101)
+
+
+def test_no_contact_has_no_peak(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    state = solve(problem, [{"P": 1.0}, {"P": 0.0}], nodes=61)[-1]
+    assert (state.peak_pressure, state.peak_shear) == (0.0, 0.0)
+    assert math.isnan(state.peak_pressure_angle)
+    assert math.isnan(state.peak_shear_angle)
+    assert state.contact == state.stick == state.slip_zones == []
+
+
+def test_results_do_not_depend_on_the_number_of_threads(titanium_in_aluminium):
+    from threadpoolctl import threadpool_limits
+
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    states = []
+    for threads in (1, 2):
+        with threadpool_limits(limits=threads, user_api="blas"):
+            states.append(solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=201)[-1])
+    assert np.array_equal(states[0].shear, states[1].shear)
+    assert np.array_equal(states[0].slip, states[1].slip)
