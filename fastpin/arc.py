@@ -23,14 +23,17 @@ def grids_to_try(
 ) -> Iterator[Grid]:
     """Grids of `nodes` nodes, each wider than the one before; the last one is the whole circle.
 
-    The first one spans the nodes that a coarse run had in contact, and a margin.
+    The first one spans the nodes that a coarse run had in contact, and a margin. All have a node where the first force
+    points, so that a symmetric contact is symmetric to the last digits.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
     arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
-        yield Grid.arc(*arc, nodes)
+        shift = _shift_to_node(arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
+        yield Grid.arc(arc[0] + shift, arc[1] + shift, nodes)
         arc = _widened(arc, 1.25)
-    yield Grid.circle(nodes)
+    start = -1.5 * math.pi
+    yield Grid.circle(nodes, start + _shift_to_node(start, 2.0 * math.pi / nodes, values))
 
 
 def _touched_arc(
@@ -83,6 +86,15 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
+
+
+def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:
+    """How far to shift nodes from `start` on, at most half a spacing, for one to lie where the first force points."""
+    loaded = np.flatnonzero(np.hypot(values[:, 0], values[:, 1]))
+    if loaded.size == 0:
+        return 0.0
+    place = (math.atan2(-values[loaded[0], 0], values[loaded[0], 1]) - start) / spacing
+    return (place - round(place)) * spacing
 
 
 def _arc_of_circle(grid: Grid, touched: np.ndarray, margin: int) -> tuple[float, float] | None:

@@ -137,7 +137,9 @@ class LoadHistory:
                     try:
                         row[index] = finite(LOADS[index], float(cell))
                     except ValueError:
-                        raise InputError(LOADS[index], f"{where}: must be a finite number, not {cell!r}") from None
+                        raise InputError(
+                            LOADS[index], f"{where}: {LOADS[index]} must be a finite number, not {cell!r}"
+                        ) from None
             rows.append(row)
         if not rows:
             raise InputError("csv", f"{path} holds no load corners")
@@ -207,7 +209,7 @@ def _load_index(name: object, where: str) -> int:
     folded = {load.lower(): load for load in LOADS}
     close = difflib.get_close_matches(str(name).lower(), folded, n=1)
     hint = f', did you mean "{folded[close[0]]}"?' if close else ""
-    raise InputError(str(name), f"{where}: unknown load; the loads are {', '.join(LOADS)}{hint}")
+    raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")
 
 
 def _positive_count(field: str, value: int) -> None:

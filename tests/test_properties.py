@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fastpin import Grid, LoadHistory, Problem, solve
+from fastpin import OPEN, STICK, Grid, LoadHistory, Problem, solve
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
 from random_histories import NODES, outcome, random_case
@@ -73,6 +74,40 @@ def test_states_between_corners_do_not_change_the_corners(problem):
     corner = solve(problem, [{"P": 1.0}, {"Q": 0.15}], nodes=81, arc=ARC)[-1]
     assert half.load["Q"] == 0.15
     assert np.abs(half.shear - corner.shear).max() < 1e-11
+
+
+@pytest.mark.parametrize(("load", "rotation"), [("body", "free"), ("centre", "fixed")])
+def test_friction_opposes_the_slip_of_every_node(titanium_in_aluminium, load, rotation):
+    """Between states close together, slip has the direction opposite to the shear, and happens at the cone."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.05, 0.4, load, rotation)
+    result = solve(problem, HISTORY, nodes=101, between=60)
+    slipped = 0
+    for before, after in pairwise(result):
+        closed = (before.status != OPEN) & (after.status != OPEN)
+        slid = np.where(closed, after.slip - before.slip, 0.0)
+        moved = np.abs(slid) > 1e-9
+        assert np.all(slid[moved] * after.shear[moved] <= 0.0)
+        if before.step == after.step:
+            reserve = problem.friction * after.pressure - np.abs(after.shear)
+            freed = moved & (before.status == after.status) & (after.status == STICK)
+            assert np.all(np.abs(slid[freed]) < 1e-4 * np.abs(after.slip).max())  # stuck again in between
+            assert np.all(reserve > -1e-12)
+        slipped += int(moved.sum())
+    assert slipped > 1000
+
+
+def test_a_symmetric_contact_is_symmetric(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    state = solve(problem, [{"P": 1.0}], nodes=150)[-1]
+    bottom = int(np.argmin(np.abs(state.theta - BOTTOM)))
+    reach = min(bottom, 149 - bottom)
+    left = np.arange(bottom, bottom - reach, -1)
+    right = np.arange(bottom, bottom + reach)
+    assert state.theta[bottom] == pytest.approx(BOTTOM, abs=1e-12)
+    assert np.abs(state.pressure[left] - state.pressure[right]).max() < 1e-11
+    assert np.abs(state.shear[left] + state.shear[right]).max() < 1e-11
+    assert abs(state.rotation) < 1e-11
+    assert abs(state.dx) < 1e-11
 
 
 @pytest.mark.parametrize(
