@@ -123,10 +123,9 @@ class System:
         pair = problem.pair
         n, theta = grid.size, grid.theta
         left, right = grid.knots()
-        spacing = np.diff(theta)
-        uniform = bool(np.ptp(spacing) <= 1e-12 * spacing[0] * n)
         direct, cross = np.empty((n, n)), np.empty((n, n))
-        kernels.fill_log(theta, left, right, uniform, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
+        ratio = pair.alpha_star / pair.beta_star
+        kernels.fill_log(theta, left, right, grid.uniform, grid.closed, ratio, direct, cross)
 
         operator = np.empty((2 * n, 2 * n), order="F")
         weights = grid.weights

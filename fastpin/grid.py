@@ -81,6 +81,14 @@ class Grid:
         left, right = self.knots()
         return 0.5 * (right - left)
 
+    @property
+    def uniform(self) -> bool:
+        """Whether all nodes are equally spaced, on a circle also across the seam."""
+        spacing = self.knots()[1] - self.theta
+        if not self.closed:
+            spacing = spacing[:-1]
+        return bool(np.ptp(spacing) <= 1e-12 * self.size * spacing[0])
+
     def trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Integrals of every node's hat function times cos theta and times sin theta, shape (n,) each. Exact."""
         left, right = self.knots()

@@ -25,12 +25,8 @@ def cauchy_matrix(grid: Grid) -> np.ndarray:
     The hats at the ends of an arc have no principal value at their own nodes: NaN there.
     """
     left, right = grid.knots()
-    spacing = right - grid.theta
-    if not grid.closed:
-        spacing = spacing[:-1]
-    uniform = bool(np.ptp(spacing) <= 1e-12 * grid.size * spacing[0])
     out = np.empty((grid.size, grid.size))
-    kernels.fill_cauchy(grid.theta, left, right, uniform, grid.closed, out)
+    kernels.fill_cauchy(grid.theta, left, right, grid.uniform, grid.closed, out)
     return out
 
 

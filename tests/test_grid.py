@@ -63,3 +63,12 @@ def test_bad_grids_are_refused_by_name(make, field):
     with pytest.raises(InputError) as caught:
         make()
     assert caught.value.field == field
+
+
+def test_uniform_nodes_are_recognised():
+    assert Grid.arc(-2.0, 1.0, 77).uniform
+    assert Grid.circle(31).uniform
+    nodes = np.linspace(-2.0, 1.0, 31)
+    assert not Grid(nodes, closed=True).uniform  # equally spaced but for the seam
+    nodes[3] += 1e-6
+    assert not Grid(nodes).uniform

@@ -211,6 +211,15 @@ def test_arc_and_circle_agree(similar):
         assert np.abs(whole.shear[30:150] - part.shear).max() < 1e-11
 
 
+def test_a_circle_with_a_wide_seam_is_not_taken_for_a_uniform_one(similar):
+    """Nodes equally spaced but for one wide interval at the top, where nothing touches: the same state as on an arc."""
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    nodes = np.linspace(BOTTOM - 1.6, BOTTOM + 1.6, 81)
+    arc, seamed = (solve(problem, HISTORY[:2], grid=Grid(nodes, closed))[-1] for closed in (False, True))
+    assert np.abs(arc.pressure - seamed.pressure).max() < 1e-10
+    assert np.abs(arc.shear - seamed.shear).max() < 1e-10
+
+
 @pytest.mark.parametrize("block", range(10))
 def test_random_histories(block):
     """No wrong state, and no error: all of these have an equilibrium. scripts/random_histories.py runs a thousand."""
