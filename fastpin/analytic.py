@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from fastpin.checks import one_of
 from fastpin.errors import InputError
-from fastpin.materials import one_of
 
 Branch = Literal["loading", "unloading", "reloading"]
 Values = float | np.ndarray

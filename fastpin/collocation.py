@@ -112,6 +112,10 @@ class System:
     weights: np.ndarray
     plate: float
 
+    def reaches_end(self, configuration: Configuration) -> bool:
+        """Whether the contact reaches an end node of an arc, where it is cut off."""
+        return not self.grid.closed and bool(configuration.closed[[0, -1]].any())
+
     @property
     def resting_status(self) -> int:
         """Status of a closed node that does not move: sticking, or slipping where there is no friction."""
@@ -211,6 +215,11 @@ class System:
         column = self.loads @ load
         internal = float((self.weights * column[:n]) @ change[:n] + (self.weights * column[n:]) @ change[n:])
         return float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
+
+    def dissipated(self, before: Configuration, after: Configuration) -> float:
+        """Energy that friction dissipates between two configurations, with the mean shear (dimensionless)."""
+        slid = np.where(after.closed, after.slip - before.slip, 0.0)
+        return -0.5 * float((self.weights * slid) @ (before.shear + after.shear))
 
     def energy(self, configuration: Configuration) -> float:
         """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""

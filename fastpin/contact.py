@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fastpin.collocation import MAX_RESIDUAL, ROTATION, SYY, Configuration, M, P, Q, System
-from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError
+from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError
 from fastpin.increment import implicit_step
 from fastpin.state import OPEN
 from fastpin.zones import runs
@@ -63,17 +63,19 @@ def released(system: System, last: Configuration, load: np.ndarray) -> Configura
     deep = approach > width
     if deep.any():
         position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
-    _put_at_rest(system, new, position, system.gap0 + system.motion[:n, :2] @ position)
+    _put_at_rest(system, new, load, position, system.gap0 + system.motion[:n, :2] @ position)
     return new
 
 
-def _put_at_rest(system: System, configuration: Configuration, rest: np.ndarray, rest_gap: np.ndarray) -> None:
-    """Let motion and slip count from the position `rest`, in which nothing is in contact."""
+def _put_at_rest(
+    system: System, configuration: Configuration, load: np.ndarray, rest: np.ndarray, rest_gap: np.ndarray
+) -> None:
+    """Let motion and slip count from the position `rest`, in which nothing is in contact, under the load `load`."""
     n = system.grid.size
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.rotation == "fixed"
-    configuration.motion = np.array([0.0, 0.0, configuration.load[ROTATION] if held else configuration.motion[2]])
-    free = system.loads @ configuration.load
+    configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
+    free = system.loads @ load
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
     configuration.slip = free[n:] + configuration.motion[2]
     configuration.rest_slip = configuration.slip.copy()
@@ -108,6 +110,8 @@ def at_rest(
     ------
     NoEquilibriumError
         If a moment acts on a pin that nothing holds, or is more than friction at a point can carry.
+    ArcError
+        If the pin touches the hole outside the arc.
     """
     begins = 0.0
     force = np.array([after[Q], -after[P]])
@@ -131,11 +135,9 @@ def at_rest(
         angle = math.atan2(force[1], force[0]) + math.asin(tangential)
         rest, rest_gap = rest_position(system, before, angle)
     resting = floating.copy()
-    resting.load = before + begins * (after - before)
     if np.isnan(resting.origin).any():
         resting.origin = rest.copy()
-    _put_at_rest(system, resting, rest, rest_gap)
-    resting.load = before.copy()
+    _put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
     nearness = resting.gap
     if np.ptp(nearness) == 0.0:  # a neat fit: where the load will close it
         nearness = system.loads[: system.grid.size] @ (after - before)
@@ -184,6 +186,8 @@ def first_contact(
         See :func:`at_rest`.
     ConvergenceError
         If no first contact was found on this grid.
+    ArcError
+        If the pin touches the hole outside the arc or at its end.
     """
     resting = at_rest(system, floating, before, after)
     if resting is None:
@@ -260,12 +264,11 @@ def _first_patch(
             "nodes or leave that load out"
         )
     _, found, fraction = best
-    ends = np.array([0, system.grid.size - 1])
-    if not system.grid.closed and found.closed[ends].any():
-        raise ArcError("the contact reaches an end of the arc; give a wider one, or none")
-    slid = np.where(found.closed, found.slip - resting.slip, 0.0)
-    found.dissipation -= 0.5 * float((system.weights * slid) @ found.shear)
-    found.work += system.energy(found) + found.dissipation - resting.dissipation
+    if system.reaches_end(found):
+        raise ArcError(CUT_OFF)
+    dissipated = system.dissipated(resting, found)
+    found.dissipation += dissipated
+    found.work += system.energy(found) + dissipated
     return found, fraction
 
 
@@ -283,7 +286,7 @@ def _shearless_step(system: System, resting: Configuration, load: np.ndarray) ->
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
-    """Part of the step's force at which a Hertz contact spans about five nodes."""
+    """A first guess: the part of the step's force at which a Hertz contact spans about five nodes."""
     force = float(np.hypot(change[Q], change[P]))
     if force == 0.0:
         return 1e-4

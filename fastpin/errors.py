@@ -8,6 +8,9 @@ if TYPE_CHECKING:
     from fastpin.state import Result
 
 
+CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
+
+
 class FastpinError(Exception):
     """Base class of all errors raised by fastpin."""
 

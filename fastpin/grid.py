@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.checks import finite, whole_number
 from fastpin.errors import InputError
-from fastpin.materials import finite
+
+LEAST_NODES = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +35,8 @@ class Grid:
 
     def __post_init__(self) -> None:
         theta = np.array(self.theta, dtype=float)
-        if theta.ndim != 1 or theta.size < 5:
-            raise InputError("nodes", f"must be at least 5, not {theta.size}")
+        if theta.ndim != 1 or theta.size < LEAST_NODES:
+            raise InputError("nodes", f"must be at least {LEAST_NODES}, not {theta.size}")
         if not np.all(np.isfinite(theta)) or np.any(np.diff(theta) <= 0.0):
             raise InputError("theta", "node angles must be finite and strictly increasing")
         if theta[-1] - theta[0] >= 2.0 * math.pi:
@@ -50,12 +52,12 @@ class Grid:
             raise InputError(
                 "arc", f"must run from a smaller to a larger angle, less than a full turn, not {a:g} to {b:g}"
             )
-        return cls(np.linspace(a, b, _node_count(nodes)))
+        return cls(np.linspace(a, b, whole_number("nodes", nodes, LEAST_NODES)))
 
     @classmethod
     def circle(cls, nodes: int, start: float = -1.5 * math.pi) -> Grid:
         """`nodes` equally spaced nodes on the whole circle, the first one at angle `start`."""
-        count = _node_count(nodes)
+        count = whole_number("nodes", nodes, LEAST_NODES)
         return cls(finite("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
 
     @property
@@ -107,9 +109,3 @@ def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
         series = length**2 / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
     odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
     return even + 1j * sense * odd
-
-
-def _node_count(nodes: int) -> int:
-    if isinstance(nodes, bool) or not isinstance(nodes, (int, np.integer)) or nodes < 5:
-        raise InputError("nodes", f"must be a whole number of at least 5, not {nodes!r}")
-    return int(nodes)

@@ -76,16 +76,13 @@ def _wanted_status(system: System, start: Configuration, solution: Solution, sta
     closing = (status == OPEN) & (solution.gap < -length_tol)
     wanted[closing] = np.where(slid[closing] < 0.0, -1, 1)
     closed = status != OPEN
-    opening = closed & (solution.pressure < -traction_tol)
-    wanted[opening] = OPEN
-    if system.friction == 0.0:
-        return wanted
-    slipping = closed & (status != STICK)
-    wanted[slipping & (status * slid < -length_tol)] = STICK
-    letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
-    wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
-    wanted[opening] = OPEN
-    if system.problem.rotation == "free" and not np.any(wanted == STICK):
+    if system.friction > 0.0:
+        slipping = closed & (status != STICK)
+        wanted[slipping & (status * slid < -length_tol)] = STICK
+        letting_go = (status == STICK) & (np.abs(solution.shear) > system.friction * solution.pressure + traction_tol)
+        wanted[letting_go] = np.where(solution.shear[letting_go] > 0.0, -1, 1)
+    wanted[closed & (solution.pressure < -traction_tol)] = OPEN
+    if system.friction > 0.0 and system.problem.rotation == "free" and not np.any(wanted == STICK):
         _hold_one(wanted, status, solution, system.friction, slid)
     return wanted
 

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin import kernels
+from fastpin.checks import finite
 from fastpin.errors import InputError
 from fastpin.grid import Grid
-from fastpin.materials import finite
 from fastpin.problem import Problem
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from fastpin.checks import finite, whole_number
 from fastpin.errors import InputError
-from fastpin.materials import finite
 from fastpin.problem import Problem
 
 LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
@@ -67,7 +67,7 @@ class LoadHistory:
     @classmethod
     def monotonic(cls, steps: int = 1, **loads: float) -> LoadHistory:
         """Proportional loading from nothing to `loads`, with `steps` equally spaced corners."""
-        _positive_count("steps", steps)
+        whole_number("steps", steps, 1)
         return cls({k: v * (i + 1) / steps for k, v in loads.items()} for i in range(steps))
 
     @classmethod
@@ -87,7 +87,7 @@ class LoadHistory:
         return_to_mean : bool
             Append the mean load as a last corner.
         """
-        _positive_count("count", count)
+        whole_number("count", count, 1)
         if start not in (1, -1):
             raise InputError("start", f"must be 1 or -1, not {start!r}")
         for field, loads in (("mean", mean), ("amplitude", amplitude)):
@@ -147,7 +147,7 @@ class LoadHistory:
 
     def repeated(self, count: int) -> LoadHistory:
         """The same corners `count` times in a row."""
-        _positive_count("count", count)
+        whole_number("count", count, 1)
         return LoadHistory._from_given(np.tile(self._given, (count, 1)))
 
     def __add__(self, other: LoadHistory) -> LoadHistory:
@@ -210,8 +210,3 @@ def _load_index(name: object, where: str) -> int:
     close = difflib.get_close_matches(str(name).lower(), folded, n=1)
     hint = f', did you mean "{folded[close[0]]}"?' if close else ""
     raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")
-
-
-def _positive_count(field: str, value: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
-        raise InputError(field, f"must be a whole number of at least 1, not {value!r}")

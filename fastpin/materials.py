@@ -16,31 +16,11 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from fastpin.checks import finite, one_of
 from fastpin.errors import InputError
 
 Plane = Literal["strain", "stress"]
 Convention = Literal["usual", "paper"]
-
-
-def finite(field: str, value: float) -> float:
-    """Return `value` as a float, or raise :class:`InputError` naming `field`."""
-    if isinstance(value, (bool, str)):
-        raise InputError(field, f"must be a number, not {value!r}")
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(field, f"must be a number, not {value!r}") from None
-    if not math.isfinite(number):
-        raise InputError(field, f"must be a finite number, not {number}")
-    return number
-
-
-def one_of(field: str, value: str, allowed: tuple[str, ...]) -> str:
-    """Return `value` if it is one of `allowed`, or raise :class:`InputError` naming `field`."""
-    if value not in allowed:
-        choices = " or ".join(f'"{choice}"' for choice in allowed)
-        raise InputError(field, f"must be {choices}, not {value!r}")
-    return value
 
 
 @dataclass(frozen=True)

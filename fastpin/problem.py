@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from fastpin.checks import finite, one_of
 from fastpin.errors import InputError
-from fastpin.materials import MaterialPair, finite, one_of
+from fastpin.materials import MaterialPair
 
 PinLoad = Literal["centre", "body"]
 Rotation = Literal["free", "fixed"]

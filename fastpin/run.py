@@ -11,7 +11,7 @@ import numpy as np
 from fastpin import tableau
 from fastpin.collocation import MAX_RESIDUAL, Configuration, M, P, Q, System
 from fastpin.contact import first_contact, released, unloaded
-from fastpin.errors import ArcError, ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
 from fastpin.loading import LoadHistory, named_load
 from fastpin.path import PathStep, StepLostError
@@ -75,7 +75,7 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
     """What to raise when the path is lost at the configuration `lost`; `held` if the pin can't rotate freely."""
     closed = int(lost.closed.sum())
     if code == tableau.ARC_END:
-        return ArcError("the contact reaches an end of the arc; give a wider one, or none")
+        return ArcError(CUT_OFF)
     if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
         return ConvergenceError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == tableau.NO_SUPPORT:
@@ -289,12 +289,10 @@ class Run:
             self._increment(start, 0.5 * (start.load + load), halvings - 1)
             self._increment(self.now, load, halvings - 1)
             return
-        ends = np.array([0, system.grid.size - 1])
-        if not system.grid.closed and found.closed[ends].any():
-            raise ArcError("the contact reaches an end of the arc; give a wider one, or none")
+        if system.reaches_end(found):
+            raise ArcError(CUT_OFF)
         found.work = start.work + system.work(start, found)
-        slid = np.where(found.closed, found.slip - start.slip, 0.0)
-        found.dissipation = start.dissipation - 0.5 * float((system.weights * slid) @ (start.shear + found.shear))
+        found.dissipation = start.dissipation + system.dissipated(start, found)
         self.now = found
         self.touched |= found.closed
         self.statistics["increments"] += 1

@@ -10,11 +10,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from fastpin.arc import grids_to_try
+from fastpin.checks import finite, one_of, whole_number
 from fastpin.collocation import System
 from fastpin.errors import ArcError, InputError, SolveError
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory, check_loads
-from fastpin.materials import finite, one_of
 from fastpin.problem import Problem
 from fastpin.run import Method, Progress, Run
 from fastpin.state import Result
@@ -86,50 +86,32 @@ def solve(
     if start is not None and not isinstance(start, Result):
         raise InputError("start", f"must be a Result, not {start!r}")
     one_of("method", method, ("path", "increment"))
-    if isinstance(increments, bool) or not isinstance(increments, (int, np.integer)) or increments < 1:
-        raise InputError("increments", f"must be a whole number of at least 1, not {increments!r}")
+    increments = whole_number("increments", increments, 1)
     check_loads(problem, history)
     fractions = _fractions(between)
     if arc is not None:
         arc = _checked_arc(arc)
+    if start is not None and start.problem != problem:
+        raise InputError("start", "the result to go on from belongs to another problem")
+    if start is not None and start.restart is None:
+        raise InputError("start", "this result can't be gone on from: it was read from a file")
     began = time.perf_counter()
     # One thread: results don't depend on the machine, and below a thousand nodes it is the fastest way.
     with threadpool_limits(limits=1, user_api="blas"):
-        return _solve(problem, history, nodes, method, increments, arc, grid, fractions, start, progress, began)
+        if start is not None and start.restart is not None:
+            system = System.build(problem, start.grid, start.restart.force)
+            run = Run(system, method, increments, fractions, progress, start.restart.configuration.copy())
+            return _finished(run, history, history.values(initial=start.restart.load), began)
 
-
-def _solve(
-    problem: Problem,
-    history: LoadHistory,
-    nodes: int,
-    method: Method,
-    increments: int,
-    arc: tuple[float, float] | None,
-    grid: Grid | None,
-    fractions: np.ndarray,
-    start: Result | None,
-    progress: Progress | None,
-    began: float,
-) -> Result:
-    """:func:`solve` with checked input."""
-    if start is not None:
-        if start.problem != problem:
-            raise InputError("start", "the result to go on from belongs to another problem")
-        if start.restart is None:
-            raise InputError("start", "this result can't be gone on from: it was read from a file")
-        system = System.build(problem, start.grid, start.restart.force)
-        run = Run(system, method, increments, fractions, progress, start.restart.configuration.copy())
-        return _finished(run, history, history.values(initial=start.restart.load), began)
-
-    values = history.values()
-    force = reference_force(problem, values)
-    for chosen in _grids(problem, values, force, nodes, arc, grid, progress):
-        run = Run(System.build(problem, chosen, force), method, increments, fractions, progress)
-        try:
-            return _finished(run, history, values, began)
-        except ArcError:
-            if arc is not None or grid is not None:
-                raise
+        values = history.values()
+        force = reference_force(problem, values)
+        for chosen in _grids(problem, values, force, nodes, arc, grid, progress):
+            run = Run(System.build(problem, chosen, force), method, increments, fractions, progress)
+            try:
+                return _finished(run, history, values, began)
+            except ArcError:
+                if arc is not None or grid is not None:
+                    raise
     raise AssertionError("the whole circle has no ends")
 
 
