@@ -199,6 +199,23 @@ def hat_cauchy(u, h_left, h_right):
 
 
 @compiled
+def _fill_toeplitz(values, parity, closed, out):
+    """out[i, j] = values[i - j], with values[-k] = parity values[k]; mirrored entries have the same bits.
+
+    On a circle only the first half of `values` is given; the rest follows by symmetry.
+    """
+    n = values.size
+    if closed:
+        for k in range(n // 2 + 1, n):
+            values[k] = parity * values[n - k]
+        if parity < 0.0 and n % 2 == 0:
+            values[n // 2] = 0.0  # odd about the opposite node
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = values[i - j] if i >= j else parity * values[j - i]
+
+
+@compiled
 def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     """Integrals of direct and cross over every hat, seen from every node.
 
@@ -228,19 +245,10 @@ def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
     row_d = np.empty(n)
     row_c = np.empty(n)
-    for k in range(n):
-        if closed and 2 * k > n:
-            row_d[k] = row_d[n - k]
-            row_c[k] = -row_c[n - k]
-        else:
-            row_d[k], row_c[k] = hat_log(k * h, h, h, ratio)
-    if closed and n % 2 == 0:
-        row_c[n // 2] = 0.0  # odd about the opposite node
-    for i in range(n):
-        for j in range(n):
-            k = i - j
-            direct[i, j] = row_d[abs(k)]
-            cross[i, j] = row_c[k] if k >= 0 else -row_c[-k]
+    for k in range(n // 2 + 1 if closed else n):
+        row_d[k], row_c[k] = hat_log(k * h, h, h, ratio)
+    _fill_toeplitz(row_d, 1.0, closed, direct)
+    _fill_toeplitz(row_c, -1.0, closed, cross)
     if not closed:
         for i in range(n):
             d, c = hat_log(i * h, 0.0, h, ratio)
@@ -267,14 +275,9 @@ def fill_cauchy(theta, left, right, uniform, closed, out):
         return
     h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
     row = np.empty(n)
-    for k in range(n):
-        row[k] = -row[n - k] if closed and 2 * k > n else hat_cauchy(k * h, h, h)
-    if closed and n % 2 == 0:
-        row[n // 2] = 0.0
-    for i in range(n):
-        for j in range(n):
-            k = i - j
-            out[i, j] = row[k] if k >= 0 else -row[-k]
+    for k in range(n // 2 + 1 if closed else n):
+        row[k] = hat_cauchy(k * h, h, h)
+    _fill_toeplitz(row, -1.0, closed, out)
     if not closed:
         for i in range(n):
             value = hat_cauchy(i * h, 0.0, h)

@@ -21,6 +21,9 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.jit import compiled
+from fastpin.state import OPEN, STICK
+from fastpin.state import SLIP_NEGATIVE as NEGATIVE
+from fastpin.state import SLIP_POSITIVE as POSITIVE
 
 # What `follow` returns.
 REACHED = 0  # the requested point of the step
@@ -34,8 +37,6 @@ ARC_END = 5  # the contact reaches an end node
 PENDING, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, COUNTS = 0, 1, 2, 3, 4, 5, 6
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
-
-NEGATIVE, STICK, POSITIVE, OPEN = -1, 0, 1, 2  # as in state.py
 
 RATE_TOLERANCE = 1e-11  # rates below this part of the largest one are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
