@@ -286,12 +286,19 @@ def _shearless_step(system: System, resting: Configuration, load: np.ndarray) ->
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
-    """A first guess: the part of the step's force at which a Hertz contact spans about five nodes."""
+    """A first guess: the part of the step's load at which a contact spans about five nodes.
+
+    A force presses a Hertz contact; a hole that shrinks on the pin overlaps it by half the curvature times the square
+    of the contact's half-width.
+    """
     force = float(np.hypot(change[Q], change[P]))
-    if force == 0.0:
-        return 1e-4
     theta = system.grid.theta[np.argmin(resting.gap)]
     gap, _, curvature = hole_gap(system, resting.load, theta)
-    spacing = float(np.median(system.grid.weights))
-    part = math.pi * max(float(gap + curvature), 0.0) * (2.5 * spacing) ** 2 / force
+    half = 2.5 * float(np.median(system.grid.weights))
+    bend = max(float(gap + curvature), 0.0)
+    if force == 0.0:
+        shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
+        part = 0.5 * bend * half**2 / shrinking if shrinking > 0.0 else LEAST_PART
+    else:
+        part = math.pi * bend * half**2 / force
     return min(max(part, LEAST_PART), 1.0)
