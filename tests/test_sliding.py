@@ -1,0 +1,259 @@
+"""Full sliding, Eq. (58), against closed forms, the other kernels of the package, and the path solver."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from fastpin import (
+    MATERIALS,
+    ConvergenceError,
+    Grid,
+    InputError,
+    Material,
+    MaterialPair,
+    NoEquilibriumError,
+    Problem,
+    analytic,
+    solve,
+)
+from fastpin.collocation import System
+from fastpin.sliding import Sliding, solve_sliding
+
+BOTTOM = -0.5 * math.pi
+SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
+TITANIUM_ALUMINIUM = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
+SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
+PAIRS = pytest.mark.parametrize("pair", [SIMILAR, TITANIUM_ALUMINIUM, RIGID_PIN, SOFT_PIN])
+
+
+def in_si(pair: MaterialPair, load_parameter: float, friction: float, **options: object) -> tuple[Problem, float]:
+    """A problem with a hole of 10 mm and a clearance of 20 um, and the force that gives the load parameter."""
+    problem = Problem(pair, 10e-3, 20e-6, friction, **options)
+    return problem, problem.clearance / (load_parameter * pair.beta_star)
+
+
+@pytest.mark.parametrize("load_parameter", [2000.0, 2.0, 0.5, 0.1, 0.01, 1e-4, 0.0, -0.03, -0.07])
+def test_without_friction_it_is_persson(load_parameter):
+    found = solve_sliding(Problem.from_load_parameter(SIMILAR, load_parameter, 0.0), {"P": 1.0})
+    half = analytic.persson_half_angle(load_parameter)
+    assert np.asarray(found.contact) - BOTTOM == pytest.approx([-half, half], rel=1e-10)
+    phi = half * np.linspace(-0.999, 0.999, 101)
+    expected = analytic.persson_pressure(phi, half)
+    assert found.pressure(BOTTOM + phi) == pytest.approx(expected, abs=1e-10 * expected.max())
+    assert found.peak_pressure == pytest.approx(expected.max(), rel=1e-10)
+    assert found.exponents == (0.5, 0.5)
+    assert found.moment == 0.0
+
+
+@pytest.mark.parametrize("mismatch", [-0.6, 0.3, 0.8])
+@pytest.mark.parametrize("load_parameter", [1.0, 0.05, 0.0])
+def test_without_friction_and_alpha_star_it_is_ciavarella_and_decuzzi(load_parameter, mismatch):
+    pair = MaterialPair(Material(1.0 - mismatch, 0.5), Material(1.0 + mismatch, 0.5))
+    assert pair.alpha_star == pytest.approx(0.0, abs=1e-15)
+    found = solve_sliding(Problem.from_load_parameter(pair, load_parameter, 0.0), {"P": 1.0})
+    half = analytic.persson_half_angle(load_parameter, mismatch)
+    assert found.contact[1] - BOTTOM == pytest.approx(half, rel=1e-10)
+    assert found.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, half), rel=1e-10)
+
+
+@PAIRS
+def test_without_friction_it_is_the_path_solver_for_any_pair(pair):
+    problem, force = in_si(pair, 0.05, 0.0)
+    found = solve_sliding(problem, {"P": force})
+    state = solve(problem, [{"P": force}], nodes=301)[-1]
+    assert state.peak_pressure == pytest.approx(found.peak_pressure, rel=1e-5)
+    assert state.contact[0] == pytest.approx(found.contact, abs=0.1 * (state.theta[1] - state.theta[0]))
+
+
+@PAIRS
+@pytest.mark.parametrize("remote", [{}, {"sxx": 0.12, "syy": -0.05}])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_path_solver_comes_to_it(pair, remote, side):
+    """Rotation held, P and then so much Q that the whole contact slides, to either side."""
+    problem, force = in_si(pair, 0.75, 0.3, pin_load="centre", rotation="fixed")
+    stress = {name: value * force / problem.hole_radius for name, value in remote.items()}
+    state = solve(problem, [{"P": force, **stress}, {"Q": side * force}], nodes=301)[-1]
+    assert not state.stick
+    slip = {sign for _, _, sign in state.slip_zones}
+    assert slip == {int(side)}
+    found = solve_sliding(problem, {"P": force, "Q": side * force, **stress}, slip=int(side))
+    assert state.peak_pressure == pytest.approx(found.peak_pressure, rel=2e-5)
+    assert state.peak_pressure_angle == pytest.approx(found.peak_pressure_angle, abs=1e-4)
+    # the path solver's edges are extrapolated with a square root, which unlike bodies do not quite have
+    assert state.contact[0] == pytest.approx(found.contact, abs=0.3 * (state.theta[1] - state.theta[0]))
+    away = np.abs(state.theta - np.mean(found.contact)) < 0.45 * np.ptp(found.contact)
+    assert state.pressure[away] == pytest.approx(found.pressure(state.theta[away]), rel=1e-3)
+    assert state.shear[away] == pytest.approx(found.shear(state.theta[away]), rel=1e-3)
+    assert state.resultants["M"] == pytest.approx(found.moment, rel=1e-5)
+
+
+@pytest.mark.parametrize("slip", [1, -1])
+def test_a_free_pin_spins_at_its_moment(slip):
+    """A pin that rotates freely carries every smaller moment and no larger one."""
+    problem, force = in_si(TITANIUM_ALUMINIUM, 0.2, 0.3, pin_load="centre")
+    found = solve_sliding(problem, {"P": force}, slip=slip)
+    assert math.copysign(1.0, found.moment) == slip
+    grid = Grid.arc(BOTTOM - 1.5, BOTTOM + 1.5, 201)
+    held = solve(problem, [{"P": force}, {"M": 0.999 * found.moment}], grid=grid)[-1]
+    assert held.stick
+    with pytest.raises(NoEquilibriumError) as lost:
+        solve(problem, [{"P": force}, {"M": 1.01 * found.moment}], grid=grid)
+    assert lost.value.load["M"] == pytest.approx(found.moment, rel=1e-4)
+
+
+@PAIRS
+@pytest.mark.parametrize("slip", [1, -1])
+def test_the_gap_vanishes_with_the_kernels_of_the_solver(pair, slip):
+    """h of the full displacement equations (9)-(12), with remote stress, at second order in the node distance."""
+    problem = Problem.from_load_parameter(pair, 0.4, 0.5, "body")
+    load = {"P": 0.8, "Q": 0.6, "sxx": 0.1, "syy": 0.07}
+    found = solve_sliding(problem, load, slip)
+    start, stop = found.contact
+    errors = []
+    for nodes in (101, 401):
+        u = np.linspace(0.0, math.pi, nodes)  # gathered at the ends
+        theta = 0.5 * (start + stop) - 0.5 * (stop - start) * np.cos(u)
+        system = System.build(problem, Grid(theta), 1.0)
+        tractions = np.r_[found.pressure(theta), found.shear(theta)]
+        vector = np.array([load["P"], load["Q"], 0.0, load["sxx"], load["syy"], 0.0])
+        gap = system.displacement(tractions, np.zeros(3), vector, system.gap0)[:nodes]
+        motion = np.column_stack([np.cos(theta), np.sin(theta)])
+        rest = gap - motion @ np.linalg.lstsq(motion, gap, rcond=None)[0]
+        errors.append(np.abs(rest).max())
+    assert errors[1] < 2e-5
+    assert errors[0] / errors[1] > 10.0
+
+
+@pytest.mark.parametrize("slip", [1, -1])
+def test_equilibrium(slip):
+    problem, force = in_si(RIGID_PIN, 0.1, 0.6, pin_load="centre", rotation="fixed")
+    load = {"P": 0.9 * force, "Q": -0.3 * force, "sxx": 0.05 * force / 10e-3}
+    found = solve_sliding(problem, load, slip)
+
+    def total(part):
+        return problem.hole_radius * quad(part, *found.contact, epsabs=0.0, epsrel=1e-10)[0]
+
+    vertical = total(lambda x: found.shear(x) * math.cos(x) - found.pressure(x) * math.sin(x))
+    horizontal = total(lambda x: found.shear(x) * math.sin(x) + found.pressure(x) * math.cos(x))
+    assert vertical == pytest.approx(load["P"], rel=1e-8)
+    assert horizontal == pytest.approx(load["Q"], rel=1e-8)
+    assert -problem.hole_radius * total(found.shear) == pytest.approx(found.moment, rel=1e-8)
+
+
+@PAIRS
+def test_mirror_image(pair):
+    problem = Problem.from_load_parameter(pair, 0.2, 0.5)
+    one = solve_sliding(problem, {"P": 1.0, "Q": 0.4, "sxx": 0.1}, 1)
+    two = solve_sliding(problem, {"P": 1.0, "Q": -0.4, "sxx": 0.1}, -1)
+    assert [-math.pi - x for x in two.contact[::-1]] == pytest.approx(one.contact, abs=1e-12)
+    x = np.linspace(*one.contact, 31)[1:-1]
+    assert two.pressure(-math.pi - x) == pytest.approx(one.pressure(x), abs=1e-10)
+    assert two.shear(-math.pi - x) == pytest.approx(-one.shear(x), abs=1e-10)
+    assert two.moment == pytest.approx(-one.moment, rel=1e-12)
+
+
+def test_turned_round_with_load_and_stress():
+    """Everything turned by 90 degrees: P takes the place of Q, syy that of sxx."""
+    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.2, 0.5)
+    one = solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.1, "syy": -0.05}, 1)
+    two = solve_sliding(problem, {"P": -0.3, "Q": 1.0, "sxx": -0.05, "syy": 0.1}, 1)
+    assert np.array(two.contact) - 0.5 * math.pi == pytest.approx(one.contact, abs=1e-12)
+    assert two.peak_pressure == pytest.approx(one.peak_pressure, rel=1e-12)
+
+
+def errors_in_terms(pair: MaterialPair, counts: tuple[int, ...], exact: int) -> tuple[list[float], list[float]]:
+    """Errors of the peak pressure and of the ends against a solution with more terms."""
+    problem = Problem.from_load_parameter(pair, 0.1, 0.4)
+    load = {"P": 1.0, "Q": 0.4}
+    true = solve_sliding(problem, load, terms=exact)
+    found = [solve_sliding(problem, load, terms=count) for count in counts]
+    peaks = [abs(one.peak_pressure / true.peak_pressure - 1.0) for one in found]
+    return peaks, [float(np.abs(np.subtract(one.contact, true.contact)).max()) for one in found]
+
+
+def test_errors_of_like_bodies_fall_exponentially():
+    peaks, ends = errors_in_terms(SIMILAR, (4, 8, 12, 16), 64)
+    assert peaks[0] < 1e-2
+    assert peaks[1] < 1e-3 * peaks[0]
+    assert peaks[2] < 1e-3 * peaks[1]
+    assert max(peaks[3], ends[2], ends[3]) < 1e-13
+
+
+def test_errors_of_unlike_bodies_fall_with_the_fourth_power():
+    _, ends = errors_in_terms(TITANIUM_ALUMINIUM, (8, 16, 32, 64), 128)
+    assert -np.polyfit(np.log([8, 16, 32, 64]), np.log(ends), 1)[0] == pytest.approx(3.9, abs=0.4)
+    assert ends[-1] < 1e-8
+
+
+@pytest.mark.parametrize("slip", [1, -1])
+def test_pressure_falls_to_zero_with_the_exponents(slip):
+    found = solve_sliding(Problem.from_load_parameter(RIGID_PIN, 0.1, 1.0), {"P": 1.0}, slip)
+    assert sum(found.exponents) == pytest.approx(1.0)
+    assert abs(found.exponents[0] - 0.5) > 0.03
+    x = np.array([1e-7, 1e-6])
+    for end, sense, power in zip(found.contact, (1.0, -1.0), found.exponents, strict=True):
+        left, right = found.pressure(end + sense * x)
+        assert math.log(right / left) / math.log(10.0) == pytest.approx(power, abs=1e-4)
+    alpha = RIGID_PIN.alpha_star / RIGID_PIN.beta_star
+    # T = -slip mu N; the right end has cot(pi r) = sign(T) mu alpha*/(2 beta*)
+    assert 1.0 / math.tan(math.pi * found.exponents[1]) == pytest.approx(-slip * 0.5 * alpha)
+
+
+def test_the_sense_of_slip_does_not_matter_without_friction():
+    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.0)
+    one, two = (solve_sliding(problem, {"P": 1.0, "Q": 0.2}, slip) for slip in (1, -1))
+    assert one.contact == two.contact
+    assert np.all(one.shear(np.linspace(-3.0, 0.0, 20)) == 0.0)
+
+
+def test_pressure_is_zero_outside_and_periodic():
+    found = solve_sliding(Problem.from_load_parameter(SIMILAR, 0.1, 0.4), {"P": 1.0})
+    start, stop = found.contact
+    assert found.pressure([stop + 1e-6, start - 1e-6, stop + 2.0]) == pytest.approx(0.0)
+    inside = np.linspace(start + 0.1, stop - 0.1, 7)
+    assert found.pressure(inside + 2.0 * math.pi) == pytest.approx(found.pressure(inside), rel=1e-12)
+    assert found.pressure(BOTTOM).shape == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"load": {"P": 0.0}}, "P"),
+        ({"load": {"P": math.nan}}, "P"),
+        ({"load": {"P": 1.0, "M": 0.1}}, "M"),
+        ({"load": {"P": 1.0, "pressure": 0.1}}, "pressure"),
+        ({"load": [1.0]}, "load"),
+        ({"slip": 0}, "slip"),
+        ({"terms": 3}, "terms"),
+        ({"problem": None}, "problem"),
+    ],
+)
+def test_bad_input_is_named(change, field):
+    arguments = {"problem": Problem.from_load_parameter(SIMILAR, 0.1, 0.4), "load": {"P": 1.0}, **change}
+    with pytest.raises(InputError) as error:
+        solve_sliding(**arguments)
+    assert error.value.field == field
+
+
+def test_a_hole_that_closes_round_the_pin_is_refused():
+    with pytest.raises(ConvergenceError, match="closes round"):
+        solve_sliding(Problem.from_load_parameter(SIMILAR, -0.2, 0.3), {"P": 1.0})
+
+
+def test_a_contact_in_several_parts_is_refused():
+    """The hole is stretched along x so far that it pinches the pin from above as well."""
+    problem = Problem.from_load_parameter(SIMILAR, 0.1, 0.3)
+    with pytest.raises(ConvergenceError, match="parts"):
+        solve_sliding(problem, {"P": 1.0, "sxx": 3.0})
+
+
+def test_result_is_a_record():
+    found = solve_sliding(Problem.from_load_parameter(SIMILAR, 0.1, 0.4), {"P": 1.0})
+    assert isinstance(found, Sliding)
+    assert found.load == {"P": 1.0, "Q": 0.0, "sxx": 0.0, "syy": 0.0}
+    assert found.truncation < 1e-13
