@@ -1,0 +1,147 @@
+"""Remote stress as a load like the others: it varies with time, in any order with the loads on the pin.
+
+Its displacements (42), and (44), (45) with the singular equations, are checked in test_integral_equations.py and
+test_theory.py, full sliding under it in test_sliding.py, figure 10 of the paper in test_paper_claims.py.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin import Grid, Material, MaterialPair, Problem, analytic, solve
+from fastpin.collocation import System
+from fastpin.integral_equations import residuals
+from fastpin.loading import LOADS
+from fastpin.state import OPEN, STICK
+
+BOTTOM = -0.5 * math.pi
+METHODS = pytest.mark.parametrize("method", ["path", "increment"])
+ORDERS = [
+    [{"P": 1.0}, {"sxx": 0.12, "syy": -0.08}],
+    [{"sxx": 0.12}, {"P": 0.5, "syy": -0.08}, {"P": 1.0}],
+    [{"P": 1.0, "sxx": 0.12, "syy": -0.08}],
+    [{"P": 1.2, "sxx": -0.1}, {"P": 0.7, "syy": 0.1}, {"P": 1.0, "sxx": 0.12, "syy": -0.08}],
+]
+
+
+@pytest.mark.parametrize("order", ORDERS[1:])
+def test_without_friction_the_order_does_not_matter(titanium_in_aluminium, order):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.0)
+    grid = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121)
+    one, two = (solve(problem, corners, grid=grid)[-1] for corners in (ORDERS[0], order))
+    assert np.abs(one.pressure - two.pressure).max() < 1e-11
+
+
+def test_with_friction_the_order_matters(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4)
+    grid = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121)
+    ends = [solve(problem, corners, grid=grid)[-1] for corners in ORDERS]
+    shears = [np.abs(state.shear - ends[0].shear).max() / ends[0].peak_pressure for state in ends[1:]]
+    assert min(shears) > 0.02
+
+
+@METHODS
+@pytest.mark.parametrize("rotation", ["free", "fixed"])
+def test_all_loads_turned_by_a_quarter(titanium_in_aluminium, method, rotation):
+    """P takes the place of Q and sxx that of syy: the same tractions a quarter further, at every corner."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.4, 0.4, "centre", rotation)
+    history = [{"P": 1.0}, {"sxx": 0.1}, {"Q": 0.15, "syy": -0.1}, {"sxx": -0.1, "Q": -0.1}, {"P": 0.6, "syy": 0.05}]
+    turned = []
+    for corner in history:
+        names = {"P": ("Q", 1.0), "Q": ("P", -1.0), "sxx": ("syy", 1.0), "syy": ("sxx", 1.0)}
+        turned.append({names[name][0]: names[name][1] * value for name, value in corner.items()})
+    options = {"nodes": 101, "method": method, "increments": 20}
+    below = solve(problem, history, arc=(BOTTOM - 1.5, BOTTOM + 1.5), **options)
+    beside = solve(problem, turned, arc=(-1.5, 1.5), **options)
+    for one, two in zip(below, beside, strict=True):
+        assert np.abs(one.pressure - two.pressure).max() < 1e-9
+        assert np.abs(one.shear - two.shear).max() < 1e-9
+        assert one.rotation == pytest.approx(two.rotation, abs=1e-9)
+
+
+def test_a_symmetric_cycle_of_stress_keeps_the_contact_symmetric(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "body")
+    cycle = [{"sxx": 0.1, "syy": -0.05}, {"sxx": -0.1, "syy": 0.05}]
+    result = solve(problem, [{"P": 1.0}, *cycle * 3], grid=Grid.arc(BOTTOM - 1.5, BOTTOM + 1.5, 151))
+    for state in result:
+        assert np.abs(state.pressure - state.pressure[::-1]).max() < 1e-10
+        assert np.abs(state.shear + state.shear[::-1]).max() < 1e-10
+    assert result[-1].dissipation - result[-3].dissipation > 1e-4
+    assert np.abs(result[-1].shear - result[-3].shear).max() < 1e-10
+    assert np.abs(result[-1].shear - result[-2].shear).max() > 0.05
+
+
+def test_increments_tend_to_the_path(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.5, 0.4, "body")
+    history = [{"P": 1.0}, {"sxx": 0.15, "Q": 0.1}, {"sxx": -0.15, "syy": 0.1}]
+    grid = Grid.arc(BOTTOM - 1.3, BOTTOM + 1.3, 101)
+    path = solve(problem, history, grid=grid)[-1]
+    errors = []
+    for increments in (20, 80):
+        state = solve(problem, history, grid=grid, method="increment", increments=increments)[-1]
+        errors.append(np.abs(state.shear - path.shear).sum() / path.pressure.sum())
+    assert errors[1] < 2e-3
+    assert errors[0] / errors[1] > 2.5
+
+
+def test_the_singular_equations_hold_in_any_order(titanium_in_aluminium):
+    """(47) with G_p (45), and (46) with G_s (44), away from edges, if the pin first rested in the round hole."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "body")
+    for order in (ORDERS[0], *ORDERS[2:]):
+        worst = []
+        for nodes in (101, 401):
+            state = solve(problem, order, grid=Grid.arc(BOTTOM - 1.3, BOTTOM + 1.3, nodes))[-1]
+            load = state.load
+            first, second = residuals(
+                problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation,
+                sxx=load["sxx"], syy=load["syy"],
+            )  # fmt: skip
+            start, stop = state.contact[0]
+            inside = (state.theta > start + 0.1) & (state.theta < stop - 0.1)
+            worst.append((np.sqrt(np.mean(first[inside] ** 2)), np.sqrt(np.mean(second[inside] ** 2))))
+        assert worst[1][1] < 0.3 * worst[0][1]
+        assert worst[1][1] < 3e-5
+        assert worst[1][0] < 5e-3  # the slip has kinks where borders have been
+
+
+def test_reciprocity_of_stress_and_pin_loads():
+    """Betti: displacement of the pin per stress is what the tractions of a unit pin load do on the hole's motion."""
+    pair = MaterialPair(Material.rigid(), Material(70e9, 0.3))  # no displacements of the pin that hang on P alone
+    problem = Problem.from_load_parameter(pair, 0.3, 0.4, "centre", "fixed")
+    errors = []
+    for nodes in (51, 201):
+        system = System.build(problem, Grid.arc(BOTTOM - 1.2, BOTTOM + 1.2, nodes), 1.0)
+        status = np.full(nodes, OPEN)
+        status[nodes // 4 : -nodes // 4] = STICK
+        rates = {}
+        for name in ("P", "Q", "sxx", "syy"):
+            load = np.zeros(len(LOADS))
+            load[LOADS.index(name)] = 1.0
+            found = system.solve(status, np.zeros(nodes), load, 0.0)
+            rates[name] = found
+        weights = np.r_[system.weights, system.weights]
+        for force, direction in (("P", np.array([0.0, -1.0])), ("Q", np.array([1.0, 0.0]))):
+            for stress in ("sxx", "syy"):
+                moved = float(direction @ rates[stress].motion[:2])
+                tractions = np.r_[rates[force].pressure, rates[force].shear]
+                opened = system.loads[:, LOADS.index(stress)]
+                errors.append((nodes, moved, float(weights * tractions @ opened)))
+    for _, moved, work in errors[:4]:
+        assert moved == pytest.approx(work, abs=3e-2)
+    for _, moved, work in errors[4:]:
+        assert moved == pytest.approx(work, abs=3e-3)
+    assert max(abs(moved) for _, moved, _ in errors) > 0.3
+
+
+def test_equal_stress_all_round_is_another_clearance(similar):
+    """sxx = syy widens the hole by (R kappa'/2G) A/2: without friction the contact is Persson's for that clearance."""
+    problem = Problem.from_load_parameter(similar, 0.2, 0.0)
+    stress = 0.3
+    state = solve(problem, [{"P": 1.0}, {"sxx": stress, "syy": stress}], nodes=301)[-1]
+    widened = 0.2 + 0.25 * 0.5 * 2.0 * stress  # R kappa'/(2 G beta*) is 1/4 for like bodies
+    half = analytic.persson_half_angle(widened)
+    assert state.contact[0] == pytest.approx([BOTTOM - half, BOTTOM + half], abs=3e-4)
+    assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, half), rel=1e-5)
