@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, analytic, integral_equations, solve
+from fastpin.sliding import solve_sliding
 
 BOTTOM = -0.5 * math.pi
 SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -157,6 +158,37 @@ def half_plane(nodes: int) -> None:
     print(f"\nFalls as L_p^-{order([int(p) for p in parameters], loading):.2f}; c/a tends to {math.sqrt(0.4):.5f}.")
 
 
+def full_sliding(terms: list[int], sizes: list[int]) -> None:
+    print("\n## Full sliding")
+    print("\nEq. (58) on its own, mu = 0.4, L_p = 0.1, Q = 0.4 P; differences from twice as many terms as in the last")
+    print("row. Like bodies, and Ti-6Al-4V in aluminium.")
+    load = {"P": 1.0, "Q": 0.4}
+    problems = [Problem.from_load_parameter(pair, 0.1, 0.4) for pair in (SIMILAR, TITANIUM_ALUMINIUM)]
+    exact = [solve_sliding(problem, load, terms=2 * terms[-1]) for problem in problems]
+    rows: list[list[object]] = []
+    for count in terms:
+        row: list[object] = [count]
+        for problem, true in zip(problems, exact, strict=True):
+            found = solve_sliding(problem, load, terms=count)
+            row.append(abs(found.peak_pressure / true.peak_pressure - 1.0))
+            row.append(float(np.abs(np.subtract(found.contact, true.contact)).max()))
+        rows.append(row)
+    table(["terms", "like: peak, relative", "ends, rad", "unlike: peak, relative", "ends, rad"], rows)
+    print("\nThe path solver against it, rotation held, mu = 0.3, L_p = 0.5, P and then Q = P, which slides.")
+    rows = []
+    for nodes in sizes:
+        row = [nodes]
+        for pair in (SIMILAR, TITANIUM_ALUMINIUM):
+            problem = Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
+            true = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
+            state = solve(problem, [{"P": 1.0}, {"Q": 1.0}], nodes=nodes)[-1]
+            row.append(abs(state.peak_pressure / true.peak_pressure - 1.0))
+            row.append(abs(state.resultants["M"] / true.moment - 1.0))
+            row.append(float(np.abs(np.subtract(state.contact[0], true.contact)).max()))
+        rows.append(row)
+    table(["nodes", "like: peak", "moment", "ends, rad", "unlike: peak", "moment", "ends, rad"], rows)
+
+
 def singular_equations(sizes: list[int]) -> None:
     print("\n## The singular integral equations (46), (47)")
     print("\nLargest residual, in units of F beta*, of Ti-6Al-4V in aluminium as above, with Cauchy matrices built on")
@@ -220,6 +252,9 @@ def main() -> None:
     finite_elements()
     increments([20, 40] if quick else [20, 40, 80, 160, 320])
     half_plane(101 if quick else 401)
+    full_sliding(
+        [4, 8, 12, 16] if quick else [4, 8, 12, 16, 32, 64, 128], [101] if quick else [101, 201, 401, 801, 1601]
+    )
     singular_equations([101, 201] if quick else [101, 201, 401, 801, 1601])
     times([101] if quick else [401, 1201, 2401, 4096])
 
