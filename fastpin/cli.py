@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``.
+"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``, ``fastpin paper``.
 
 Solver, figures and storage are imported when they are needed, so that help and checks answer at once.
 """
@@ -10,12 +10,12 @@ import dataclasses
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastpin import __version__
+from fastpin import __version__, paper
 from fastpin.casefile import EXAMPLE, Case, CaseFileError, builtin_case, checked_between, read_case
 from fastpin.errors import FastpinError, InputError, SolveError
 from fastpin.files import check_writable, replacing
@@ -110,6 +110,20 @@ def _parser() -> argparse.ArgumentParser:
         help="more states inside every step: how many, or fractions such as 0.25,0.5",
     )
     run.set_defaults(command=_run)
+
+    figures = commands.add_parser("paper", help="compute and draw the figures of the paper", allow_abbrev=False)
+    figures.add_argument(
+        "--figure",
+        metavar="NAME",
+        action="append",
+        help="a figure's number, 3 to 17, or the name of one that the paper does not have (may be repeated; default: "
+        "all of the paper)",
+    )
+    figures.add_argument("--nodes", type=int, default=paper.NODES, help=f"number of nodes (default {paper.NODES})")
+    figures.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
+    )
+    figures.set_defaults(command=_paper)
     return parser
 
 
@@ -154,6 +168,31 @@ def _run(options: argparse.Namespace) -> int:
         except (OSError, InputError) as trouble:  # the other files are written all the same
             code = _fail(f"can't write {path}: {trouble}", EXIT_FAILED)
     return code
+
+
+def _paper(options: argparse.Namespace) -> int:
+    try:
+        names = list(dict.fromkeys(paper.known(name) for name in options.figure or paper.PAPER))
+        paper.check(names, options.output, options.nodes)
+    except InputError as error:
+        option = f"--{error.field}" if error.field in vars(options) else error.field
+        raise InputError(option, error.reason) from None
+    finished: list[str] = []
+    try:
+        with _bar(len(names), "figure {desc}") as bar:
+            for name in names:
+                began = time.perf_counter()
+                bar.set_description_str(name, refresh=False)
+                files = paper.make(
+                    name, options.output, options.nodes, lambda part: bar.update(len(finished) + part - bar.n)
+                )
+                finished.append(name)
+                seconds = time.perf_counter() - began
+                bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
+    except KeyboardInterrupt:
+        written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
+        return _fail(f"interrupted; {written}", EXIT_INTERRUPTED)
+    return EXIT_OK
 
 
 def _overridden(case: Case, options: argparse.Namespace) -> Case:
@@ -201,32 +240,30 @@ def _check_outputs(options: argparse.Namespace) -> None:
 def _solve(case: Case) -> tuple[Result | None, SolveError | None]:
     from fastpin.solver import solve
 
-    with _progress(len(case.history)) as progress:
+    with _bar(len(case.history), "load point {n:.2f} of {total}") as bar:
+
+        def progress(done: float, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
         try:
             return solve(case.problem, case.history, progress=progress, **case.options.keywords()), None
         except SolveError as error:
             return error.result, error
 
 
-@contextmanager
-def _progress(steps: int) -> Iterator[Callable[[float, int], None]]:
+def _bar(total: int, text: str) -> Any:
     """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
     from tqdm import tqdm
 
-    with tqdm(
-        total=steps,
+    return tqdm(
+        total=total,
         delay=2,
         disable=None,
         leave=False,
         file=sys.stderr,
-        bar_format="{percentage:3.0f}% |{bar}| load point {n:.2f} of {total}, {remaining} left",
-    ) as bar:
-
-        def report(done: float, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
-
-        yield report
+        bar_format=f"{{percentage:3.0f}}% |{{bar}}| {text}, {{remaining}} left",
+    )
 
 
 def _print_states(case: Case, result: Result | None) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +104,47 @@ def plot_tractions(
         if path is not None:
             _save(figure, Path(path), dpi)
     return figure
+
+
+Line = dict[str, Any]
+"""How a line is drawn: keywords of ``Axes.plot``."""
+
+
+def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
+    """A line in the house's colours and dashes, of which there are :data:`MAX_NAMED` each; 0 is solid."""
+    return {"color": _COLOURS[colour], "linestyle": _DASHES[dashes], "linewidth": width}
+
+
+def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
+    """Save the figure that ``draw(curves)`` returns, drawn in the house style."""
+    _check_format(Path(path))
+    with mpl.rc_context(_STYLE):
+        _save(draw(curves), Path(path), dpi)
+
+
+def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
+    """A figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
+    figure = Figure(figsize=(width, rows * height + 0.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for panel in axes.flat:
+        panel.grid(True, color="0.92", linewidth=0.6)
+        panel.set_axisbelow(True)
+    return figure, axes
+
+
+def angle_axis(panel: Axes) -> None:
+    """Ticks at whole parts of a right angle."""
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
+
+
+def key(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
+    """A legend below the panels; each row holds labels with their lines."""
+    columns = max(len(row) for row in rows)
+    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
+    blank = Line2D([], [], linestyle="none", label=" ")
+    filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
+    _fitted_legend(figure, filled, columns)
 
 
 def _check_format(path: Path) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from samples import sample_result
 
+import fastpin.paper
 import fastpin.solver
 from fastpin import __version__
 from fastpin.casefile import EXAMPLE, builtin_case
@@ -106,7 +107,14 @@ def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.Cap
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--help"], ["run", "--help"], ["example"], ["check", "CASE"], ["run", "CASE", "--nodes", "1"]],
+    [
+        ["--help"],
+        ["run", "--help"],
+        ["paper", "--help"],
+        ["example"],
+        ["check", "CASE"],
+        ["run", "CASE", "--nodes", "1"],
+    ],
     ids=" ".join,
 )
 def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], case: Path) -> None:
@@ -300,6 +308,95 @@ def test_the_real_solver_through_the_command_line(case: Path, capsys: pytest.Cap
     (start, stop), *rest = first["contact"]
     assert not rest
     assert (start, stop) == pytest.approx((-np.degrees(1.136), np.degrees(1.136)), abs=2.0)
+
+
+# -- the figures of the paper ----------------------------------------------------------------------------------
+
+
+def test_paper_writes_a_figure_and_its_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["paper", "--figure", "3", "--figure", "03", "--nodes", "101", "-o", str(tmp_path / "new")]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    (line,) = captured.out.splitlines()
+    files = tmp_path / "new" / "figure03.png", tmp_path / "new" / "figure03.csv"
+    assert line.startswith(f"figure 3: {files[0]}, {files[1]}, ")
+    assert set((tmp_path / "new").iterdir()) == set(files)
+    assert files[0].read_bytes().startswith(b"\x89PNG")
+    lines = files[1].read_text().splitlines()
+    assert lines[1] == f"# fastpin {__version__}, 101 nodes"
+    rows = [dict(zip(lines[2].split(","), line.split(","), strict=True)) for line in lines[3:]]
+    peaks = {(row["L_p"], row["mu"]): float(row["N"]) for row in sorted(rows, key=lambda row: float(row["N"]))}
+    assert peaks["0.01", "0.1"] == pytest.approx(0.5489, rel=3e-3)
+    assert peaks["0.01", "0.7"] == pytest.approx(0.3828, rel=3e-3)
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """No figure is computed; the names of those asked for are recorded. Figure 6 is interrupted."""
+    names: list[str] = []
+
+    def make(name: str, directory: Path, nodes: int, progress: Callable[[float], None]) -> tuple[Path, Path]:
+        if name == "6":
+            raise KeyboardInterrupt
+        progress(0.5)
+        progress(1.0)
+        names.append(name)
+        return directory / f"{name}.png", directory / f"{name}.csv"
+
+    monkeypatch.setattr(fastpin.paper, "make", make)
+    return names
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--figure", "4", "--figure", "2"], "--figure: there is no '2'; there are 3 to 17 of the paper, and "),
+        (["--figure", "17", "--nodes", "200"], "--nodes: figure 17 needs at least 201 nodes, not 200"),
+        (["--nodes", "101"], "--nodes: figure 5 needs at least 201 nodes, not 101"),
+        (["--nodes", "-1"], "--nodes: must be a whole number"),
+        (["-o", "file"], "--output: can't make the directory file: File exists"),
+        (["-o", "file/below"], "--output: can't make the directory file/below: Not a directory"),
+        (["--figure", "4", "-o", "taken"], "figure04.csv: is a directory"),
+    ],
+)
+def test_paper_checks_all_figures_before_the_first(
+    arguments: list[str],
+    words: str,
+    made: list[str],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    (tmp_path / "taken" / "figure04.csv").mkdir(parents=True)
+    assert main(["paper", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+    assert made == []
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_paper_into_a_directory_that_is_not_writable(
+    made: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tmp_path.chmod(0o555)
+    assert main(["paper", "-o", str(tmp_path)]) == 2
+    assert "is not writable" in capsys.readouterr().err
+    assert made == []
+
+
+def test_an_interrupted_paper_says_what_is_finished(
+    made: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["paper", "-o", str(tmp_path)]) == 130
+    captured = capsys.readouterr()
+    assert captured.err == "fastpin: interrupted; figures that are finished: 3, 4, 5\n"
+    assert len(captured.out.splitlines()) == len(made) == 3
+    assert main(["paper", "-o", str(tmp_path), "--figure", "6"]) == 130
+    assert capsys.readouterr().err == "fastpin: interrupted; no figure was finished\n"
 
 
 # -- pieces --------------------------------------------------------------------------------------------------

@@ -1,0 +1,39 @@
+"""Figure 3: tractions of a body-loaded Ti-6Al-4V pin in aluminium, highly conforming.
+
+The caption gives L_p = 0.01 (left) and 0.1 (right). The coefficients of friction are our choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fastpin.paper import Curve, Report, steps, traction_curve
+from fastpin.plot import Figure, line
+
+from .tractions import Panel, chosen, pushed, traction_figure
+
+TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium), L_p = 0.01 and 0.1"
+LEAST_NODES = 101
+LOAD_PARAMETERS = (0.01, 0.1)
+FRICTION = (0.1, 0.3, 0.5, 0.7)
+
+
+def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> list[Curve]:
+    """Tractions at the load P = F, one curve for each load parameter and coefficient of friction."""
+    cases = [(load_parameter, friction) for load_parameter in LOAD_PARAMETERS for friction in FRICTION]
+    return [
+        traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
+        for load_parameter, friction in steps(cases, progress)
+    ]
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """Pressure above shear; one column for each load parameter."""
+    lines = {str(friction): line(index, index) for index, friction in enumerate(FRICTION)}
+    titles = {"N": "$L_p$ = {:g}", "T": ""}
+    layout = [
+        [Panel(quantity, chosen(curves, L_p=parameter), title.format(parameter)) for parameter in LOAD_PARAMETERS]
+        for quantity, title in titles.items()
+    ]
+    legend = [(f"μ = {friction}", style) for friction, style in lines.items()]
+    return traction_figure(layout, lambda curve: lines[str(curve.parameters["mu"])], legend)

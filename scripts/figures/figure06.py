@@ -1,0 +1,19 @@
+"""Figure 6: tractions of a body-loaded pin in a plate of the same material, highly conforming.
+
+As figure 3. The material is our choice, Ti-6Al-4V; of similar materials only Poisson's ratio enters.
+"""
+
+from __future__ import annotations
+
+from fastpin.paper import Curve, Report
+
+from . import figure03
+
+TITLE = "Tractions in body force loading of similar materials (Ti-6Al-4V), L_p = 0.01 and 0.1"
+LEAST_NODES = figure03.LEAST_NODES
+draw = figure03.draw
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions at the load P = F, one curve for each load parameter and coefficient of friction."""
+    return figure03.compute(nodes, progress, "Ti/Ti")

@@ -1,0 +1,54 @@
+"""Figure 10: remote stresses that grow with a body load; Ti-6Al-4V pin in aluminium, pressure left, shear right.
+
+The caption gives mu = 0.40 and L_p = 0.75; dashed lines are without remote stress. The text names the normalised
+stresses (0.25, -0.25), which gives the largest rise of the peak pressure, and (-0.25, 0.25), which gives the largest
+contact. The two cases with equal stresses are our choice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fastpin.paper import Curve, Report, steps, traction_curve
+from fastpin.plot import Figure, line
+
+from .tractions import PAIRS, Panel, pushed, traction_figure
+
+TITLE = "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75"
+LEAST_NODES = 101
+LOAD_PARAMETER = 0.75
+FRICTION = 0.4
+DASHES = {(0.0, 0.0): 1, (0.25, -0.25): 0, (-0.25, 0.25): 2, (0.25, 0.25): 3, (-0.25, -0.25): 5}
+"""Normalised stresses (sigma_x, sigma_y) and the dashes they are drawn with."""
+
+
+def stress_unit(pair: str) -> float:
+    """The remote stress, in F/R, of normalised size one.
+
+    The paper's sigma = sxx R kappa' / (2 G F beta*), kappa' = (kappa + 1)/2 and G of the plate. With R = F = beta* = 1
+    that is sxx kappa' / (2 G), so sxx = sigma * 2 G / kappa'.
+    """
+    scaled = PAIRS[pair].scaled(1.0)
+    return 4.0 * scaled.plate.shear_modulus / (scaled.plate_kolosov + 1.0)
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions at the load P = F, one curve for each pair of remote stresses."""
+    unit = stress_unit("Ti/Al")
+    curves = []
+    for along, across in steps(list(DASHES), progress):
+        state = pushed("Ti/Al", LOAD_PARAMETER, FRICTION, nodes, sxx=along * unit, syy=across * unit)
+        curves.append(traction_curve(state, L_p=LOAD_PARAMETER, mu=FRICTION, sigma_x=along, sigma_y=across))
+    return curves
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """One line for each pair of stresses, dashed without."""
+    lines = {stresses: line(colour, dashes) for colour, (stresses, dashes) in enumerate(DASHES.items())}
+    lines[0.0, 0.0]["color"] = "black"
+    labels = {stresses: f"$σ_x$ = {stresses[0]:g}, $σ_y$ = {stresses[1]:g}".replace("-", "−") for stresses in DASHES}
+    return traction_figure(
+        [[Panel("N", curves), Panel("T", curves)]],
+        lambda curve: lines[curve.parameters["sigma_x"], curve.parameters["sigma_y"]],
+        *[[(labels[stresses], lines[stresses]) for stresses in list(DASHES)[k::2]] for k in range(2)],
+    )

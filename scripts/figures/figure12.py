@@ -1,0 +1,16 @@
+"""Figure 12: as figure 11 (fretting with centre loads and no rotation), less conforming: L_p = 0.50."""
+
+from __future__ import annotations
+
+from fastpin.paper import Curve, Report
+
+from . import figure11
+
+TITLE = "Fretting type loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
+LEAST_NODES = figure11.LEAST_NODES
+draw = figure11.draw
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions after P, +Q and -Q, for two sizes of Q."""
+    return figure11.compute(nodes, progress, 0.5)

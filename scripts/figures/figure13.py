@@ -1,0 +1,75 @@
+"""Figure 13: steady shear tractions of the fretting of figure 12, beginning with +Q (left) or with -Q (right).
+
+The caption gives L_p = 0.50, mu = 0.55 and C_omega = 0; in the text, steady states are solid. The horizontal load
+eta = Q/(mu P) is our choice: 0.5 above, 1 below. "Steady" is the third cycle. The notch in the steady state of the
+first direction is no fault of the grid: there the pin still sticks where slip ended under the opposite load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fastpin import Problem, solve
+from fastpin.loading import LoadHistory
+from fastpin.paper import Curve, Report, steps, traction_curve
+from fastpin.plot import Figure, line
+
+from .fretting import FRICTION, label
+from .tractions import PAIRS, Panel, chosen, traction_figure
+
+TITLE = "Steady-state shear tractions with fretting loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
+LEAST_NODES = 201
+LOAD_PARAMETER = 0.5
+ETAS = (0.5, 1.0)
+FIRST_LOADS = ("+Q", "-Q")
+CYCLES = 3
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions after each of the horizontal loads of three cycles, for two sizes of Q and both first directions."""
+    problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], LOAD_PARAMETER, FRICTION, "centre", "fixed")
+    curves = []
+    for eta, first in steps([(eta, first) for eta in ETAS for first in FIRST_LOADS], progress):
+        across = eta * FRICTION if first == "+Q" else -eta * FRICTION
+        history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": across}, {"Q": -across}]).repeated(CYCLES)
+        for index, state in enumerate(solve(problem, history, nodes=nodes)[1:]):
+            load = "+Q" if state.load["Q"] > 0.0 else "-Q"
+            cycle = 1 + index // 2
+            curves.append(
+                traction_curve(state, L_p=LOAD_PARAMETER, mu=FRICTION, eta=eta, first=first, load=load, cycle=cycle)
+            )
+    return curves
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """The first forward load dashed, the first reverse and both steady states solid."""
+    steady = {load: line(index) for index, load in enumerate(FIRST_LOADS)}
+    forward = {load: line(index, 1) for index, load in enumerate(FIRST_LOADS)}
+    reverse = {load: {**line(index, 0, 4.0), "alpha": 0.3} for index, load in enumerate(FIRST_LOADS)}
+
+    def style(curve: Curve) -> dict[str, object]:
+        load = curve.parameters["load"]
+        if curve.parameters["cycle"] == CYCLES:
+            return steady[load]
+        return (forward if load == curve.parameters["first"] else reverse)[load]
+
+    layout = []
+    for eta in ETAS:
+        row = []
+        for first, second in (FIRST_LOADS, FIRST_LOADS[::-1]):
+            shown = [
+                curve for curve in chosen(curves, eta=eta, first=first) if curve.parameters["cycle"] in (1, CYCLES)
+            ]
+            row.append(Panel("T", shown, f"0, {label(first)}, {label(second)}, …;  η = {eta:g}"))
+        layout.append(row)
+    legend = []
+    for load in FIRST_LOADS:
+        name = label(load)
+        legend.append(
+            [
+                (f"{name}, steady", steady[load]),
+                (f"{name}, first load", forward[load]),
+                (f"{name}, first reverse", reverse[load]),
+            ]
+        )
+    return traction_figure(layout, style, *legend)

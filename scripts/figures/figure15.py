@@ -1,0 +1,27 @@
+"""Figure 15: as figure 14 (fretting with body forces, free rotation), for both dissimilar pairs.
+
+The caption gives L_p = 0.05 and mu = 0.55, the text the pairs. The horizontal load is our choice, as in figure 14:
+eta = B_x/(mu B_y) = 1, which figures 16 and 17 have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fastpin.paper import Curve, Report
+from fastpin.plot import Figure
+
+from .fretting import cycle_figure, cycled
+
+TITLE = "Fretting type loads with body forces, free rotation, L_p = 0.05, mu = 0.55, dissimilar pairs"
+LEAST_NODES = 101
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions after B_y, +B_x and -B_x, for two pairs."""
+    return cycled([(pair, 0.05, 1.0) for pair in ("Ti/Al", "Al/Ti")], "body", nodes, progress)
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """A column for each pair."""
+    return cycle_figure(curves, "pair", "{},  η = 1")

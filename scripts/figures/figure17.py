@@ -1,0 +1,21 @@
+"""Figure 17: as figure 16 (fretting with body forces, free rotation; aluminium pin in Ti-6Al-4V), for L_p = 1.0.
+
+The contacts under +B_x and -B_x overlap in five degrees only; what the shear does within the last degree of the second
+one takes more than a thousand nodes to see.
+"""
+
+from __future__ import annotations
+
+from fastpin.paper import Curve, Report
+
+from . import figure16
+from .fretting import cycled
+
+TITLE = "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 1.0, |eta| = 1"
+LEAST_NODES = 201
+draw = figure16.draw
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions after B_y, +B_x and -B_x."""
+    return cycled([("Al/Ti", 1.0, 1.0)], "body", nodes, progress)

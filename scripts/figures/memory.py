@@ -1,0 +1,93 @@
+"""The system memory of section 5.3 in numbers: what a contact remembers of the way on which Q began.
+
+Two pins see the same cycles of +-Q under the same P; one was first pushed to +Q, the other to -Q. In a half-plane
+contact they agree from the first reversal on. Here they go on differing at the same load, and the difference of the
+steady states at +Q is what the system remembers. Similar materials, mu = 0.55; held pin with a centre load (as in
+figures 11 to 13).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fastpin import MATERIALS, Grid, LoadHistory, MaterialPair, Problem, Result, State, solve
+from fastpin.paper import Curve, Report, steps
+from fastpin.plot import Figure, key, line, panels
+
+TITLE = "System memory: what the first direction of Q leaves behind, against load parameter and amplitude"
+LEAST_NODES = 61
+PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
+FRICTION = 0.55
+LOAD_PARAMETERS = tuple(0.01 * 2000.0 ** (k / 20) for k in range(21))
+AMPLITUDES = (0.25, 0.5, 0.75, 1.0, 1.25)
+CYCLES = 4
+BOTTOM = -0.5 * math.pi
+
+
+def cycles(problem: Problem, amplitude: float, nodes: int) -> tuple[Result, Result]:
+    """P, then cycles of Q that begin to the right, and to the left, on one grid that is its own mirror image."""
+    right = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
+    left = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES, start=-1)
+    coarse = solve(problem, right[:3], nodes=LEAST_NODES)
+    reach = max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part)
+    count = nodes + 1 - nodes % 2
+    half = 1.05 * reach + 0.02
+    grid = Grid.arc(BOTTOM - half, BOTTOM + half, count) if half < math.pi else Grid.circle(count)
+    return solve(problem, right, grid=grid), solve(problem, left, grid=grid)
+
+
+def difference(one: State, two: State, quantity: str) -> float:
+    """int |difference| of a traction of two states, over int mu N for the shear and over int N for the pressure."""
+    first, second = getattr(one, quantity), getattr(two, quantity)
+    scale = one.problem.friction if quantity == "shear" else 1.0
+    weights = one.grid.weights
+    return float(weights @ np.abs(first - second) / (scale * weights @ one.pressure))
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Memory and transients against L_p, one curve for each amplitude Q/(mu P)."""
+    found: dict[float, list[list[float]]] = {}
+    for ratio, load_parameter in steps([(a, b) for a in AMPLITUDES for b in LOAD_PARAMETERS], progress):
+        problem = Problem.from_load_parameter(PAIR, load_parameter, FRICTION, "centre", "fixed")
+        right, left = cycles(problem, ratio * FRICTION, nodes)
+        # corners: P, +Q, -Q, +Q, ...; the last one is +Q, and that of the mirrored history -Q
+        found.setdefault(ratio, []).append(
+            [
+                load_parameter,
+                difference(right[-1], left[-2], "shear"),
+                difference(right[-1], left[-2], "pressure"),
+                difference(right[1], right[-1], "shear"),
+                difference(right[2], right[-2], "shear"),
+                difference(right[3], right[-1], "shear"),
+            ]
+        )
+    names = ("L_p", "memory_T", "memory_N", "first_forward_T", "first_reverse_T", "second_forward_T")
+    return [
+        Curve({"mu": FRICTION, "eta": ratio}, dict(zip(names, np.array(rows).T, strict=True)))
+        for ratio, rows in found.items()
+    ]
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """The memory on the left; on the right how far the first half cycles are from the steady ones."""
+    figure, axes = panels(1, 2, height=3.0)
+    memory, transient = axes[0]
+    for index, curve in enumerate(curves):
+        memory.plot(curve["L_p"], 100.0 * curve["memory_T"], **line(index))
+        transient.plot(curve["L_p"], 100.0 * curve["first_forward_T"], **line(index))
+        transient.plot(curve["L_p"], 100.0 * curve["first_reverse_T"], **line(index, 1, 1.0))
+    for panel in (memory, transient):
+        panel.set_xscale("log")
+        panel.set_xlabel("load parameter  $L_p$")
+        panel.set_ylim(bottom=0.0)
+    memory.set_ylabel("memory:  ∫|ΔT| / ∫μN  [%]")
+    transient.set_ylabel("distance from the steady state  [%]")
+    key(
+        figure,
+        [(f"Q/(μP) = {curve.parameters['eta']:g}", line(index)) for index, curve in enumerate(curves)],
+        [("first +Q", line(5)), ("first −Q", line(5, 1, 1.0))],
+    )
+    return figure

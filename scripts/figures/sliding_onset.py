@@ -1,0 +1,120 @@
+"""The onset of sliding, which the paper only names: Q/(mu P) at which no node sticks any more.
+
+Similar materials, centre load, rotation held; P first, then Q. Solid: the first +Q. Dashed: the way back from +Q to -Q,
+for the smallest amplitude Q at which the whole contact slides there. Where a curve ends something sticks up to
+Q = 1.5 P and beyond: the contact follows the load round the hole instead, and as it grows it sticks again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fastpin import MATERIALS, MaterialPair, Problem, State, solve
+from fastpin.paper import Curve, Report, steps
+from fastpin.plot import Figure, key, line, panels
+
+TITLE = "Onset of full sliding against load parameter and friction, on the first way and on the way back"
+LEAST_NODES = 61
+PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
+LARGEST = 1.5
+"""Q/P up to which sliding is looked for."""
+
+LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 15) for k in range(16))
+SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
+FRICTION = tuple(0.05 + 0.95 * k / 7 for k in range(8))
+SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
+SCAN, ROUNDS, HALVINGS = 32, 3, 8
+
+
+def stick_width(state: State) -> float:
+    """Angle that sticks, rad; 0 where the whole contact slips."""
+    return sum(stop - start for start, stop in state.stick)
+
+
+def first_sliding(problem: Problem, before: Sequence[float], largest: float, nodes: int) -> float:
+    """Q at which the contact first slides all over on the way to `largest`; NaN if something sticks all the time.
+
+    `before` are the values of Q at the corners before. The last sticking zone shrinks, and it may grow again before
+    it is gone: the search closes in on the first state without it, or else on the one with the least of it.
+    """
+    corners = [{"P": 1.0}, *({"Q": value} for value in before)]
+    begin, end = before[-1] if before else 0.0, largest
+    for _ in range(ROUNDS):
+        way = [*corners, {"Q": begin}, {"Q": end}]
+        between = [state for state in solve(problem, way, nodes=nodes, between=SCAN) if state.step >= len(way) - 2]
+        last = between[SCAN:]  # the corner at `begin`, then what follows
+        width = np.array([stick_width(state) for state in last])
+        if np.any(width == 0.0):
+            low = high = int(np.argmax(width == 0.0))
+        else:
+            low = high = int(np.argmin(width))
+            high = min(high + 1, len(last) - 1)
+        begin, end = (last[k].load["Q"] for k in (max(low - 1, 0), high))
+    return end if np.any(width == 0.0) else math.nan
+
+
+def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
+    """Smallest amplitude Q with which the contact slides on the way from +Q to -Q; NaN if none up to `largest` does.
+
+    Nothing slides below Q = mu P, so the search begins there.
+    """
+
+    def slides_back(amplitude: float) -> bool:
+        corners = [{"P": 1.0}, {"Q": amplitude}, {"Q": -amplitude}]
+        back = solve(problem, corners, nodes=nodes, between=[0.6, 0.7, 0.8, 0.9, 0.95])[-6:]
+        return any(stick_width(state) == 0.0 for state in back)
+
+    low, high = problem.friction, largest
+    if not slides_back(high):
+        return math.nan
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if slides_back(middle) else (middle, high)
+    return high
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Onsets in Q/(mu P), against L_p for some coefficients of friction and the other way round."""
+    lines: list[tuple[str, float, Sequence[float]]] = [("mu", mu, LOAD_PARAMETERS) for mu in SHOWN_FRICTION]
+    lines += [("L_p", load_parameter, FRICTION) for load_parameter in SHOWN_LOAD_PARAMETERS]
+    cases = [(name, fixed, value) for name, fixed, values in lines for value in values]
+    found: dict[tuple[str, float], list[tuple[float, float, float]]] = {}
+    for name, fixed, value in steps(cases, progress):
+        load_parameter, friction = (value, fixed) if name == "mu" else (fixed, value)
+        problem = Problem.from_load_parameter(PAIR, load_parameter, friction, "centre", "fixed")
+        forward = first_sliding(problem, [], LARGEST, nodes)
+        back = reverse_onset(problem, LARGEST if math.isnan(forward) else forward, nodes)
+        found.setdefault((name, fixed), []).append((value, forward / friction, back / friction))
+    curves = []
+    for (name, fixed), rows in found.items():
+        value, forward_ratio, back_ratio = np.array(rows).T
+        other = "L_p" if name == "mu" else "mu"
+        curves.append(Curve({name: fixed}, {other: value, "eta_s_forward": forward_ratio, "eta_s_back": back_ratio}))
+    return curves
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """Against L_p on the left, against mu on the right."""
+    figure, axes = panels(1, 2, height=3.0)
+    rows = []
+    for panel, name, symbol, other in ((axes[0, 0], "mu", "μ", "L_p"), (axes[0, 1], "L_p", "$L_p$", "mu")):
+        chosen = [curve for curve in curves if name in curve.parameters]
+        row = []
+        for index, curve in enumerate(chosen):
+            panel.plot(curve[other], curve["eta_s_forward"], marker=".", markersize=3, **line(index))
+            panel.plot(curve[other], curve["eta_s_back"], marker=".", markersize=3, **line(index, 1, 1.0))
+            row.append((f"{symbol} = {curve.parameters[name]:g}", line(index)))
+        panel.axhline(1.0, color="0.6", linewidth=0.7, zorder=0)
+        panel.set_ylim(0.9, 5.0)
+        rows.append(row)
+    axes[0, 0].set_xscale("log")
+    axes[0, 0].set_xlabel("load parameter  $L_p$")
+    axes[0, 1].set_xlabel("coefficient of friction  μ")
+    axes[0, 0].set_ylabel("onset of sliding  $η_s$ = Q/(μP)")
+    rows[0].append(("first way, to +Q", line(5)))
+    rows[1].append(("way back, to −Q", line(5, 1, 1.0)))
+    key(figure, *rows)
+    return figure

@@ -1,0 +1,72 @@
+"""What the figures of tractions share: the paper's pairs, one monotonic load, and panels of N and T."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from fastpin import MATERIALS, MaterialPair, Problem, State, solve
+from fastpin.paper import Curve
+from fastpin.plot import Figure, Line, angle_axis, key, panels
+from fastpin.problem import PinLoad
+
+TITANIUM, ALUMINIUM = MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"]
+PAIRS = {
+    "Ti/Al": MaterialPair(TITANIUM, ALUMINIUM),
+    "Ti/Ti": MaterialPair(TITANIUM, TITANIUM),
+    "Al/Ti": MaterialPair(ALUMINIUM, TITANIUM),
+}
+"""Pin and plate: Ti-6Al-4V and aluminium in plane strain have the Dundurs parameters that the paper gives."""
+
+
+@dataclass
+class Panel:
+    """One panel: N or T of some curves."""
+
+    quantity: str
+    curves: Sequence[Curve]
+    title: str = ""
+
+
+def pushed(
+    pair: str, load_parameter: float, friction: float, nodes: int, pin_load: PinLoad = "body", **remote: float
+) -> State:
+    """The pin pushed down by P = F, together with `remote` stresses in F/R, all growing in proportion."""
+    problem = Problem.from_load_parameter(PAIRS[pair], load_parameter, friction, pin_load)
+    return solve(problem, [{"P": 1.0, **remote}], nodes=nodes)[-1]
+
+
+def chosen(curves: Sequence[Curve], **parameters: float | str) -> list[Curve]:
+    """The curves with these parameters."""
+    return [curve for curve in curves if all(curve.parameters[name] == value for name, value in parameters.items())]
+
+
+def traction_figure(
+    layout: Sequence[Sequence[Panel]], style: Callable[[Curve], Line], *legend: Sequence[tuple[str, Line]]
+) -> Figure:
+    """Panels of tractions over the angle: a column shares its angles, the panels of one quantity in a row share it."""
+    figure, axes = panels(len(layout), len(layout[0]))
+    for column in axes.T:
+        for panel in column[1:]:
+            panel.sharex(column[0])
+        column[-1].set_xlabel("angle from the bottom  [deg]")
+        angle_axis(column[-1])
+    for row, contents in zip(axes, layout, strict=True):
+        for panel, content in zip(row, contents, strict=True):
+            panel.label_outer()
+            if panel is not row[0] and content.quantity == contents[0].quantity:
+                panel.sharey(row[0])
+                panel.tick_params(labelleft=False)
+            else:
+                panel.tick_params(labelleft=True)
+                panel.set_ylabel(f"${content.quantity}\\,R/F$")
+            for curve in content.curves:
+                panel.plot(curve["angle_deg"], curve[content.quantity], **style(curve))
+            panel.set_title(content.title, fontsize=9.0)
+        for panel, content in zip(row, contents, strict=True):
+            panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+            if content.quantity == "N":
+                panel.set_ylim(bottom=0.0)
+    figure.align_ylabels(axes[:, 0])
+    key(figure, *legend)
+    return figure

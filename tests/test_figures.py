@@ -1,0 +1,226 @@
+"""The figures of the paper: each is computed on few nodes, checked against physics, drawn and written."""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from samples import sample_result
+
+from fastpin import Grid, Problem, paper, solve
+from fastpin.errors import InputError
+from fastpin.figures import figure10, figure13, sweep, tractions
+
+NODES = 81
+SWEEPS = ("5", "8")
+TRACTIONS = tuple(name for name in paper.PAPER if name not in SWEEPS)
+
+# Panels, and lines in all of them; not counted are the lines at T = 0 and N = 0.
+DRAWN = {
+    "3": (4, 16), "4": (2, 21), "5": (2, 10), "6": (4, 16), "7": (2, 21), "8": (2, 18), "9": (2, 12), "10": (2, 10),
+    "11": (4, 12), "12": (4, 12), "13": (4, 16), "14": (4, 12), "15": (4, 12), "16": (4, 12), "17": (2, 6),
+}  # fmt: skip
+
+
+@cache
+def computed(name: str) -> list[paper.Curve]:
+    return paper.script(name).compute(NODES)
+
+
+def one(curves: list[paper.Curve], **parameters: object) -> paper.Curve:
+    (curve,) = tractions.chosen(curves, **parameters)
+    return curve
+
+
+def forces(curve: paper.Curve) -> tuple[float, float]:
+    """Resultants of the tractions on the pin, upwards and to the left."""
+    theta = np.radians(curve["angle_deg"] - 90.0)
+    up = curve["T"] * np.cos(theta) - curve["N"] * np.sin(theta)
+    left = curve["T"] * np.sin(theta) + curve["N"] * np.cos(theta)
+    return float(np.trapezoid(up, theta)), float(np.trapezoid(left, theta))
+
+
+@pytest.mark.parametrize("name", TRACTIONS)
+def test_tractions_are_in_equilibrium_and_within_coulombs_cone(name: str) -> None:
+    curves = computed(name)
+    assert len({tuple(curve.parameters.items()) for curve in curves}) == len(curves)
+    for curve in curves:
+        friction = curve.parameters["mu"]
+        sign = {"+": 1.0, "-": -1.0}.get(str(curve.parameters.get("load", "P"))[0], 0.0)
+        across = sign * curve.parameters.get("eta", 0.0) * friction
+        assert forces(curve) == pytest.approx((1.0, across), abs=0.01)
+        assert all(np.isfinite(column).all() for column in curve.columns.values())
+        assert np.all(np.diff(curve["angle_deg"]) > 0.0)
+        assert np.all(curve["N"][1:-1] > 0.0)
+        assert np.all(np.abs(curve["T"]) <= friction * curve["N"] + 1e-9)
+        assert curve["N"][[0, -1]].tolist() == curve["T"][[0, -1]].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("name", paper.PAPER)
+def test_drawn_with_all_lines_and_a_legend_inside(name: str) -> None:
+    figure = paper.script(name).draw(computed(name))
+    lines = [line for panel in figure.axes for line in panel.lines if len(line.get_xdata()) > 2]
+    assert (len(figure.axes), len(lines)) == DRAWN[name]
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= figure.bbox.width
+    assert 0.0 <= box.y0 < box.y1 <= min(panel.get_tightbbox().y0 for panel in figure.axes)
+    styles = {(line.get_color(), line.get_linestyle()) for line in lines}
+    assert {line.get_linestyle() for line in legend.get_lines()} >= {dashes for _, dashes in styles}
+    assert {line.get_color() for line in legend.get_lines()} >= {colour for colour, _ in styles}
+    assert figure.axes[0].get_ylabel().endswith(("R/F$", "[deg]"))
+    assert figure.axes[-1].get_xlabel()
+
+
+@pytest.mark.parametrize("name", SWEEPS)
+def test_sweeps_agree_with_separate_solutions(name: str) -> None:
+    for curve in computed(name)[1::2]:
+        assert np.all(np.diff(curve["L_p"]) < 0.0)
+        assert np.all(np.diff(curve["epsilon_deg"]) > 0.0)
+        for index in (3, 50, -2):
+            problem = Problem.from_load_parameter(
+                tractions.PAIRS[curve.parameters["pair"]], curve["L_p"][index], curve.parameters["mu"], "body"
+            )
+            state = solve(problem, [{"P": 1.0}], nodes=201)[-1]
+            assert curve["N_max"][index] == pytest.approx(state.peak_pressure, rel=2e-3)
+            assert curve["epsilon_deg"][index] == pytest.approx(np.degrees(state.contact[0][1]) + 90.0, abs=0.5)
+            if np.isfinite(curve["rho_deg"][index]):
+                rho = max(stop - start for start, stop in state.stick) / 2.0
+                assert curve["rho_deg"][index] == pytest.approx(np.degrees(rho), abs=1.0)
+
+
+def test_a_stick_zone_of_few_nodes_is_not_measured() -> None:
+    (curve,) = sweep.swept([("Ti/Al", 0.1)], NODES, None)
+    assert np.isfinite(curve["rho_deg"][0])
+    assert np.isnan(curve["rho_deg"][-1])
+
+
+def test_more_friction_lowers_the_pressure_of_a_conforming_contact() -> None:
+    for name in ("3", "6"):
+        for parameter in (0.01, 0.1):
+            peaks = [curve["N"].max() for curve in tractions.chosen(computed(name), L_p=parameter)]
+            assert np.all(np.diff(peaks) < 0.0)
+
+
+def test_centre_loads_press_harder_and_rub_less_than_body_loads() -> None:
+    for parameter in (0.01, 0.1, 0.5):
+        centre, body = (one(computed("9"), L_p=parameter, pin_load=kind) for kind in ("centre", "body"))
+        assert centre["N"].max() > body["N"].max()
+        assert centre["T"].max() < 1.01 * body["T"].max()
+        assert centre["angle_deg"][-1] == pytest.approx(body["angle_deg"][-1], abs=0.5)
+
+
+def test_normalised_stresses_are_those_of_the_paper() -> None:
+    """The hole's edge moves by F beta* [(sigma_x + sigma_y)/2 + (sigma_x - sigma_y) cos 2 theta], (42) with its 1/2."""
+    unit, along, across = figure10.stress_unit("Ti/Al"), 0.3, -0.2
+    problem = Problem.from_load_parameter(tractions.PAIRS["Ti/Al"], 0.75, 0.0, "body")
+    loads = {"P": 3e-3, "sxx": along * unit, "syy": across * unit}  # hardly any pin load
+    state = solve(problem, [loads], grid=Grid.circle(300))[-1]
+    theta = state.theta
+    shapes = np.column_stack([np.ones(300), np.cos(2.0 * theta), np.cos(theta), np.sin(theta)])  # two rigid motions
+    widened, ovalised, *_ = np.linalg.lstsq(shapes, state.gap - 0.75 * (1.0 + np.sin(theta)), rcond=None)[0]
+    assert (widened, ovalised) == pytest.approx((0.05, 0.5), abs=1e-3)
+
+
+def test_remote_stresses_change_the_contact_as_the_text_says() -> None:
+    curves = {(c.parameters["sigma_x"], c.parameters["sigma_y"]): c for c in computed("10")}
+    assert max(curves, key=lambda stresses: curves[stresses]["N"].max()) == (0.25, -0.25)
+    assert max(curves, key=lambda stresses: np.ptp(curves[stresses]["angle_deg"])) == (-0.25, 0.25)
+    right = {stresses: curve["T"][curve["angle_deg"] > 5.0].sum() for stresses, curve in curves.items()}
+    assert right[0.0, 0.0] > 0.0 > right[-0.25, 0.25]  # the sign flips
+
+
+def test_the_steady_state_is_reached_at_the_second_forward_load_and_mirrored() -> None:
+    curves = computed("13")
+    for eta in figure13.ETAS:
+        steady = {
+            (first, load): [one(curves, eta=eta, first=first, load=load, cycle=cycle)["T"] for cycle in (1, 2, 3)]
+            for first in figure13.FIRST_LOADS
+            for load in figure13.FIRST_LOADS
+        }
+        for (first, load), (cycle1, cycle2, cycle3) in steady.items():
+            assert np.allclose(cycle2, cycle3, atol=1e-9)
+            again = cycle1.shape == cycle2.shape and np.allclose(cycle1, cycle2, atol=0.02)
+            assert again == (first != load)
+        assert np.allclose(steady["+Q", "-Q"][2], -steady["-Q", "+Q"][2][::-1], atol=1e-6)
+
+
+def test_a_pin_that_rotates_freely_bears_no_moment() -> None:
+    for name in ("14", "15", "16", "17"):
+        for curve in computed(name):
+            assert np.trapezoid(curve["T"], np.radians(curve["angle_deg"])) == pytest.approx(0.0, abs=5e-3)
+
+
+def test_progress_counts_up_to_one() -> None:
+    reported: list[float] = []
+    paper.script(17).compute(41, reported.append)
+    assert reported == [1.0]
+    assert list(paper.steps("abcd", reported.append)) == list("abcd")
+    assert reported[1:] == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_csv_round_trip(tmp_path: Path) -> None:
+    curves = [*computed("14"), paper.Curve({"pair": "none"}, {"N": np.array([np.nan, 1.0])})]
+    paper.write_csv(curves, tmp_path / "a.csv", ["a remark"])
+    first, *rest = (tmp_path / "a.csv").read_text().splitlines()
+    assert first == "# a remark"
+    rows = list(csv.DictReader(rest))
+    assert [row["N"] for row in rows[-2:]] == ["", "1"]
+    assert rows[-1]["load"] == ""
+    read = 0
+    for curve in curves[:-1]:
+        block = rows[read : read + len(curve["N"])]
+        read += len(block)
+        for name, value in curve.parameters.items():
+            assert {row[name] for row in block} == {str(value)}
+        for name, column in curve.columns.items():
+            assert np.allclose([float(row[name]) for row in block], column, rtol=1e-8, atol=0.0)
+    assert read == len(rows) - 2
+
+
+def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
+    state = sample_result(closed=True, centre=0.5 * np.pi, nodes=90)[0]
+    whole = paper.traction_curve(state, 2.0)
+    assert whole["N"].max() == pytest.approx(0.5e8, rel=1e-2)
+    assert np.ptp(whole["angle_deg"]) == pytest.approx(np.degrees(2.0), rel=0.05)
+    state = sample_result(closed=True, nodes=90)[0]
+    middle = np.abs(state.theta + 0.5 * np.pi) < 0.3
+    state.status[middle], state.pressure[middle] = 2, 0.0
+    split = paper.traction_curve(state)
+    assert np.isnan(split["N"]).sum() == 1
+    assert np.sum(split["N"] == 0.0) == 4
+    state = sample_result(closed=True, nodes=90)[0]
+    state.status[:], state.pressure[:] = 0, 1.0
+    assert paper.traction_curve(state)["N"].tolist() == [1.0] * 90
+    state = sample_result()[0]
+    state.status[:] = 2
+    assert paper.traction_curve(state)["N"].size == 0
+
+
+@pytest.mark.parametrize("name", [2, 18, "0", "", "3a", "figure03"])
+def test_figures_that_do_not_exist(name: object) -> None:
+    with pytest.raises(InputError, match="there are 3 to 17"):
+        paper.script(name)  # type: ignore[arg-type]
+
+
+def test_names() -> None:
+    assert [paper.stem(name) for name in (3, "03", " 17 ", "Half-plane")] == [
+        "figure03",
+        "figure03",
+        "figure17",
+        "half-plane",
+    ]
+    assert {paper.script(name).TITLE for name in paper.PAPER} == {paper.script(n).TITLE for n in range(3, 18)}
+    assert len({paper.script(name).TITLE for name in paper.PAPER}) == len(paper.PAPER)
+
+
+def test_a_figure_is_made_with_its_numbers(tmp_path: Path) -> None:
+    picture, numbers = paper.make(17, tmp_path / "new" / "folder", 201)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    rows = list(csv.DictReader(line for line in numbers.read_text().splitlines() if not line.startswith("#")))
+    assert {row["load"] for row in rows} == {"By", "+Bx", "-Bx"}
+    assert {row["mu"] for row in rows} == {"0.55"}
