@@ -21,47 +21,53 @@ TITLE = "System memory: what the first direction of Q leaves behind, against loa
 LEAST_NODES = 61
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
 FRICTION = 0.55
-LOAD_PARAMETERS = tuple(0.01 * 2000.0 ** (k / 20) for k in range(21))
+LOAD_PARAMETERS = tuple(0.01 * 2000.0 ** (k / 16) for k in range(17))
 AMPLITUDES = (0.25, 0.5, 0.75, 1.0, 1.25)
-CYCLES = 4
+CYCLES = 3
 BOTTOM = -0.5 * math.pi
 
 
-def cycles(problem: Problem, amplitude: float, nodes: int) -> tuple[Result, Result]:
-    """P, then cycles of Q that begin to the right, and to the left, on one grid that is its own mirror image."""
-    right = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
-    left = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES, start=-1)
-    coarse = solve(problem, right[:3], nodes=LEAST_NODES)
-    reach = max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part)
+def cycled(problem: Problem, amplitude: float, nodes: int) -> Result:
+    """P, then cycles of +Q and -Q, on a grid that is its own mirror image."""
+    history = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
+    coarse = solve(problem, history[:3], nodes=LEAST_NODES)
+    half = 1.05 * max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part) + 0.02
     count = nodes + 1 - nodes % 2
-    half = 1.05 * reach + 0.02
     grid = Grid.arc(BOTTOM - half, BOTTOM + half, count) if half < math.pi else Grid.circle(count)
-    return solve(problem, right, grid=grid), solve(problem, left, grid=grid)
+    return solve(problem, history, grid=grid)
 
 
-def difference(one: State, two: State, quantity: str) -> float:
-    """int |difference| of a traction of two states, over int mu N for the shear and over int N for the pressure."""
-    first, second = getattr(one, quantity), getattr(two, quantity)
-    scale = one.problem.friction if quantity == "shear" else 1.0
-    weights = one.grid.weights
-    return float(weights @ np.abs(first - second) / (scale * weights @ one.pressure))
+def mirrored(tractions: np.ndarray, state: State) -> np.ndarray:
+    """Tractions at the mirror images of the nodes, left for right."""
+    return tractions[::-1] if not state.grid.closed else np.roll(tractions[::-1], 1)
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
-    """Memory and transients against L_p, one curve for each amplitude Q/(mu P)."""
+    """Memory and transients against L_p, one curve for each amplitude Q/(mu P).
+
+    The history that begins with -Q is the mirror image of the one that begins with +Q (tested), so its state at +Q is
+    the mirror image of the state at -Q. Differences are integrals of absolute values, of the shear over int mu N, of
+    the pressure over int N.
+    """
     found: dict[float, list[list[float]]] = {}
     for ratio, load_parameter in steps([(a, b) for a in AMPLITUDES for b in LOAD_PARAMETERS], progress):
         problem = Problem.from_load_parameter(PAIR, load_parameter, FRICTION, "centre", "fixed")
-        right, left = cycles(problem, ratio * FRICTION, nodes)
-        # corners: P, +Q, -Q, +Q, ...; the last one is +Q, and that of the mirrored history -Q
+        states = cycled(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
+        steady, back = states[-1], states[-2]
+        weights = steady.grid.weights
+        total = float(weights @ steady.pressure)
+
+        def distance(one: np.ndarray, two: np.ndarray, scale: float, weights: np.ndarray = weights) -> float:
+            return float(weights @ np.abs(one - two)) / scale
+
         found.setdefault(ratio, []).append(
             [
                 load_parameter,
-                difference(right[-1], left[-2], "shear"),
-                difference(right[-1], left[-2], "pressure"),
-                difference(right[1], right[-1], "shear"),
-                difference(right[2], right[-2], "shear"),
-                difference(right[3], right[-1], "shear"),
+                distance(steady.shear, -mirrored(back.shear, back), FRICTION * total),
+                distance(steady.pressure, mirrored(back.pressure, back), total),
+                distance(states[1].shear, steady.shear, FRICTION * total),
+                distance(states[2].shear, back.shear, FRICTION * total),
+                distance(states[3].shear, steady.shear, FRICTION * total),
             ]
         )
     names = ("L_p", "memory_T", "memory_N", "first_forward_T", "first_reverse_T", "second_forward_T")

@@ -22,11 +22,11 @@ PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
 LARGEST = 1.5
 """Q/P up to which sliding is looked for."""
 
-LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 15) for k in range(16))
+LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 12) for k in range(13))
 SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
-FRICTION = tuple(0.05 + 0.95 * k / 7 for k in range(8))
+FRICTION = tuple(0.05 + 0.95 * k / 6 for k in range(7))
 SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
-SCAN, ROUNDS, HALVINGS = 32, 3, 8
+SCAN, ROUNDS, HALVINGS = 32, 3, 6
 
 
 def stick_width(state: State) -> float:
@@ -34,25 +34,24 @@ def stick_width(state: State) -> float:
     return sum(stop - start for start, stop in state.stick)
 
 
-def first_sliding(problem: Problem, before: Sequence[float], largest: float, nodes: int) -> float:
-    """Q at which the contact first slides all over on the way to `largest`; NaN if something sticks all the time.
+def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
+    """Q at which the contact first slides all over on the way from 0 to `largest`; NaN if something always sticks.
 
-    `before` are the values of Q at the corners before. The last sticking zone shrinks, and it may grow again before
-    it is gone: the search closes in on the first state without it, or else on the one with the least of it.
+    The last sticking zone shrinks, and it may grow again before it is gone: the search closes in on the first state
+    without it, or else on the one with the least of it.
     """
-    corners = [{"P": 1.0}, *({"Q": value} for value in before)]
-    begin, end = before[-1] if before else 0.0, largest
+    begin, end = 0.0, largest
+    width = np.ones(1)
     for _ in range(ROUNDS):
-        way = [*corners, {"Q": begin}, {"Q": end}]
-        between = [state for state in solve(problem, way, nodes=nodes, between=SCAN) if state.step >= len(way) - 2]
-        last = between[SCAN:]  # the corner at `begin`, then what follows
-        width = np.array([stick_width(state) for state in last])
+        corners = [{"P": 1.0}, {"Q": begin}, {"Q": end}]
+        states = solve(problem, corners, nodes=nodes, between=SCAN)[-SCAN - 2 :]  # from `begin` to `end`
+        width = np.array([stick_width(state) for state in states])
         if np.any(width == 0.0):
             low = high = int(np.argmax(width == 0.0))
         else:
-            low = high = int(np.argmin(width))
-            high = min(high + 1, len(last) - 1)
-        begin, end = (last[k].load["Q"] for k in (max(low - 1, 0), high))
+            low = int(np.argmin(width))
+            high = min(low + 1, width.size - 1)
+        begin, end = (states[k].load["Q"] for k in (max(low - 1, 0), high))
     return end if np.any(width == 0.0) else math.nan
 
 
@@ -85,7 +84,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     for name, fixed, value in steps(cases, progress):
         load_parameter, friction = (value, fixed) if name == "mu" else (fixed, value)
         problem = Problem.from_load_parameter(PAIR, load_parameter, friction, "centre", "fixed")
-        forward = first_sliding(problem, [], LARGEST, nodes)
+        forward = forward_onset(problem, LARGEST, nodes)
         back = reverse_onset(problem, LARGEST if math.isnan(forward) else forward, nodes)
         found.setdefault((name, fixed), []).append((value, forward / friction, back / friction))
     curves = []
@@ -108,7 +107,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
             panel.plot(curve[other], curve["eta_s_back"], marker=".", markersize=3, **line(index, 1, 1.0))
             row.append((f"{symbol} = {curve.parameters[name]:g}", line(index)))
         panel.axhline(1.0, color="0.6", linewidth=0.7, zorder=0)
-        panel.set_ylim(0.9, 5.0)
+        panel.set_ylim(0.9, 5.0 if name == "mu" else 2.2)
         rows.append(row)
     axes[0, 0].set_xscale("log")
     axes[0, 0].set_xlabel("load parameter  $L_p$")

@@ -1,0 +1,305 @@
+"""From which load parameter on is a half-plane model right: relative errors of its formulas against L_p.
+
+An error is half-plane over fastpin minus 1, in the CSV with its sign; what is too small to be told from that of the
+discretisation at 400 nodes is left out (`FLOORS`). Half-plane formulas are taken as one uses them, with Hertz's
+half-width and peak pressure and with arcs for lengths. Similar materials and mu = 0.5 unless said otherwise.
+
+*Hertz*: peak pressure and half-width under P. Without friction from Persson's closed form.
+
+*Cattaneo-Mindlin*: pin held, centre load, P, then Q = +-0.6 mu P. Stick zone over contact (blurred after -Q, where the
+border comes to lie beside the one that +Q left), largest shear, and int |difference of T| over int mu N, with the
+formula at the bottom of the hole, or moved to the middle of the contact.
+
+*Bulk stress*: a remote stress that rises together with +Q. At the bottom of the hole it makes the hoop stress
+sigma = 3 sxx - syy, the bulk stress of the half-plane, here tension: the stick zone should move by
+e = a sigma/(4 mu p0) = 0.15 a to the side to which Q pushes the pin. Its shift is from the middle of the contact to its
+own, over the half-width; without bulk stress it is not zero, and what the stress adds is an error of its own. The
+stress also changes the curvature of the hole, at the bottom in proportion to 7 sxx - 5 syy: not if syy = 1.4 sxx
+(balanced), but if syy = 0 (uniaxial).
+
+*Unlike materials*: Dundurs' beta = +-0.1438 (alpha = +-0.5), stick zone over contact under P with mu = 0.5, 1 and
+1.5 |beta|, free pin, centre load, against half-planes with pressure and shear coupled (`unlike_half_planes`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fastpin import MATERIALS, MaterialPair, Problem, State, analytic, solve
+from fastpin.paper import Curve, Report, steps
+from fastpin.plot import Axes, Figure, Line, line, panels
+from fastpin.problem import PinLoad
+
+TITLE = "Relative error of half-plane formulas against the load parameter"
+LEAST_NODES = 201
+LEVELS = (0.05, 0.01)
+
+SIMILAR = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
+FRICTION, LOW_FRICTION = 0.5, 0.2
+RATIO = 0.6
+"""Q/(mu P)."""
+SHIFT = 0.15
+"""e/a."""
+REMOTE = {"balanced": {"sxx": 1.0 / 1.6, "syy": 1.4 / 1.6}, "uniaxial": {"sxx": 1.0 / 3.0}}
+"""Remote stresses that make a hoop stress of one at the bottom of the hole."""
+BETA = 0.1438
+MU_OVER_BETA = (0.5, 1.0, 1.5)
+UNLIKE = {sign: MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3) for sign in (1, -1)}
+
+LOAD_PARAMETERS = tuple(10.0 ** (k / 3) for k in range(-3, 13))
+BULK_FROM = 0.99
+"""L_p from which the bulk stress acts: below, it drives the stick zone to the edge."""
+UNLIKE_LOAD_PARAMETERS = tuple(10.0 ** (k / 2) for k in range(-2, 11))
+BOTTOM = -0.5 * math.pi
+
+FLOOR = 1e-3
+FLOORS = {
+    "stick size, -Q": 8e-3,
+    "stick size, -Q, mu = 0.2": 8e-3,
+    "peak shear, -Q": 6e-3,
+    "what the stress adds, balanced": 3e-3,
+    "what the stress adds, uniaxial": 3e-3,
+    **{f"mu = {ratio:g} |beta|, beta {sign}": 0.03 if ratio < 1.0 else 8e-3 for ratio in MU_OVER_BETA for sign in "><"},
+}
+"""Smallest errors that are more than those of the discretisation at 400 nodes, where that is not `FLOOR`."""
+
+Error = tuple[str, str, float]
+"""Panel, quantity and error."""
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Errors against L_p, one curve for each quantity, with the L_p from which on it is right to 5 % and 1 %."""
+    cases = [("like", value, mu) for mu in (FRICTION, LOW_FRICTION) for value in LOAD_PARAMETERS]
+    cases += [("unlike", value, ratio) for ratio in MU_OVER_BETA for value in UNLIKE_LOAD_PARAMETERS]
+    limits = {ratio: unlike_half_planes(ratio * BETA, BETA) for ratio in MU_OVER_BETA}
+    rows: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for kind, load_parameter, value in steps(cases, progress):
+        if kind == "like":
+            found = like_errors(load_parameter, value, nodes)
+        else:
+            found = unlike_errors(load_parameter, value, limits[value], nodes)
+        for panel, quantity, error in found:
+            rows.setdefault((panel, quantity), []).append((load_parameter, error))
+    return [_curve(panel, quantity, np.array(pairs)) for (panel, quantity), pairs in rows.items()]
+
+
+def _curve(panel: str, quantity: str, rows: np.ndarray) -> Curve:
+    load_parameter, error = rows.T
+    floor = FLOORS.get(quantity, FLOOR)
+    right = {
+        f"right_to_{100.0 * level:g}_percent_from": (
+            threshold(load_parameter, error, level) if level > floor else math.nan
+        )
+        for level in LEVELS
+    }
+    shown = np.where(np.abs(error) >= floor, error, math.nan)
+    return Curve({"panel": panel, "quantity": quantity, **right}, {"L_p": load_parameter, "error": shown})
+
+
+def threshold(load_parameter: np.ndarray, error: np.ndarray, level: float) -> float:
+    """L_p from which on |error| stays below `level`, to three digits (log-log); 0 if it always does, inf if never."""
+    size = np.abs(error)
+    above = np.flatnonzero(size >= level)
+    if above.size == 0:
+        return 0.0
+    last = above[-1]
+    if last == size.size - 1:
+        return math.inf
+    pair = slice(last, last + 2)
+    value = np.exp(np.interp(-math.log(level), -np.log(size[pair]), np.log(load_parameter[pair])))
+    return float(f"{value:.3g}")
+
+
+def stick_and_contact(state: State) -> tuple[float, float, float, float]:
+    """Middle and half-width of the widest stick zone and of the contact, rad."""
+    ((start, stop),) = state.contact
+    left, right = max(state.stick, key=lambda zone: zone[1] - zone[0])
+    return 0.5 * (left + right), 0.5 * (right - left), 0.5 * (start + stop), 0.5 * (stop - start)
+
+
+def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float = RATIO) -> Iterator[Error]:
+    """Hertz, Cattaneo-Mindlin at Q = +-`ratio` mu P and, where both are the usual ones, bulk stress."""
+    problem = Problem.from_load_parameter(SIMILAR, load_parameter, friction, "centre", "fixed")
+    Q = ratio * friction
+    pushed, forward, back = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}], nodes=nodes)
+    half = float(analytic.hertz_half_angle(load_parameter))
+    peak = float(analytic.hertz_peak_pressure(load_parameter))
+    low = "" if friction == FRICTION else f", mu = {friction:g}"
+    if not low:
+        exact = float(analytic.persson_half_angle(load_parameter))
+        yield "Hertz", "half-width", half / exact - 1.0
+        yield "Hertz", "peak pressure", peak / float(analytic.persson_pressure(0.0, exact)) - 1.0
+        yield "Hertz", "half-width, with friction", half / stick_and_contact(pushed)[3] - 1.0
+        yield "Hertz", "peak pressure, with friction", peak / pushed.peak_pressure - 1.0
+    half_plane_stick = float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    half_plane_shear = friction * peak * math.sqrt(ratio)  # at the border of the stick zone
+    corners: list[tuple[State, str, float, analytic.Branch]] = [
+        (forward, "+Q", ratio, "loading"),
+        (back, "-Q", -ratio, "unloading"),
+    ]
+    for state, load, now, branch in corners:
+        _, stick, middle, contact = stick_and_contact(state)
+        yield "Cattaneo-Mindlin", f"stick size, {load}{low}", half_plane_stick * contact / stick - 1.0
+        yield "Cattaneo-Mindlin", f"peak shear, {load}{low}", half_plane_shear / abs(state.peak_shear) - 1.0
+        for moved, origin in (("", BOTTOM), (", moved", middle)):
+            x = state.theta - origin
+            # The shear on the pin opposes Q.
+            shear = -analytic.cattaneo_mindlin_shear(x, half, peak, friction, now, ratio, branch)
+            weights = state.grid.weights
+            difference = weights @ np.abs(state.shear - shear) / (friction * weights @ state.pressure)
+            yield "Cattaneo-Mindlin", f"distribution{moved}, {load}{low}", float(difference)
+    if not low and ratio == RATIO and load_parameter >= BULK_FROM:
+        yield from bulk_errors(problem, shift(forward), nodes)
+
+
+def shift(state: State) -> float:
+    """From the middle of the contact to that of the stick zone, over the half-width of the contact."""
+    middle_of_stick, _, middle, contact = stick_and_contact(state)
+    return (middle_of_stick - middle) / contact
+
+
+def bulk_shift(problem: Problem, stress: str, e: float, nodes: int) -> float:
+    """Shift after P and then +Q with the remote stress that should make it `e` (negative: compression)."""
+    load_parameter = problem.load_parameter(1.0)
+    sigma = 4.0 * problem.friction * float(analytic.hertz_peak_pressure(load_parameter)) * e
+    remote = {name: sigma * part for name, part in REMOTE[stress].items()}
+    return shift(solve(problem, [{"P": 1.0}, {"Q": RATIO * problem.friction, **remote}], nodes=nodes)[-1])
+
+
+def bulk_errors(problem: Problem, without: float, nodes: int) -> Iterator[Error]:
+    """Shift of the stick zone by bulk stress; `without` is the one that Q causes alone."""
+    for stress in REMOTE:
+        found = bulk_shift(problem, stress, SHIFT, nodes)
+        yield "Bulk stress", f"shift, {stress}", SHIFT / found - 1.0
+        yield "Bulk stress", f"what the stress adds, {stress}", SHIFT / (found - without) - 1.0
+
+
+def unlike_errors(
+    load_parameter: float, ratio: float, limit: float, nodes: int, pin_load: PinLoad = "centre"
+) -> Iterator[Error]:
+    """Stick zone over contact of both pairs, with mu = `ratio` |beta|."""
+    for sign, pair in UNLIKE.items():
+        problem = Problem.from_load_parameter(pair, load_parameter, ratio * BETA, pin_load)
+        _, stick, _, contact = stick_and_contact(solve(problem, [{"P": 1.0}], nodes=nodes)[-1])
+        relation = ">" if sign > 0 else "<"
+        yield "Unlike materials", f"mu = {ratio:g} |beta|, beta {relation}", limit * contact / stick - 1.0
+
+
+def unlike_half_planes(friction: float, beta: float, cells: int = 60) -> float:
+    """Stick zone over contact of unlike half-planes in normal loading, pressure and shear coupled.
+
+    By Spence's self-similarity it is that of a flat punch: the c at which the shear, zero slip for |x| < c and
+    T = mu N sign(x) beyond, is finite at |x| = c. Constant tractions on cells that crowd towards +-1 and +-c.
+    """
+
+    def singularity(c: float) -> float:
+        crowded = 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 2 * cells + 1)))
+        crowded *= crowded * (3.0 - 2.0 * crowded)
+        inner, outer = c * (2.0 * crowded - 1.0), c + (1.0 - c) * crowded[::2]
+        ends = np.r_[-outer[::-1], inner[1:-1], outer]
+        middle, width = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
+        offset = middle[:, None] - ends
+        integral = offset * np.log(np.abs(offset)) - offset
+        normal = integral[:, :-1] - integral[:, 1:]
+        n = middle.size
+        coupling = 0.5 * np.pi * beta * width * np.sign(np.subtract.outer(np.arange(n), np.arange(n)))
+        sticks = np.abs(middle) < c
+        shear_of_pressure = np.diag(np.where(sticks, 0.0, friction * np.sign(middle)))
+        shear_of_stick = np.eye(n)[:, sticks]
+        # Unknowns: pressure, shear where it sticks, approach. Rows: flat, no slip where it sticks, a load of one.
+        no_slip = np.hstack([normal @ shear_of_pressure + coupling, normal @ shear_of_stick, np.zeros((n, 1))])
+        flat = np.hstack([normal - coupling @ shear_of_pressure, -coupling @ shear_of_stick, np.ones((n, 1))])
+        load = np.r_[width, np.zeros(np.count_nonzero(sticks) + 1)]
+        right = np.r_[np.zeros(n + np.count_nonzero(sticks)), 1.0]
+        found = np.linalg.solve(np.vstack([flat, no_slip[sticks], load]), right)
+        near = np.flatnonzero(sticks)[-8:-2]
+        excess = found[n:-1][-8:-2] - friction * found[near]
+        root = np.sqrt(c - middle[near])
+        return float(np.linalg.lstsq(np.column_stack([1.0 / root, root, root**3]), excess)[0][0])
+
+    return float(brentq(singularity, 0.05, 0.985))
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """One panel for each theory; solid lines at 5 % and 1 %."""
+    figure, axes = panels(2, 2, height=2.9)
+    for panel, (name, styles) in zip(axes.flat, _styles().items(), strict=True):
+        for curve in curves:
+            label, style = styles.get(str(curve.parameters["quantity"]), (None, None))
+            if curve.parameters["panel"] == name and style is not None:
+                panel.plot(curve["L_p"], np.abs(curve["error"]), label=label, **style)
+        for level in LEVELS:
+            panel.axhline(level, color="0.2", linewidth=0.9, zorder=0)
+        place = "lower left" if name == "Unlike materials" else "upper right"
+        panel.legend(loc=place, fontsize=6.8, handlelength=2.6, labelspacing=0.2, borderaxespad=0.2)
+        _error_axes(panel, f"{name}: stick size" if name == "Unlike materials" else name)
+        panel.label_outer()
+    for panel in axes[0]:
+        degrees = panel.secondary_xaxis("top", functions=(_degrees, _load_parameter))
+        degrees.set_xlabel("half-angle of Hertz's contact  [deg]", fontsize=8.0)
+        degrees.set_xticks([60.0, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1], labels=["60", "30", "10", "3", "1", "0.3", "0.1"])
+        degrees.set_xticks([], minor=True)
+        degrees.tick_params(labelsize=8.0)
+    return figure
+
+
+def _error_axes(panel: Axes, title: str) -> None:
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_xlim(LOAD_PARAMETERS[0], UNLIKE_LOAD_PARAMETERS[-1])
+    panel.set_ylim(0.7 * FLOOR, 1.0)
+    panel.set_yticks([1e-3, 1e-2, 5e-2, 1e-1, 1.0], labels=["0.1 %", "1 %", "5 %", "10 %", "100 %"])
+    panel.set_yticks([], minor=True)
+    panel.set_xlabel("load parameter  $L_p$")
+    panel.set_ylabel("error of the half-plane")
+    panel.set_title(title, fontsize=9.0)
+
+
+def _degrees(load_parameter: np.ndarray) -> np.ndarray:
+    return np.degrees(1.0 / np.sqrt(math.pi * np.maximum(load_parameter, 1e-9)))
+
+
+def _load_parameter(degrees: np.ndarray) -> np.ndarray:
+    return 1.0 / (math.pi * np.radians(np.maximum(degrees, 1e-9)) ** 2)
+
+
+def _styles() -> dict[str, dict[str, tuple[str | None, Line]]]:
+    """Legend entry and line of each quantity that is drawn, by panel."""
+    back, low = 1, 2
+    return {
+        "Hertz": {
+            "peak pressure": ("peak pressure, no friction", line(0)),
+            "peak pressure, with friction": ("peak pressure, μ = 0.5", line(0, 1)),
+            "half-width": ("half-width, no friction", line(1)),
+            "half-width, with friction": ("half-width, μ = 0.5", line(1, 1)),
+        },
+        "Cattaneo-Mindlin": {
+            "distribution, +Q": ("shear, ∫|ΔT|/∫μN", line(0)),
+            "distribution, moved, +Q": ("the same, moved", line(2)),
+            "peak shear, +Q": ("peak shear", line(1)),
+            "stick size, +Q": ("stick size", line(3)),
+            "distribution, -Q": (None, line(0, back)),
+            "peak shear, -Q": (None, line(1, back)),
+            "stick size, -Q": ("stick size, after −Q", line(3, back)),
+            "distribution, +Q, mu = 0.2": ("shear, μ = 0.2", line(0, low, 1.0)),
+            "peak shear, +Q, mu = 0.2": ("peak shear, μ = 0.2", line(1, low, 1.0)),
+        },
+        "Bulk stress": {
+            "shift, balanced": ("shift, curvature kept", line(0)),
+            "shift, uniaxial": ("shift, uniaxial", line(0, 1)),
+            "what the stress adds, balanced": ("what the stress adds, curvature kept", line(1)),
+            "what the stress adds, uniaxial": ("what the stress adds, uniaxial", line(1, 1)),
+        },
+        "Unlike materials": {
+            f"mu = {ratio:g} |beta|, beta {relation}": (
+                f"μ = {ratio:g} |β|, β {relation} 0",
+                line(colour, dashes),
+            )
+            for colour, ratio in enumerate(MU_OVER_BETA)
+            for dashes, relation in enumerate("><")
+        },
+    }

@@ -1,0 +1,47 @@
+"""The documents: what they link to exists, and the tests that they name are there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from fastpin import paper
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(document: Path) -> None:
+    for target in re.findall(r"\]\(([^):#]+)", document.read_text(encoding="utf-8")):
+        assert (document.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_named_tests_and_scripts_exist(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    tests = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").glob("test_*.py"))
+    for name in set(re.findall(r"`(test_\w+)`", text)):
+        assert f"def {name}(" in tests, name
+    for name in set(re.findall(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`", text)):
+        assert (ROOT / name).exists(), name
+
+
+def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> None:
+    text = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+    rows = [line.replace("\\|", "").split("|")[1:-1] for line in text.splitlines() if re.match(r"\| \d+ \|", line)]
+    assert len(rows) >= 55
+    for number, row in enumerate(rows, start=1):
+        assert len(row) == 6
+        assert int(row[0]) == number
+        assert "`test_" in row[5]
+        assert re.search(r"\d", row[3])
+        assert "confirmed" in row[4] or "only" in row[4] or "exact" in row[4]
+
+
+def test_every_figure_is_shown() -> None:
+    text = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
+    for name in (*paper.PAPER, *paper.BEYOND):
+        assert f"figures/{paper.stem(name)}.png" in text
