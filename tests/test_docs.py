@@ -31,6 +31,7 @@ def test_named_tests_and_scripts_exist(document: Path) -> None:
 
 def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> None:
     text = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+    text = text[text.index("## Statements") : text.index("## Figures")]
     rows = [line.replace("\\|", "").split("|")[1:-1] for line in text.splitlines() if re.match(r"\| \d+ \|", line)]
     assert len(rows) >= 55
     for number, row in enumerate(rows, start=1):
