@@ -116,8 +116,8 @@ def _parser() -> argparse.ArgumentParser:
         "--figure",
         metavar="NAME",
         action="append",
-        help="a figure's number, 3 to 17, or the name of one that the paper does not have (may be repeated; default: "
-        "all of the paper)",
+        help="a figure's number, 3 to 17, or one that the paper does not have: memory, sliding-onset, half-plane, "
+        "rigid-pin (may be repeated; default: all of the paper)",
     )
     figures.add_argument("--nodes", type=int, default=paper.NODES, help=f"number of nodes (default {paper.NODES})")
     figures.add_argument(

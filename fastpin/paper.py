@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 import importlib
 import math
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -35,6 +36,8 @@ BEYOND = ("memory", "sliding-onset", "half-plane", "rigid-pin")
 """Names of the figures that the paper does not have."""
 
 NODES = 400
+
+UNITS = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
 
 Report = Callable[[float], None]
 """Called with the fraction of a figure that is computed."""
@@ -105,7 +108,13 @@ def script(name: str | int) -> Script:
     InputError
         If there is no such figure.
     """
-    return cast(Script, importlib.import_module(f"fastpin.figures.{stem(name).replace('-', '_')}"))
+    module = stem(name).replace("-", "_")
+    try:
+        return cast(Script, importlib.import_module(f"fastpin.figures.{module}"))
+    except ModuleNotFoundError as error:
+        if error.name != "fastpin.figures":
+            raise
+        raise InputError("figure", "the scripts of the figures are not installed; install fastpin with pip") from None
 
 
 def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None:
@@ -117,11 +126,12 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None
         If there is no such figure, `nodes` are too few for what one of them shows, or its files can't be written.
     """
     scripts = {known(name): script(name) for name in names}
-    whole_number("nodes", nodes, 1)
     for name, needed in scripts.items():
-        if nodes < needed.LEAST_NODES:
+        if whole_number("nodes", nodes, -sys.maxsize) < needed.LEAST_NODES:
             raise InputError("nodes", f"figure {name} needs at least {needed.LEAST_NODES} nodes, not {nodes}")
     folder = Path(directory)
+    if folder.exists() and not folder.is_dir():
+        raise InputError("output", f"{folder} is a file, not a directory")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -151,22 +161,32 @@ def make(
     chosen = script(name)
     curves = chosen.compute(nodes, progress)
     picture, numbers = _files(name, directory)
-    write_csv(curves, numbers, (chosen.TITLE, f"fastpin {__version__}, {nodes} nodes"))
+    write_csv(curves, numbers, (chosen.TITLE, f"fastpin {__version__}, {nodes} nodes", UNITS))
     draw_with(chosen.draw, curves, picture)
     return picture, numbers
 
 
 def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) -> None:
-    """Write curves one below the other: their parameters repeated, then their columns. NaN is an empty cell."""
+    """Write curves one below the other: their parameters repeated, then their columns.
+
+    NaN is an empty cell, and a comma in a text becomes a semicolon, for readers that do not know quotes.
+    """
     names = list(dict.fromkeys(name for curve in curves for name in (*curve.parameters, *curve.columns)))
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         file.writelines(f"# {remark}\n" for remark in remarks)
         writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
         writer.writeheader()
         for curve in curves:
+            parameters = {name: _parameter(value) for name, value in curve.parameters.items()}
             rows = zip(*curve.columns.values(), strict=True)
             for row in rows:
-                writer.writerow({**curve.parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
+                writer.writerow({**parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
+
+
+def _parameter(value: float | str) -> float | str:
+    if isinstance(value, str):
+        return value.replace(",", ";")
+    return "" if math.isnan(value) else value
 
 
 def _cell(value: Any) -> str:

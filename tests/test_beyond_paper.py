@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from fastpin import Problem, paper, solve
-from fastpin.figures import memory, sliding_onset
+from fastpin.figures import memory, sliding_onset, tractions
 from fastpin.sliding import solve_sliding
 
 NODES = 81
 
 
 def held(load_parameter: float, friction: float) -> Problem:
-    return Problem.from_load_parameter(sliding_onset.PAIR, load_parameter, friction, "centre", "fixed")
+    return Problem.from_load_parameter(tractions.PAIRS["Ti/Ti"], load_parameter, friction, "centre", "fixed")
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def test_states_are_steady_from_the_first_reversal_on_unless_strongly_conforming
 @pytest.mark.parametrize("load_parameter", [0.05, 0.5])
 def test_the_mirrored_history_is_the_mirror_image(load_parameter):
     problem = held(load_parameter, 0.55)
-    right = memory.cycled(problem, 0.55, NODES)
+    right = memory.cycles(problem, 0.55, NODES)
     corners = [{"P": 1.0}, *[{"Q": -0.55}, {"Q": 0.55}] * memory.CYCLES, {"Q": -0.55}]
     left = solve(problem, corners, grid=right.grid)
     for one, two in zip(right, left, strict=True):

@@ -25,7 +25,8 @@ def error_curve(quantity: str) -> paper.Curve:
 
 def order(curve: paper.Curve, first: float, last: float) -> float:
     """Power of 1/L_p with which the error falls between two load parameters."""
-    inside = (curve["L_p"] > 0.99 * first) & (curve["L_p"] < 1.01 * last)
+    inside = (curve["L_p"] > 0.99 * first) & (curve["L_p"] < 1.01 * last) & np.isfinite(curve["error"])
+    assert np.count_nonzero(inside) >= 3
     return -np.polyfit(np.log(curve["L_p"][inside]), np.log(np.abs(curve["error"][inside])), 1)[0]
 
 
@@ -60,8 +61,9 @@ def test_order_of_the_error(quantity, first, last, expected):
         ("half-width, with friction", 1.64, 8.5),
         ("peak pressure, with friction", 1.53, 8.28),
         ("stick size, +Q", 0.763, 6.5),
+        ("stick size, -Q", 10.0, None),
         ("peak shear, +Q", 9.5, 222.0),
-        ("peak shear, -Q", 8.7, 217.0),
+        ("peak shear, -Q", 8.7, None),
         ("distribution, +Q", 42.7, 1100.0),
         ("distribution, -Q", 42.4, 1100.0),
         ("distribution, moved, +Q", 11.2, 260.0),
@@ -161,11 +163,10 @@ def test_unlike_materials_tend_to_half_planes(ratio, limit, published, tolerance
 
 def test_the_sign_of_beta_decides_how_far_unlike_half_planes_reach():
     """And so does the pin's load, of which a half-plane knows nothing."""
-    softer_plate, softer_pin = (error_curve(f"mu = 1 |beta|, beta {relation}").parameters for relation in "><")
+    softer_plate, softer_pin = (error_curve(f"mu = 1 |beta|, beta {relation} 0").parameters for relation in "><")
     assert softer_plate["right_to_5_percent_from"] == pytest.approx(2800.0, rel=0.25)
-    assert softer_plate["right_to_1_percent_from"] == math.inf
+    assert math.isnan(softer_plate["right_to_1_percent_from"])  # these few nodes do not tell
     assert softer_pin["right_to_5_percent_from"] == pytest.approx(7.0, rel=0.25)
-    assert softer_pin["right_to_1_percent_from"] < 200.0
     limit = half_plane.unlike_half_planes(half_plane.BETA, half_plane.BETA)
     centre, body = (
         [error for _, _, error in half_plane.unlike_errors(100.0, 1.0, limit, 401, pin_load)]
@@ -224,7 +225,22 @@ def test_drawn(name, panels, lines):
     assert sum(len(line.get_xdata()) > 2 for panel in figure.axes for line in panel.lines) == lines
 
 
+@pytest.mark.parametrize("load_parameter", [3.0, 100.0])
+def test_floors_are_above_the_errors_of_the_discretisation(load_parameter):
+    """Differences between 201 and 601 nodes are below the floors for 201."""
+    coarse, fine = (
+        [
+            *half_plane.like_errors(load_parameter, 0.5, nodes),
+            *half_plane.unlike_errors(load_parameter, 1.0, 0.7, nodes),
+        ]
+        for nodes in (201, 601)
+    )
+    for (_, quantity, one), (_, other, two) in zip(coarse, fine, strict=True):
+        assert quantity == other
+        assert abs(one - two) < half_plane.floor(quantity, 201), quantity
+
+
 def test_half_plane_curves_leave_out_what_the_discretisation_hides():
     for curve in computed("half-plane"):
-        floor = half_plane.FLOORS.get(curve.parameters["quantity"], half_plane.FLOOR)
-        assert np.nanmin(np.abs(curve["error"])) >= floor
+        least = half_plane.floor(str(curve.parameters["quantity"]), half_plane.LEAST_NODES)
+        assert np.nanmin(np.abs(curve["error"])) >= least

@@ -53,16 +53,14 @@ def test_fretting_resembles_half_planes_at_high_load_parameter():
     at 0.5, and falls with the root of L_p."""
     assert [len(fretting("Ti/Ti", lp, 0.5, "fixed")[1].slip_zones) for lp in (0.05, 0.5)] == [1, 2]
     distances = []
-    for load_parameter in (0.05, 0.5, 5.0, 100.0):
+    for load_parameter in (0.05, 0.5, 1.0, 5.0, 100.0):
         state = fretting("Ti/Ti", load_parameter, 0.5, "fixed")[1]
         middle, half = math.radians(shift(state)) + BOTTOM, math.radians(half_contact(state))
         shear = -analytic.cattaneo_mindlin_shear(state.theta - middle, half, state.peak_pressure, MU, 0.5)
         weights = state.grid.weights
         distances.append(weights @ np.abs(state.shear - shear) / (weights @ np.abs(shear)))
     assert np.all(np.diff(distances) < 0.0)
-    assert distances[1] == pytest.approx(0.42, abs=0.05)
-    assert distances[2] < 0.16
-    assert distances[3] < 0.04
+    assert distances == pytest.approx([0.87, 0.42, 0.30, 0.135, 0.03], rel=0.06)
 
 
 @pytest.mark.parametrize(
@@ -244,7 +242,7 @@ def test_peak_shear_of_a_free_pin_is_at_the_edge_of_the_slip_zone(pair, load_par
 def test_dissimilarity_is_secondary_with_free_rotation(ratio):
     """5.4, figure 15, abstract: at L_p = 0.05 Ti/Al and Al/Ti have quite similar tractions. With free rotation the
     integral of |difference| is 15 % of the shear and 4 % of the pressure, with held rotation 30 and 7 %; and only in
-    the strongly conforming regime: at L_p = 1 it is 60 % of the shear."""
+    the strongly conforming regime: at L_p = 1 it is 34 to 140 % of the shear."""
     for step in (1, 2):
         shear, pressure = (
             {
@@ -259,7 +257,7 @@ def test_dissimilarity_is_secondary_with_free_rotation(ratio):
         assert pressure["free", 0.05] < 0.04
         assert 0.26 < shear["fixed", 0.05] < 0.32
         assert 0.05 < pressure["fixed", 0.05] < 0.07
-        assert shear["free", 1.0] > 0.34
+        assert 0.34 < shear["free", 1.0] < 1.6
 
 
 def test_difference_of_peak_pressures_falls_with_the_load_parameter():

@@ -220,7 +220,7 @@ def test_stick_nearly_fills_the_contact_at_high_load_parameter_and_friction(pair
 
 def test_like_pair_has_the_higher_peak_pressure_except_at_low_friction_and_load_parameter():
     """5.1: for like materials N_max is higher than for Ti/Al at the same L_p and mu. Not in strongly conforming
-    contacts of low friction: at L_p = 0.01 only from mu = 0.35 on, at 0.1 from 0.02, at 0.25 always."""
+    contacts of low friction: at L_p = 0.01 only from mu = 0.32 on, at 0.1 from 0.02, at 0.25 always."""
 
     def excess(load_parameter, mu):
         one, other = (monotonic(pair, load_parameter, mu).peak_pressure for pair in ("Ti/Ti", "Ti/Al"))
@@ -395,6 +395,9 @@ def test_remote_stress_cases_of_largest_pressure_and_contact(order):
     peak = {"together": 1.551, "force first": 1.551, "stress first": 1.723}[order]
     assert states[0.25, -0.25].peak_pressure == pytest.approx(peak, abs=0.005)
     assert stressed(0.0, 0.0).peak_pressure == pytest.approx(1.047, abs=0.002)
+    if order == "together":
+        equal = [states[signs].peak_pressure for signs in ((0.25, 0.25), (-0.25, -0.25))]
+        assert equal == pytest.approx([1.066, 1.133], abs=0.002)
     assert size[-0.25, 0.25] == pytest.approx(
         {"together": 68.2, "force first": 67.8, "stress first": 69.6}[order], abs=0.3
     )
@@ -429,17 +432,18 @@ def test_remote_stress_can_close_the_contact_or_split_it():
 
 
 def test_material_and_friction_are_secondary_to_remote_stress():
-    """5.2: effects of dissimilarity and even mu are secondary. For the contact size (within 2.5 %) and, less, for the
-    peak pressure (within 20 %) that the stresses change by 50 %; the shear is proportional to mu where it slips."""
+    """5.2: effects of dissimilarity and even mu are secondary. For the contact size (within 3 %) and, less, for the
+    peak pressure (within 22 %) that the stresses change by 39 to 61 %; the shear goes with mu where it slips."""
     for signs in ((0.25, -0.25), (-0.25, 0.25)):
         states = [stressed(*signs, pair=pair, friction=mu) for pair in PAIRS for mu in (0.1, 0.4, 0.7)]
         size = [half_contact(state) for state in states]
         peak = [state.peak_pressure for state in states]
-        assert max(size) / min(size) < 1.05
-        assert max(peak) / min(peak) < 1.25
+        assert max(size) / min(size) < 1.04
+        assert max(peak) / min(peak) < 1.23
     plain = [stressed(0.0, 0.0, pair=pair, friction=mu) for pair in PAIRS for mu in (0.1, 0.4, 0.7)]
     pinched = [stressed(0.25, -0.25, pair=pair, friction=mu) for pair in PAIRS for mu in (0.1, 0.4, 0.7)]
     change = [two.peak_pressure / one.peak_pressure for one, two in zip(plain, pinched, strict=True)]
-    assert 1.35 < min(change) < max(change) < 1.65
+    assert min(change) == pytest.approx(1.39, abs=0.03)
+    assert max(change) == pytest.approx(1.61, abs=0.03)
     shears = [largest(stressed(0.25, -0.25, friction=mu)) for mu in (0.1, 0.7)]
     assert shears[1] / shears[0] == pytest.approx(5.87, abs=0.15)

@@ -27,6 +27,7 @@ BOTTOM = -0.5 * math.pi
 SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
 TITANIUM_ALUMINIUM = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
+VERY_STIFF_PIN = MaterialPair(Material(100e9, 0.0), Material(1e9, 0.0))
 SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
 PAIRS = pytest.mark.parametrize("pair", [SIMILAR, TITANIUM_ALUMINIUM, RIGID_PIN, SOFT_PIN])
 
@@ -229,6 +230,8 @@ def test_pressure_is_zero_outside_and_periodic():
         ({"load": {"P": 1.0, "pressure": 0.1}}, "pressure"),
         ({"load": [1.0]}, "load"),
         ({"slip": 0}, "slip"),
+        ({"slip": True}, "slip"),
+        ({"slip": np.array([1, -1])}, "slip"),
         ({"terms": 3}, "terms"),
         ({"problem": None}, "problem"),
     ],
@@ -240,9 +243,36 @@ def test_bad_input_is_named(change, field):
     assert error.value.field == field
 
 
-def test_a_hole_that_closes_round_the_pin_is_refused():
-    with pytest.raises(ConvergenceError, match="closes round"):
-        solve_sliding(Problem.from_load_parameter(SIMILAR, -0.2, 0.3), {"P": 1.0})
+@PAIRS
+def test_a_hole_that_closes_round_the_pin_is_refused(pair):
+    for load in ({"P": 1.0}, {"Q": 1.0}, {"P": -1.0}):
+        with pytest.raises(ConvergenceError, match="close round"):
+            solve_sliding(Problem.from_load_parameter(pair, -0.3, 0.5), load)
+
+
+@pytest.mark.parametrize(
+    ("pair", "load_parameter", "load"),
+    [
+        (SIMILAR, 0.0, {"P": 1.0, "sxx": -0.2, "syy": 0.2}),
+        (SIMILAR, -0.02, {"P": -0.3, "Q": 1.0, "sxx": 0.2, "syy": -0.2}),
+        (VERY_STIFF_PIN, 0.0, {"P": -0.3, "Q": 1.0, "sxx": -0.4}),
+        (VERY_STIFF_PIN, -0.02, {"P": -0.3, "Q": 1.0, "sxx": -0.4}),
+    ],
+)
+def test_wide_contacts_under_remote_stress_are_found(pair, load_parameter, load):
+    """Some only on a way round states with a contact in several parts."""
+    problem = Problem.from_load_parameter(pair, load_parameter, 0.0)
+    found = solve_sliding(problem, load)
+    state = solve(problem, [load], grid=Grid.circle(300))[-1]
+    assert np.ptp(found.contact) > math.pi
+    ((start, stop),) = state.contact
+    assert stop - start == pytest.approx(np.ptp(found.contact), abs=0.02)
+    assert state.peak_pressure == pytest.approx(found.peak_pressure, rel=2e-3)
+
+
+def test_a_contact_too_narrow_for_angles_is_refused():
+    with pytest.raises(ConvergenceError):
+        solve_sliding(Problem(TITANIUM_ALUMINIUM, 10e-3, 20e-6, 0.5), {"P": 1e-300})
 
 
 def test_a_contact_in_several_parts_is_refused():

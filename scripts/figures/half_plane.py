@@ -1,7 +1,7 @@
 """From which load parameter on is a half-plane model right: relative errors of its formulas against L_p.
 
 An error is half-plane over fastpin minus 1, in the CSV with its sign; what is too small to be told from that of the
-discretisation at 400 nodes is left out (`FLOORS`). Half-plane formulas are taken as one uses them, with Hertz's
+discretisation is left out (`floor`). Half-plane formulas are taken as one uses them, with Hertz's
 half-width and peak pressure and with arcs for lengths. Similar materials and mu = 0.5 unless said otherwise.
 
 *Hertz*: peak pressure and half-width under P. Without friction from Persson's closed form.
@@ -34,6 +34,8 @@ from fastpin.paper import Curve, Report, steps
 from fastpin.plot import Axes, Figure, Line, line, panels
 from fastpin.problem import PinLoad
 
+from .tractions import BOTTOM
+
 TITLE = "Relative error of half-plane formulas against the load parameter"
 LEAST_NODES = 201
 LEVELS = (0.05, 0.01)
@@ -54,7 +56,6 @@ LOAD_PARAMETERS = tuple(10.0 ** (k / 3) for k in range(-3, 13))
 BULK_FROM = 0.99
 """L_p from which the bulk stress acts: below, it drives the stick zone to the edge."""
 UNLIKE_LOAD_PARAMETERS = tuple(10.0 ** (k / 2) for k in range(-2, 11))
-BOTTOM = -0.5 * math.pi
 
 FLOOR = 1e-3
 FLOORS = {
@@ -63,9 +64,19 @@ FLOORS = {
     "peak shear, -Q": 6e-3,
     "what the stress adds, balanced": 3e-3,
     "what the stress adds, uniaxial": 3e-3,
-    **{f"mu = {ratio:g} |beta|, beta {sign}": 0.03 if ratio < 1.0 else 8e-3 for ratio in MU_OVER_BETA for sign in "><"},
+    **{
+        f"mu = {ratio:g} |beta|, beta {sign} 0": 0.03 if ratio < 1.0 else 8e-3
+        for ratio in MU_OVER_BETA
+        for sign in "><"
+    },
 }
 """Smallest errors that are more than those of the discretisation at 400 nodes, where that is not `FLOOR`."""
+
+
+def floor(quantity: str, nodes: int) -> float:
+    """Smallest error that is more than that of the discretisation with so many nodes."""
+    return FLOORS.get(quantity, FLOOR) * max(1.0, 400.0 / nodes)
+
 
 Error = tuple[str, str, float]
 """Panel, quantity and error."""
@@ -84,19 +95,20 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
             found = unlike_errors(load_parameter, value, limits[value], nodes)
         for panel, quantity, error in found:
             rows.setdefault((panel, quantity), []).append((load_parameter, error))
-    return [_curve(panel, quantity, np.array(pairs)) for (panel, quantity), pairs in rows.items()]
+    return [
+        _curve(panel, quantity, np.array(pairs), floor(quantity, nodes)) for (panel, quantity), pairs in rows.items()
+    ]
 
 
-def _curve(panel: str, quantity: str, rows: np.ndarray) -> Curve:
+def _curve(panel: str, quantity: str, rows: np.ndarray, least: float) -> Curve:
     load_parameter, error = rows.T
-    floor = FLOORS.get(quantity, FLOOR)
     right = {
         f"right_to_{100.0 * level:g}_percent_from": (
-            threshold(load_parameter, error, level) if level > floor else math.nan
+            threshold(load_parameter, error, level) if level > least else math.nan
         )
         for level in LEVELS
     }
-    shown = np.where(np.abs(error) >= floor, error, math.nan)
+    shown = np.where(np.abs(error) >= least, error, math.nan)
     return Curve({"panel": panel, "quantity": quantity, **right}, {"L_p": load_parameter, "error": shown})
 
 
@@ -186,7 +198,7 @@ def unlike_errors(
         problem = Problem.from_load_parameter(pair, load_parameter, ratio * BETA, pin_load)
         _, stick, _, contact = stick_and_contact(solve(problem, [{"P": 1.0}], nodes=nodes)[-1])
         relation = ">" if sign > 0 else "<"
-        yield "Unlike materials", f"mu = {ratio:g} |beta|, beta {relation}", limit * contact / stick - 1.0
+        yield "Unlike materials", f"mu = {ratio:g} |beta|, beta {relation} 0", limit * contact / stick - 1.0
 
 
 def unlike_half_planes(friction: float, beta: float, cells: int = 60) -> float:
@@ -295,7 +307,7 @@ def _styles() -> dict[str, dict[str, tuple[str | None, Line]]]:
             "what the stress adds, uniaxial": ("what the stress adds, uniaxial", line(1, 1)),
         },
         "Unlike materials": {
-            f"mu = {ratio:g} |beta|, beta {relation}": (
+            f"mu = {ratio:g} |beta|, beta {relation} 0": (
                 f"μ = {ratio:g} |β|, β {relation} 0",
                 line(colour, dashes),
             )

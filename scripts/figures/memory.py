@@ -13,21 +13,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin import MATERIALS, Grid, LoadHistory, MaterialPair, Problem, Result, State, solve
+from fastpin import Grid, LoadHistory, Problem, Result, State, solve
 from fastpin.paper import Curve, Report, steps
 from fastpin.plot import Figure, key, line, panels
 
+from .fretting import FRICTION
+from .tractions import BOTTOM, PAIRS
+
 TITLE = "System memory: what the first direction of Q leaves behind, against load parameter and amplitude"
 LEAST_NODES = 61
-PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
-FRICTION = 0.55
 LOAD_PARAMETERS = tuple(0.01 * 2000.0 ** (k / 16) for k in range(17))
 AMPLITUDES = (0.25, 0.5, 0.75, 1.0, 1.25)
 CYCLES = 3
-BOTTOM = -0.5 * math.pi
 
 
-def cycled(problem: Problem, amplitude: float, nodes: int) -> Result:
+def cycles(problem: Problem, amplitude: float, nodes: int) -> Result:
     """P, then cycles of +Q and -Q, on a grid that is its own mirror image."""
     history = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
     coarse = solve(problem, history[:3], nodes=LEAST_NODES)
@@ -51,8 +51,8 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """
     found: dict[float, list[list[float]]] = {}
     for ratio, load_parameter in steps([(a, b) for a in AMPLITUDES for b in LOAD_PARAMETERS], progress):
-        problem = Problem.from_load_parameter(PAIR, load_parameter, FRICTION, "centre", "fixed")
-        states = cycled(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
+        problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, FRICTION, "centre", "fixed")
+        states = cycles(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
         steady, back = states[-1], states[-2]
         weights = steady.grid.weights
         total = float(weights @ steady.pressure)
@@ -90,7 +90,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
         panel.set_xlabel("load parameter  $L_p$")
         panel.set_ylim(bottom=0.0)
     memory.set_ylabel("memory:  ∫|ΔT| / ∫μN  [%]")
-    transient.set_ylabel("distance from the steady state  [%]")
+    transient.set_ylabel("from the steady state:  ∫|ΔT| / ∫μN  [%]")
     key(
         figure,
         [(f"Q/(μP) = {curve.parameters['eta']:g}", line(index)) for index, curve in enumerate(curves)],

@@ -8,7 +8,6 @@ of an elastic pin's tractions (Poisson's ratio 0.3), between its two loads and t
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,6 +17,8 @@ from fastpin.paper import Curve, Report, steps, traction_curve
 from fastpin.plot import Figure, angle_axis, key, line, panels
 from fastpin.problem import PinLoad
 
+from .tractions import BOTTOM
+
 TITLE = "Rigid pin in aluminium, mu = 0.4, L_p = 0.1: tractions, and how elastic pins tend to them"
 LEAST_NODES = 101
 LOAD_PARAMETER = 0.1
@@ -26,13 +27,13 @@ PLATE = MATERIALS["aluminium"]
 PINS = {"steel": MATERIALS["steel"], "10 E": Material(10.0 * PLATE.E, 0.3), "rigid": Material.rigid()}
 RATIOS = tuple(10.0 ** (k / 2) for k in range(13))
 """E_pin / E_plate."""
-ARC = (-0.5 * math.pi - 1.35, -0.5 * math.pi + 1.35)
+ARC = (BOTTOM - 1.35, BOTTOM + 1.35)
 LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 PAIRS = ("centre to body", "centre to rigid", "body to rigid")
 """What is compared on the right."""
 
 
-def pushed(pin: Material, pin_load: PinLoad, nodes: int) -> State:
+def pushed_pin(pin: Material, pin_load: PinLoad, nodes: int) -> State:
     """The pin pushed down by P = F, on the same nodes for all pins."""
     problem = Problem.from_load_parameter(MaterialPair(pin, PLATE), LOAD_PARAMETER, FRICTION, pin_load)
     return solve(problem, [{"P": 1.0}], nodes=nodes, arc=ARC)[-1]
@@ -48,10 +49,10 @@ def difference(one: State, two: State, quantity: str) -> float:
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions of three pins under both loads, then the differences against the ratio of the moduli."""
     cases = [*PINS.items(), *((ratio, Material(ratio * PLATE.E, 0.3)) for ratio in RATIOS)]
-    rigid = pushed(PINS["rigid"], "centre", nodes)
+    rigid = pushed_pin(PINS["rigid"], "centre", nodes)
     curves, rows = [], []
     for name, pin in steps(cases, progress):
-        centre, body = (pushed(pin, pin_load, nodes) for pin_load in LOADS)
+        centre, body = (pushed_pin(pin, pin_load, nodes) for pin_load in LOADS)
         if isinstance(name, str):
             curves.append(traction_curve(centre, pin=name, pin_load="centre"))
             curves.append(traction_curve(body, pin=name, pin_load="body"))

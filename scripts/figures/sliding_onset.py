@@ -1,7 +1,7 @@
 """The onset of sliding, which the paper only names: Q/(mu P) at which no node sticks any more.
 
-Similar materials, centre load, rotation held; P first, then Q. Solid: the first +Q. Dashed: the way back from +Q to -Q,
-for the smallest amplitude Q at which the whole contact slides there. Where a curve ends something sticks up to
+Similar materials, centre load, rotation held; P first, then Q. Solid: the first +Q. Dashed: -Q after +Q, for the
+smallest amplitude Q with which the whole contact slides at -Q. Where a curve ends something sticks up to
 Q = 1.5 P and beyond: the contact follows the load round the hole instead, and as it grows it sticks again.
 """
 
@@ -12,21 +12,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin import MATERIALS, MaterialPair, Problem, State, solve
+from fastpin import Problem, State, solve
 from fastpin.paper import Curve, Report, steps
 from fastpin.plot import Figure, key, line, panels
 
+from .tractions import PAIRS
+
 TITLE = "Onset of full sliding against load parameter and friction, on the first way and on the way back"
 LEAST_NODES = 61
-PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["Ti-6Al-4V"])
 LARGEST = 1.5
 """Q/P up to which sliding is looked for."""
 
-LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 12) for k in range(13))
+LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 16) for k in range(17))
 SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
-FRICTION = tuple(0.05 + 0.95 * k / 6 for k in range(7))
+FRICTION = tuple(0.05 + 0.95 * k / 8 for k in range(9))
 SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
-SCAN, ROUNDS, HALVINGS = 32, 3, 6
+SCAN, ROUNDS = 32, 3
+AMPLITUDES, HALVINGS = 8, 5
 
 
 def stick_width(state: State) -> float:
@@ -41,10 +43,11 @@ def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
     without it, or else on the one with the least of it.
     """
     begin, end = 0.0, largest
-    width = np.ones(1)
+    grid, width = None, np.ones(1)
     for _ in range(ROUNDS):
         corners = [{"P": 1.0}, {"Q": begin}, {"Q": end}]
-        states = solve(problem, corners, nodes=nodes, between=SCAN)[-SCAN - 2 :]  # from `begin` to `end`
+        result = solve(problem, corners, nodes=nodes, grid=grid, between=SCAN)
+        grid, states = result.grid, result[-SCAN - 2 :]  # from `begin` to `end`
         width = np.array([stick_width(state) for state in states])
         if np.any(width == 0.0):
             low = high = int(np.argmax(width == 0.0))
@@ -56,23 +59,24 @@ def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
 
 
 def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
-    """Smallest amplitude Q with which the contact slides on the way from +Q to -Q; NaN if none up to `largest` does.
+    """Smallest amplitude Q with which the contact slides at -Q, after +Q; NaN if none up to `largest` does.
 
     Nothing slides below Q = mu P, so the search begins there.
     """
 
     def slides_back(amplitude: float) -> bool:
         corners = [{"P": 1.0}, {"Q": amplitude}, {"Q": -amplitude}]
-        back = solve(problem, corners, nodes=nodes, between=[0.6, 0.7, 0.8, 0.9, 0.95])[-6:]
-        return any(stick_width(state) == 0.0 for state in back)
+        return stick_width(solve(problem, corners, nodes=nodes)[-1]) == 0.0
 
-    low, high = problem.friction, largest
-    if not slides_back(high):
+    amplitudes = np.linspace(problem.friction, largest, AMPLITUDES + 1)
+    first = next((k for k in range(1, AMPLITUDES + 1) if slides_back(float(amplitudes[k]))), None)
+    if first is None:
         return math.nan
+    low, high = float(amplitudes[first - 1]), float(amplitudes[first])
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if slides_back(middle) else (middle, high)
-    return high
+    return 0.5 * (low + high)
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
@@ -83,7 +87,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     found: dict[tuple[str, float], list[tuple[float, float, float]]] = {}
     for name, fixed, value in steps(cases, progress):
         load_parameter, friction = (value, fixed) if name == "mu" else (fixed, value)
-        problem = Problem.from_load_parameter(PAIR, load_parameter, friction, "centre", "fixed")
+        problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, friction, "centre", "fixed")
         forward = forward_onset(problem, LARGEST, nodes)
         back = reverse_onset(problem, LARGEST if math.isnan(forward) else forward, nodes)
         found.setdefault((name, fixed), []).append((value, forward / friction, back / friction))
@@ -100,9 +104,8 @@ def draw(curves: Sequence[Curve]) -> Figure:
     figure, axes = panels(1, 2, height=3.0)
     rows = []
     for panel, name, symbol, other in ((axes[0, 0], "mu", "μ", "L_p"), (axes[0, 1], "L_p", "$L_p$", "mu")):
-        chosen = [curve for curve in curves if name in curve.parameters]
         row = []
-        for index, curve in enumerate(chosen):
+        for index, curve in enumerate(curve for curve in curves if name in curve.parameters):
             panel.plot(curve[other], curve["eta_s_forward"], marker=".", markersize=3, **line(index))
             panel.plot(curve[other], curve["eta_s_back"], marker=".", markersize=3, **line(index, 1, 1.0))
             row.append((f"{symbol} = {curve.parameters[name]:g}", line(index)))
@@ -113,7 +116,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     axes[0, 0].set_xlabel("load parameter  $L_p$")
     axes[0, 1].set_xlabel("coefficient of friction  μ")
     axes[0, 0].set_ylabel("onset of sliding  $η_s$ = Q/(μP)")
-    rows[0].append(("first way, to +Q", line(5)))
-    rows[1].append(("way back, to −Q", line(5, 1, 1.0)))
+    rows[0].append(("first way, at +Q", line(5)))
+    rows[1].append(("way back, at −Q", line(5, 1, 1.0)))
     key(figure, *rows)
     return figure

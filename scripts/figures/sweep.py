@@ -17,9 +17,8 @@ from fastpin import STICK, Problem, State, solve
 from fastpin.paper import Curve, Report, steps
 from fastpin.plot import Axes
 
-from .tractions import PAIRS
+from .tractions import BOTTOM, PAIRS
 
-BOTTOM = -0.5 * math.pi
 LIMITS = np.geomspace(2.2, 0.005, 12)
 """Load parameters at which one history ends and the next one takes over."""
 POINTS = 8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from fastpin.paper import Curve
 from fastpin.plot import Figure, Line, angle_axis, key, panels
 from fastpin.problem import PinLoad
 
+BOTTOM = -0.5 * math.pi
 TITANIUM, ALUMINIUM = MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"]
 PAIRS = {
     "Ti/Al": MaterialPair(TITANIUM, ALUMINIUM),
