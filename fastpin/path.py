@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import blas
 
-from fastpin import tableau
+from fastpin import tableau, toeplitz
 from fastpin.collocation import ActiveSet, Configuration, P, Q, System
 from fastpin.state import OPEN, STICK
 
@@ -20,6 +20,7 @@ BLOCK = 64
 """Rank-one updates applied to the tableau at a time."""
 
 MOST_REBUILDS = 400
+MOST_RESIDUAL = 1e-10
 
 
 class PathStep:
@@ -58,7 +59,8 @@ class PathStep:
         self._wholesale = max(32, n // 20)
         self._matrix: np.ndarray
         self._rates: np.ndarray
-        self._rebuild()
+        if not self._begin_stuck():
+            self._rebuild()
 
     @property
     def fraction(self) -> float:
@@ -116,6 +118,28 @@ class PathStep:
         self.now.dissipation = float(self._sums[tableau.DISSIPATION])
         self.now.work = float(self._sums[tableau.WORK])
 
+    def _begin_stuck(self) -> bool:
+        """Let all closed nodes stick if the load has turned, so that most of the slipping ones would; else do nothing.
+
+        They are settled from there. It saves the tableau of statuses that hold for no time at all.
+        """
+        status = self.now.status
+        slipping = np.flatnonzero(np.abs(status) == 1)
+        if self.system.friction == 0.0 or slipping.size <= self._wholesale:
+            return False
+        stuck = np.where(status == OPEN, OPEN, STICK).astype(np.int8)
+        built = _stuck_tableau(self.system, stuck, self.rate)
+        if built is None:
+            return False
+        rates, n = built[1], status.size
+        growth = -status[slipping] * rates[n + slipping] - self.system.friction * rates[slipping]
+        if np.count_nonzero(growth <= 0.0) <= slipping.size // 2:
+            return False
+        status[:] = stuck
+        self._matrix, self._rates = built
+        self._counts[tableau.EXCHANGES] += slipping.size
+        return True
+
     def _apply_updates(self) -> None:
         pending = int(self._counts[tableau.PENDING])
         if pending:
@@ -157,19 +181,66 @@ def build_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> 
 
     The zero-rate variables of the unknown tractions' pairs are h and s, of the others N and tau.
     """
-    n = system.grid.size
+    built = _stuck_tableau(system, status, load_rate)
+    if built is not None:
+        return built
     active = ActiveSet(system, status)
     if active.singular:
         return None
-    rows, count = active.rows, active.count
-    others = np.setdiff1d(np.arange(2 * n), rows)
-    inverse = active.inverse()
+    others = np.setdiff1d(np.arange(2 * system.grid.size), active.rows)
+    tied = active.columns(system.operator, others)
+    return _assembled(system, active.rows, others, active.inverse(), tied, load_rate)
 
+
+def _stuck_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """The tableau of equally spaced neighbours that all stick, fast; None if it can't be had in this way."""
+    closed = np.flatnonzero(status != OPEN)
+    if closed.size < 2 or not system.grid.uniform or system.friction == 0.0 or np.any(status[closed] != STICK):
+        return None
+    n, (low, high) = system.grid.size, closed[[0, -1]] + (0, 1)
+    if high - low != closed.size or (not system.grid.closed and (low == 0 or high == n)):
+        return None
+    rows = np.r_[low:high, n + low : n + high]
+    operator, count = system.operator, rows.size
+    inverse = np.empty((count + 3, count + 3))
+    core = toeplitz.inverse(operator[low:high, low], operator[n + low : n + high, n + low], operator[low:high, n + low])
+    # The three motions and conditions of equilibrium, by the complement that they leave.
+    motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
+    moved, held = core @ motion, equilibrium @ core
+    complement = system.motion_rows - equilibrium @ moved
+    scale = np.abs(equilibrium) @ np.abs(moved)
+    if not np.all(np.isfinite(complement)) or not np.linalg.cond(complement / scale.max()) < 1e8:
+        return None
+    small = np.linalg.inv(complement)
+    inverse[:count, :count] = core + moved @ small @ held
+    inverse[:count, count:] = -moved @ small
+    inverse[count:, :count] = -small @ held
+    inverse[count:, count:] = small
+    probe = np.cos(np.arange(count + 3.0))
+    found = inverse @ probe
+    back = np.r_[
+        operator[np.ix_(rows, rows)] @ found[:count] + motion @ found[count:],
+        equilibrium @ found[:count] + system.motion_rows @ found[count:],
+    ]
+    if not np.abs(back - probe).max() < MOST_RESIDUAL:
+        return None
+    others = np.setdiff1d(np.arange(2 * n), rows)
+    return _assembled(system, rows, others, inverse, operator[np.ix_(others, rows)], load_rate)
+
+
+def _assembled(
+    system: System, rows: np.ndarray, others: np.ndarray, inverse: np.ndarray, tied: np.ndarray, load_rate: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Tableau and rates from the inverse of the system of the unknown tractions `rows` and the motion.
+
+    `tied` are the columns of the operator for the unknown tractions, friction eliminated, at the `others`.
+    """
+    n, count = system.grid.size, rows.size
     given = np.empty((count + 3, others.size), order="F")  # effect of the other tractions on the held rows
     given[:count] = system.operator[np.ix_(rows, others)]
     given[count:] = system.equilibrium[:, others]
     response = inverse @ given
-    tied = np.hstack([active.columns(system.operator, others), system.motion[others]])
+    tied = np.hstack([tied, system.motion[others]])
 
     matrix = np.empty((2 * n + 3, 2 * n), order="F")
     free = np.r_[rows, 2 * n + np.arange(3)]

@@ -1,0 +1,98 @@
+"""The fast inverse of neighbours that all stick: compiled, as plain Python, and against factorisations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, path, solve, toeplitz
+from fastpin.collocation import System
+
+BOTTOM = -0.5 * np.pi
+RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
+
+
+def dense(first, second, cross):
+    upper = scipy.linalg.toeplitz(cross, -cross)
+    return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
+
+
+@pytest.fixture(params=["compiled", "python"])
+def inverse(request, monkeypatch):
+    if request.param == "python":
+        for name in ("_predictors", "_fill"):
+            kernel = getattr(toeplitz, name)
+            monkeypatch.setattr(toeplitz, name, getattr(kernel, "py_func", kernel))
+    return toeplitz.inverse
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 30])
+def test_it_is_the_inverse(inverse, size):
+    rng = np.random.default_rng(size)
+    away = np.arange(size)
+    first, second = (rng.normal(size=size) * 0.8**away + 4.0 * size * (away == 0) for _ in range(2))
+    cross = np.where(away == 0, 0.0, rng.normal(size=size))
+    matrix = dense(first, second, cross)
+    assert np.array_equal(matrix, matrix.T)
+    assert inverse(first, second, cross) == pytest.approx(np.linalg.inv(matrix), rel=1e-11, abs=1e-14)
+
+
+def test_a_singular_leading_block_is_not_hidden():
+    found = toeplitz.inverse(np.array([1.0, 1.0]), np.array([2.0, 0.0]), np.zeros(2))
+    assert not np.all(np.isfinite(found))
+
+
+def stuck(size, low, high):
+    status = np.full(size, OPEN, dtype=np.int8)
+    status[low:high] = STICK
+    return status
+
+
+@pytest.mark.parametrize("grid", [Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 121), Grid.circle(121)], ids=["arc", "circle"])
+@pytest.mark.parametrize(
+    ("pin_load", "rotation", "hub"), [("body", "free", None), ("centre", "fixed", None), ("centre", "fixed", 0.2)]
+)
+@pytest.mark.parametrize("pair", ["titanium", "rigid"])
+def test_tableau_of_sticking_neighbours(titanium_in_aluminium, monkeypatch, grid, pin_load, rotation, hub, pair):
+    pair = titanium_in_aluminium if pair == "titanium" else RIGID_PIN
+    problem = Problem.from_load_parameter(pair, 0.1, 0.4, pin_load, rotation, hub_radius=hub)
+    system = System.build(problem, grid, 1.0)
+    status, rate = stuck(121, 20, 97), np.array([0.3, 1.0, 0.0, 0.1, -0.2, 0.0])
+    matrix, rates = path._stuck_tableau(system, status, rate)
+    monkeypatch.setattr(path, "_stuck_tableau", lambda *_: None)
+    expected, expected_rates = path.build_tableau(system, status, rate)
+    assert np.abs(matrix - expected).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(rates - expected_rates).max() < 1e-11 * np.abs(expected_rates).max()
+
+
+def test_what_it_is_not_for(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    rate = np.array([0.3, 1.0, 0.0, 0.0, 0.0, 0.0])
+    system = System.build(problem, Grid.circle(60), 1.0)
+    split, across, slipping = stuck(60, 20, 40), stuck(60, 50, 60), stuck(60, 20, 40)
+    split[30], across[:5], slipping[25] = OPEN, STICK, 1
+    for status in (split, across, slipping, stuck(60, 0, 0), stuck(60, 20, 21)):
+        assert path._stuck_tableau(system, status, rate) is None
+    theta = BOTTOM + np.linspace(-1.2, 1.2, 60) ** 3
+    graded = System.build(problem, Grid(theta), 1.0)
+    assert path._stuck_tableau(graded, stuck(60, 20, 40), rate) is None
+    smooth = System.build(Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0), Grid.circle(60), 1.0)
+    assert path._stuck_tableau(smooth, stuck(60, 20, 40), rate) is None
+
+
+@pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "fixed")])
+def test_histories_are_those_of_factorisations(titanium_in_aluminium, monkeypatch, pin_load, rotation):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, pin_load, rotation)
+    grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)
+    corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.4, "sxx": 0.1}, {"P": 1.2}]
+    fast = solve(problem, corners, grid=grid)
+    monkeypatch.setattr(path, "_stuck_tableau", lambda *_: None)
+    slow = solve(problem, corners, grid=grid)
+    for one, two in zip(fast, slow, strict=True):
+        assert np.array_equal(one.status, two.status)
+        for name in ("pressure", "shear", "gap", "slip"):
+            scale = np.abs(getattr(two, name)).max()
+            assert np.abs(getattr(one, name) - getattr(two, name)).max() < 1e-9 * scale
+        assert one.dissipation == pytest.approx(two.dissipation, rel=1e-9, abs=1e-12)
+    assert fast.statistics["rebuilds"] < slow.statistics["rebuilds"]
