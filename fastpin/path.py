@@ -119,13 +119,14 @@ class PathStep:
         self.now.work = float(self._sums[tableau.WORK])
 
     def _begin_stuck(self) -> bool:
-        """Let all closed nodes stick if the load has turned, so that most of the slipping ones would; else do nothing.
+        """Begin with a tableau in which all closed nodes stick, if it can be had fast; else do nothing.
 
-        They are settled from there. It saves the tableau of statuses that hold for no time at all.
+        If the load has turned, so that most of the slipping nodes would stick, they do. If not, they are queued to slip
+        again, as long as that costs less than a factorisation.
         """
         status = self.now.status
         slipping = np.flatnonzero(np.abs(status) == 1)
-        if self.system.friction == 0.0 or slipping.size <= self._wholesale:
+        if self.system.friction == 0.0:
             return False
         stuck = np.where(status == OPEN, OPEN, STICK).astype(np.int8)
         built = _stuck_tableau(self.system, stuck, self.rate)
@@ -133,11 +134,13 @@ class PathStep:
             return False
         rates, n = built[1], status.size
         growth = -status[slipping] * rates[n + slipping] - self.system.friction * rates[slipping]
-        if np.count_nonzero(growth <= 0.0) <= slipping.size // 2:
-            return False
+        if np.count_nonzero(growth > 0.0) > slipping.size // 2:
+            if slipping.size > n // 2:
+                return False
+            self._queue[0][: slipping.size], self._queue[1][: slipping.size] = slipping, status[slipping]
+            self._counts[tableau.QUEUED] = slipping.size
         status[:] = stuck
         self._matrix, self._rates = built
-        self._counts[tableau.EXCHANGES] += slipping.size
         return True
 
     def _apply_updates(self) -> None:

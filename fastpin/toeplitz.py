@@ -103,7 +103,8 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     forward, backward, errors = np.empty((2, 4, m)), np.empty((2, 4, m)), np.empty((2, 4))
     now = _predictors(first, second, cross, forward, backward, errors)
     F, G = forward[now], backward[now]
-    left, left_back = (_divided(column, error) for column, error in zip((F, G), errors, strict=True))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        left, left_back = (_divided(column, error) for column, error in zip((F, G), errors, strict=True))
     out = np.empty((2 * m, 2 * m))
     _fill(F, G, left, left_back, out)
     return out
