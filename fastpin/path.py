@@ -126,8 +126,6 @@ class PathStep:
         """
         status = self.now.status
         slipping = np.flatnonzero(np.abs(status) == 1)
-        if self.system.friction == 0.0:
-            return False
         stuck = np.where(status == OPEN, OPEN, STICK).astype(np.int8)
         built = _stuck_tableau(self.system, stuck, self.rate)
         if built is None:
