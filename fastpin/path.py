@@ -21,6 +21,7 @@ BLOCK = 64
 
 MOST_REBUILDS = 400
 MOST_RESIDUAL = 1e-10
+"""Of a fast inverse; with more, a factorisation takes its place."""
 
 
 class PathStep:
@@ -217,12 +218,11 @@ def _stuck_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) ->
     inverse[:count, count:] = -moved @ small
     inverse[count:, :count] = -small @ held
     inverse[count:, count:] = small
-    probe = np.cos(np.arange(count + 3.0))
+    probe, tractions = np.cos(np.arange(count + 3.0)), np.zeros(2 * n)
     found = inverse @ probe
-    back = np.r_[
-        operator[np.ix_(rows, rows)] @ found[:count] + motion @ found[count:],
-        equilibrium @ found[:count] + system.motion_rows @ found[count:],
-    ]
+    tractions[rows] = found[:count]
+    displacement = system.displacement(tractions, found[count:], np.zeros_like(load_rate), 0.0)
+    back = np.r_[displacement[rows], system.equilibrium @ tractions + system.motion_rows @ found[count:]]
     if not np.abs(back - probe).max() < MOST_RESIDUAL:
         return None
     others = np.setdiff1d(np.arange(2 * n), rows)

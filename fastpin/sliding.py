@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -101,7 +102,7 @@ class Sliding:
         """Where the largest contact pressure acts, rad."""
         return self._peak[0]
 
-    @property
+    @cached_property
     def _peak(self) -> tuple[float, float]:
         start, stop = self.contact
         fine = np.linspace(start, stop, 400)[1:-1]

@@ -11,14 +11,12 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, STICK, Grid, MaterialPair, Problem, analytic, solve
+from fastpin import STICK, Grid, Problem, analytic, solve
+from fastpin.figures.figure10 import stress_unit
+from fastpin.figures.fretting import FRICTION as MU
+from fastpin.figures.tractions import BOTTOM, PAIRS
 
-BOTTOM = -0.5 * math.pi
-TI, AL = MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"]
-PAIRS = {"Ti/Al": MaterialPair(TI, AL), "Ti/Ti": MaterialPair(TI, TI), "Al/Ti": MaterialPair(AL, TI)}
 EVERY_PAIR = pytest.mark.parametrize("pair", PAIRS)
-MU = 0.55
-"""Friction of the paper's fretting cases."""
 
 
 # --- solutions, each computed once ------------------------------------------------------------------------------
@@ -74,8 +72,7 @@ def fretting(pair, load_parameter, ratio, rotation, half_cycles=4, start=1.0, pi
 def stressed(sigma_x, sigma_y, order="together", pair="Ti/Al", friction=0.4, load_parameter=0.75, nodes=121):
     """P = 1 under body forces and the remote stresses sigma = sxx R kappa'/(2 G F beta*)."""
     problem = Problem.from_load_parameter(PAIRS[pair], load_parameter, friction, "body")
-    plate = problem.pair.plate
-    unit = 2.0 * plate.shear_modulus / (0.5 * (problem.pair.plate_kolosov + 1.0))
+    unit = stress_unit(pair)
     stress = {"sxx": sigma_x * unit, "syy": sigma_y * unit}
     corners = {
         "together": [{"P": 1.0, **stress}],

@@ -56,7 +56,7 @@ def test_the_mirrored_history_is_the_mirror_image(load_parameter):
     corners = [{"P": 1.0}, *[{"Q": -0.55}, {"Q": 0.55}] * memory.CYCLES, {"Q": -0.55}]
     left = solve(problem, corners, grid=right.grid)
     for one, two in zip(right, left, strict=True):
-        assert np.abs(one.shear + memory.mirrored(two.shear, two)).max() < 1e-9
+        assert np.abs(one.shear + two.shear[::-1]).max() < 1e-9
 
 
 @pytest.mark.parametrize(("load_parameter", "friction", "expected"), [(0.5, 0.55, 2.313), (1.0, 0.3, 1.308)])

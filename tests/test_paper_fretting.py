@@ -11,7 +11,6 @@ import math
 import numpy as np
 import pytest
 from paper_cases import (
-    AL,
     BOTTOM,
     EVERY_PAIR,
     MU,
@@ -397,7 +396,7 @@ def test_frictionless_centre_and_body_loads_have_the_same_pressure(pair, load_pa
 
 def test_rigid_pin_has_the_same_tractions_under_centre_and_body_loads():
     """4: for a rigid pin the equations of centre and body loads are identical, with friction too."""
-    pair = MaterialPair(Material.rigid(), AL)
+    pair = MaterialPair(Material.rigid(), PAIRS["Ti/Al"].plate)
     centre, body = (
         solve(Problem.from_load_parameter(pair, 0.1, MU, load), [{"P": 1.0}, {"Q": 0.3}], nodes=101)[-1]
         for load in ("centre", "body")

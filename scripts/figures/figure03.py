@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report, steps, traction_curve
+from fastpin.paper import Curve, Report
 from fastpin.plot import Figure, line
 
-from .tractions import Panel, chosen, pushed, traction_figure
+from .tractions import Panel, chosen, pushed_curves, traction_figure
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium), L_p = 0.01 and 0.1"
 LEAST_NODES = 101
@@ -21,10 +21,7 @@ FRICTION = (0.1, 0.3, 0.5, 0.7)
 def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> list[Curve]:
     """Tractions at the load P = F, one curve for each load parameter and coefficient of friction."""
     cases = [(load_parameter, friction) for load_parameter in LOAD_PARAMETERS for friction in FRICTION]
-    return [
-        traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
-        for load_parameter, friction in steps(cases, progress)
-    ]
+    return pushed_curves(pair, cases, nodes, progress)
 
 
 def draw(curves: Sequence[Curve]) -> Figure:

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report, steps, traction_curve
+from fastpin.paper import Curve, Report
 from fastpin.plot import Figure, line
 
-from .tractions import Panel, pushed, traction_figure
+from .tractions import Panel, pushed_curves, traction_figure
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium) at high L_p and different mu"
 LEAST_NODES = 101
@@ -23,10 +23,7 @@ FRICTION = {0.25: (0.0, 0.1, 0.2, 0.6), 0.5: (0.0, 0.1, 0.2, 0.4), 1.0: (0.0, 0.
 def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> list[Curve]:
     """Tractions at the load P = F, one curve for each load parameter and coefficient of friction."""
     cases = [(load_parameter, mu) for load_parameter, coefficients in FRICTION.items() for mu in coefficients]
-    return [
-        traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
-        for load_parameter, friction in steps(cases, progress)
-    ]
+    return pushed_curves(pair, cases, nodes, progress)
 
 
 def draw(curves: Sequence[Curve]) -> Figure:

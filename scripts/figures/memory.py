@@ -8,7 +8,6 @@ figures 11 to 13).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,14 +31,12 @@ def cycles(problem: Problem, amplitude: float, nodes: int) -> Result:
     history = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
     coarse = solve(problem, history[:3], nodes=LEAST_NODES)
     half = 1.05 * max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part) + 0.02
-    count = nodes + 1 - nodes % 2
-    grid = Grid.arc(BOTTOM - half, BOTTOM + half, count) if half < math.pi else Grid.circle(count)
-    return solve(problem, history, grid=grid)
+    return solve(problem, history, grid=Grid.arc(BOTTOM - half, BOTTOM + half, nodes + 1 - nodes % 2))
 
 
-def mirrored(tractions: np.ndarray, state: State) -> np.ndarray:
-    """Tractions at the mirror images of the nodes, left for right."""
-    return tractions[::-1] if not state.grid.closed else np.roll(tractions[::-1], 1)
+def size(values: np.ndarray, state: State) -> float:
+    """Integral of the absolute value over the angle."""
+    return float(state.grid.weights @ np.abs(values))
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
@@ -54,20 +51,16 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
         problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, FRICTION, "centre", "fixed")
         states = cycles(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
         steady, back = states[-1], states[-2]
-        weights = steady.grid.weights
-        total = float(weights @ steady.pressure)
-
-        def distance(one: np.ndarray, two: np.ndarray, scale: float, weights: np.ndarray = weights) -> float:
-            return float(weights @ np.abs(one - two)) / scale
-
+        normal = size(steady.pressure, steady)
+        rubbing = FRICTION * normal
         found.setdefault(ratio, []).append(
             [
                 load_parameter,
-                distance(steady.shear, -mirrored(back.shear, back), FRICTION * total),
-                distance(steady.pressure, mirrored(back.pressure, back), total),
-                distance(states[1].shear, steady.shear, FRICTION * total),
-                distance(states[2].shear, back.shear, FRICTION * total),
-                distance(states[3].shear, steady.shear, FRICTION * total),
+                size(steady.shear + back.shear[::-1], steady) / rubbing,  # the other one is mirrored
+                size(steady.pressure - back.pressure[::-1], steady) / normal,
+                size(states[1].shear - steady.shear, steady) / rubbing,
+                size(states[2].shear - back.shear, steady) / rubbing,
+                size(states[3].shear - steady.shear, steady) / rubbing,
             ]
         )
     names = ("L_p", "memory_T", "memory_N", "first_forward_T", "first_reverse_T", "second_forward_T")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from fastpin import MATERIALS, MaterialPair, Problem, State, solve
-from fastpin.paper import Curve
+from fastpin.paper import Curve, Report, steps, traction_curve
 from fastpin.plot import Figure, Line, angle_axis, key, panels
 from fastpin.problem import PinLoad
 
@@ -36,6 +36,14 @@ def pushed(
     """The pin pushed down by P = F, together with `remote` stresses in F/R, all growing in proportion."""
     problem = Problem.from_load_parameter(PAIRS[pair], load_parameter, friction, pin_load)
     return solve(problem, [{"P": 1.0, **remote}], nodes=nodes)[-1]
+
+
+def pushed_curves(pair: str, cases: Sequence[tuple[float, float]], nodes: int, progress: Report | None) -> list[Curve]:
+    """Tractions of a body-loaded pin at P = F, one curve for each load parameter and coefficient of friction."""
+    return [
+        traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
+        for load_parameter, friction in steps(cases, progress)
+    ]
 
 
 def chosen(curves: Sequence[Curve], **parameters: float | str) -> list[Curve]:
