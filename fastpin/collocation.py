@@ -18,9 +18,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import lapack
 
 from fastpin import kernels
+from fastpin.basis import FactoredSet
 from fastpin.grid import Grid
 from fastpin.loading import LOADS
 from fastpin.problem import Problem
@@ -30,9 +30,6 @@ P, Q, M, SXX, SYY, ROTATION = range(len(LOADS))
 
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a state that is returned."""
-
-SINGULAR = 1e-13
-"""A system whose reciprocal condition number is below this is a mechanism."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +181,7 @@ class System:
         `stuck_slip` (n,) is the slip held at sticking nodes. With ``rest_gap = 0``, zero `stuck_slip` and a load rate
         this gives rates.
         """
-        active = ActiveSet(self, status)
+        active = FactoredSet(self, status)
         if active.singular:
             return None
         n = self.grid.size
@@ -267,63 +264,3 @@ class Solution:
     gap: np.ndarray
     slip: np.ndarray
     motion: np.ndarray
-
-
-class ActiveSet:
-    """The factored system of the unknown tractions of given statuses: N where closed, T where sticking, the motion.
-
-    At slipping nodes T = -sigma mu N is eliminated.
-    """
-
-    def __init__(self, system: System, status: np.ndarray) -> None:
-        n = system.grid.size
-        self.normal = np.flatnonzero(status != OPEN)
-        self.tangential = np.flatnonzero(status == STICK)
-        self.rows = np.r_[self.normal, n + self.tangential]
-        self.count = self.rows.size
-        self.coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
-        self._nodes = n
-        matrix = np.empty((self.count + 3, self.count + 3), order="F")
-        matrix[:-3, :-3] = self.columns(system.operator, self.rows)
-        matrix[:-3, -3:] = system.motion[self.rows]
-        matrix[-3:, :-3] = self.columns(system.equilibrium, slice(None))
-        matrix[-3:, -3:] = system.motion_rows
-        # Unknown forces instead of tractions: entries are then of order one, and the condition number means something.
-        self._width = float(system.weights.mean())
-        matrix[:, :-3] /= self._width
-        norm = float(np.abs(matrix).sum(axis=0).max())
-        self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
-        self.singular = info != 0 or not np.isfinite(norm)
-        if not self.singular:
-            rcond, _ = lapack.dgecon(self._lu, norm)
-            self.singular = not rcond > SINGULAR
-
-    def columns(self, matrix: np.ndarray, rows: np.ndarray | slice) -> np.ndarray:
-        """Columns of `matrix` (given `rows`) for the unknown tractions, friction eliminated."""
-        chosen = matrix[rows]
-        result = chosen[:, self.rows]
-        slipping = np.flatnonzero(self.coupling[self.normal])
-        nodes = self.normal[slipping]
-        result[:, slipping] += chosen[:, self._nodes + nodes] * self.coupling[nodes]
-        return result
-
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        unknowns = lapack.dgetrs(self._lu, self._pivots, right)[0]
-        unknowns[:-3] /= self._width
-        return unknowns
-
-    def inverse(self) -> np.ndarray:
-        """Inverse of the system (count + 3 square). The factors are overwritten: call it last."""
-        # With its default workspace LAPACK works without blocks, five times slower.
-        workspace = int(lapack.dgetri_lwork(self.count + 3)[0])
-        inverse = lapack.dgetri(self._lu, self._pivots, lwork=workspace, overwrite_lu=1)[0]
-        inverse[:-3] /= self._width
-        return inverse
-
-    def expand(self, unknowns: np.ndarray) -> np.ndarray:
-        """All tractions (2n,) from the unknown ones."""
-        tractions = np.zeros(2 * self._nodes)
-        tractions[self.rows] = unknowns[: self.count]
-        slipping = np.flatnonzero(self.coupling)
-        tractions[self._nodes + slipping] = self.coupling[slipping] * tractions[slipping]
-        return tractions

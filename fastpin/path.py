@@ -1,8 +1,8 @@
 """The path solver: exact in load. Between two changes of status everything is linear, so no increment is ever cut.
 
-A step of the history is followed from event to event by :func:`fastpin.tableau.follow`. At its beginning and its end
-the tractions are recomputed from the statuses and the slip history with one dense solve, so that rounding does not
-grow along a history and a step depends on nothing but the configuration at its start.
+A step of the history is followed from event to event by :func:`fastpin.tableau.follow`. At its end, and wherever a
+state is asked for, the tractions are corrected until statuses, slip history and load hold to the last digits, so that
+rounding does not grow along a history; and a step depends on nothing but the configuration at its start.
 """
 
 from __future__ import annotations
@@ -10,18 +10,33 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import blas
 
-from fastpin import tableau, toeplitz
-from fastpin.collocation import ActiveSet, Configuration, P, Q, System
+from fastpin import tableau
+from fastpin.basis import FactoredSet, StuckSet, solvable_set
+from fastpin.collocation import Configuration, P, Q, Solution, System
+from fastpin.columns import Columns
 from fastpin.state import OPEN, STICK
 
-BLOCK = 64
-"""Rank-one updates applied to the tableau at a time."""
-
 MOST_REBUILDS = 400
-MOST_RESIDUAL = 1e-10
-"""Of a fast inverse; with more, a factorisation takes its place."""
+MOST_DRIFT = 1e-10
+"""Relative error of gap and slip, checked after every chunk of updates, above which the tableau is built anew."""
+
+ROUNDING = 1e-15
+"""Relative error of gap and slip below which nothing is left to correct."""
+
+MOST_ERROR = 1e-12
+"""Relative error that corrections may leave; with more, a factorisation computes the state anew."""
+
+SAMPLED_NODES = 16
+
+
+class StepLostError(Exception):
+    """Internal: the step could not be followed; `code` is one of tableau.py."""
+
+    def __init__(self, code: int, fraction: float) -> None:
+        super().__init__(code, fraction)
+        self.code = code
+        self.fraction = fraction
 
 
 class PathStep:
@@ -41,227 +56,203 @@ class PathStep:
         self.now = configuration.copy()
         self.before = configuration.load.copy()
         self.rate = after - self.before
-        n = system.grid.size
+        n, now = system.grid.size, self.now
         weights = np.r_[system.weights, system.weights]
-        self._load_work = weights * (system.loads @ self.before)
-        self._load_work_rate = weights * (system.loads @ self.rate)
-        self._force = np.array([self.before[Q], -self.before[P]])
-        self._force_rate = np.array([self.rate[Q], -self.rate[P]])
+        self._contact = tableau.Contact(
+            now.pressure,
+            now.shear,
+            now.gap,
+            now.slip,
+            now.status,
+            now.status.copy(),
+            np.zeros(n, dtype=bool),
+            now.motion,
+        )
+        self._load = tableau.LoadWork(
+            column=weights * (system.loads @ self.before),
+            column_rate=weights * (system.loads @ self.rate),
+            force=np.array([self.before[Q], -self.before[P]]),
+            force_rate=np.array([self.rate[Q], -self.rate[P]]),
+            weights=system.weights,
+        )
+        self._queue = tableau.Queue(
+            node=np.zeros(2 * n, dtype=np.int64),
+            status=np.zeros(2 * n, dtype=np.int8),
+            counts=np.zeros(tableau.COUNTS, dtype=np.int64),
+            sums=np.zeros(tableau.SUMS),
+        )
+        self._queue.sums[tableau.DISSIPATION] = configuration.dissipation
+        self._queue.sums[tableau.WORK] = configuration.work
         self._typical = float(np.median(np.abs(np.diagonal(system.operator))))
-        self._left = np.zeros((2 * n + 3, BLOCK), order="F")
-        self._right = np.zeros((2 * n, BLOCK), order="F")
-        self._queue = (np.zeros(2 * n, dtype=np.int64), np.zeros(2 * n, dtype=np.int8))
-        self._counts = np.zeros(tableau.COUNTS, dtype=np.int64)
-        self._sums = np.zeros(tableau.SUMS)
-        self._sums[tableau.DISSIPATION] = configuration.dissipation
-        self._sums[tableau.WORK] = configuration.work
-        self.touched = np.zeros(n, dtype=bool)
-        self.rebuilds = 0
         self._wholesale = max(32, n // 20)
-        self._matrix: np.ndarray
-        self._rates: np.ndarray
-        if not self._begin_stuck():
+        nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
+        self._sample = np.r_[nodes, n + nodes]
+        self._sampled = system.operator[self._sample]
+        self.rebuilds = 0
+        self._columns: Columns
+        basis = self._turned()
+        if basis is None:
             self._rebuild()
+        else:
+            self._begin(basis)
 
     @property
     def fraction(self) -> float:
         """Fraction of the step that has been followed."""
-        return float(self._sums[tableau.TIME])
+        return float(self._queue.sums[tableau.TIME])
 
     @property
     def events(self) -> int:
-        return int(self._counts[tableau.EVENTS])
+        return int(self._queue.counts[tableau.EVENTS])
 
     @property
     def exchanges(self) -> int:
-        return int(self._counts[tableau.EXCHANGES])
+        return int(self._queue.counts[tableau.EXCHANGES])
+
+    @property
+    def touched(self) -> np.ndarray:
+        """Nodes that were ever closed during the step."""
+        return self._contact.touched
 
     def follow(self, stop: float, report: Callable[[float], None] | None = None) -> Configuration:
         """Follow the step up to the fraction `stop` and return the configuration there.
 
-        `report` is called with the fraction reached whenever a block of updates has been applied.
+        `report` is called with the fraction reached now and then.
 
         Raises
         ------
         StepLostError
             If the load can't be followed any further.
         """
-        system, now = self.system, self.now
-        n = system.grid.size
+        system, counts = self.system, self._queue.counts
+        n, checked = system.grid.size, 0
         while True:
-            checkpoint = now.status.copy()
+            checkpoint = self.now.status.copy()
             code = tableau.follow(
-                self._matrix, self._left, self._right, self._rates,
-                now.pressure, now.shear, now.gap, now.slip, now.motion, now.status,
-                system.friction, system.weights,
-                self._load_work, self._load_work_rate, self._force, self._force_rate,
-                system.grid.closed, self._typical, stop,
-                *self._queue, self.touched, self._counts, self._sums, 1000 * n, self._wholesale,
+                self._columns.tableau, self._contact, self._load, self._queue,
+                system.friction, system.grid.closed, self._typical, stop, 1000 * n, self._wholesale,
             )  # fmt: skip
-            if code == tableau.FULL:
-                self._apply_updates()
-                if report is not None:
-                    report(self.fraction)
-            elif code == tableau.REBUILD:
+            updates = int(counts[tableau.UPDATES])
+            if code == tableau.STALE:
+                if updates // tableau.CHUNK > checked:
+                    checked = updates // tableau.CHUNK
+                    if report is not None:
+                        report(self.fraction)
+                    if self._drifted():
+                        self._mend()
+                        checked = 0
+                        continue
+                self._columns.refresh(int(counts[tableau.ASKED]), updates)
+            elif code in (tableau.REBUILD, tableau.FULL):
                 self._book()
                 self._rebuild(checkpoint)
+                checked = 0
             elif code == tableau.REACHED:
                 break
             else:
                 self._book()
                 raise StepLostError(code, self.fraction)
         self._book()
-        return refined(system, now)
+        return self._corrected()
 
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
         self.now.load = self.before + self.fraction * self.rate
-        self.now.dissipation = float(self._sums[tableau.DISSIPATION])
-        self.now.work = float(self._sums[tableau.WORK])
+        self.now.dissipation = float(self._queue.sums[tableau.DISSIPATION])
+        self.now.work = float(self._queue.sums[tableau.WORK])
 
-    def _begin_stuck(self) -> bool:
-        """Begin with a tableau in which all closed nodes stick, if it can be had fast; else do nothing.
-
-        If the load has turned, so that most of the slipping nodes would stick, they do. If not, they are queued to slip
-        again, as long as that costs less than a factorisation.
-        """
+    def _turned(self) -> StuckSet | None:
+        """The set in which all closed nodes stick, if the load has turned so that most of the slipping ones would."""
         status = self.now.status
-        slipping = np.flatnonzero(np.abs(status) == 1)
-        stuck = np.where(status == OPEN, OPEN, STICK).astype(np.int8)
-        built = _stuck_tableau(self.system, stuck, self.rate)
-        if built is None:
-            return False
-        rates, n = built[1], status.size
-        growth = -status[slipping] * rates[n + slipping] - self.system.friction * rates[slipping]
-        if np.count_nonzero(growth > 0.0) > slipping.size // 2:
-            if slipping.size > n // 2:
-                return False
-            self._queue[0][: slipping.size], self._queue[1][: slipping.size] = slipping, status[slipping]
-            self._counts[tableau.QUEUED] = slipping.size
-        status[:] = stuck
-        self._matrix, self._rates = built
-        return True
+        basis = StuckSet.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
+        if basis is None:
+            return None
+        change = self.system.loads @ self.rate
+        rates = basis.solve(np.r_[-change[basis.rows], self.system.forces @ self.rate])
+        normal, shear = rates[: basis.normal.size], rates[basis.normal.size : -3]
+        slipping = np.abs(status[basis.normal]) == 1
+        growth = -status[basis.normal] * shear - self.system.friction * normal
+        if np.count_nonzero(growth[slipping] > 0.0) > np.count_nonzero(slipping) // 2:
+            return None
+        status[basis.normal] = STICK
+        return basis
 
-    def _apply_updates(self) -> None:
-        pending = int(self._counts[tableau.PENDING])
-        if pending:
-            self._matrix = blas.dgemm(
-                1.0, self._left[:, :pending], self._right[:, :pending],
-                beta=1.0, c=self._matrix, trans_b=1, overwrite_c=1,
-            )  # fmt: skip
-        self._counts[tableau.PENDING] = 0
+    def _begin(self, basis: StuckSet | FactoredSet) -> None:
+        self._queue.counts[tableau.UPDATES] = 0
+        self._columns = Columns(self.system, basis, self._contact, self.rate)
 
     def _rebuild(self, fallback: np.ndarray | None = None) -> None:
         """Tableau of the present statuses from the matrices; `fallback` are statuses to go back to if it can't be."""
         self.rebuilds += 1
-        self._counts[tableau.PENDING] = 0
         if self.rebuilds > MOST_REBUILDS:
             raise StepLostError(tableau.CYCLING, self.fraction)
-        built = build_tableau(self.system, self.now.status, self.rate)
-        if built is None and fallback is not None and not np.array_equal(fallback, self.now.status):
+        basis = solvable_set(self.system, self.now.status)
+        if basis is None and fallback is not None and not np.array_equal(fallback, self.now.status):
             # Changing all at once left nothing that holds the pin: change one by one instead.
             self.now.status[:] = fallback
             self._wholesale = 2 * self.now.status.size
-            self._counts[tableau.NEXT] = self._counts[tableau.QUEUED] = 0
-            built = build_tableau(self.system, self.now.status, self.rate)
-        if built is None:
+            self._queue.counts[tableau.NEXT] = self._queue.counts[tableau.QUEUED] = 0
+            basis = solvable_set(self.system, self.now.status)
+        if basis is None:
             raise StepLostError(tableau.NO_SUPPORT, self.fraction)
-        self._matrix, self._rates = built
+        self._begin(basis)
+
+    def _drifted(self) -> bool:
+        """Whether gap and slip at a sample of the nodes have lost touch with the matrices."""
+        system, now = self.system, self.now
+        rows, load = self._sample, self.before + self.fraction * self.rate
+        elastic = self._sampled @ np.r_[now.pressure, now.shear]
+        true = elastic + system.motion[rows] @ now.motion + system.loads[rows] @ load
+        true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
+        length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()))
+        return not np.abs(true - np.r_[now.gap, now.slip][rows]).max() <= MOST_DRIFT * length
+
+    def _mend(self) -> None:
+        """Compute the present configuration and the tableau anew, by a factorisation."""
+        self._book()
+        mended = resolved(self.system, self.now)
+        for name in ("pressure", "shear", "gap", "slip", "motion"):
+            getattr(self.now, name)[:] = getattr(mended, name)
+        self._rebuild()
+
+    def _corrected(self) -> Configuration:
+        """The present configuration, its tractions corrected until statuses, held slip and load hold to rounding."""
+        system, now, n = self.system, self.now, self.system.grid.size
+        pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
+        closed, stick = now.closed, now.status == STICK
+        slipping = closed & ~stick
+        updates, last = int(self._queue.counts[tableau.UPDATES]), np.inf
+        while True:
+            tractions = np.r_[pressure, shear]
+            elastic = system.operator @ tractions
+            true = elastic + system.motion @ motion + system.loads @ now.load
+            true[:n] += now.rest_gap
+            balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
+            missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
+            error = float(np.abs(missing).max()) / max(float(np.abs(elastic).max()), float(np.abs(motion).max()))
+            if error <= ROUNDING or not error < 0.5 * last:
+                break
+            last = error
+            change = self._columns.response(missing, updates)
+            pressure += np.where(closed, change[:n], 0.0)
+            tied = change[n : 2 * n] - self._contact.tie * system.friction * change[:n]
+            shear += np.where(stick, tied, 0.0)
+            shear[slipping] = -system.friction * now.status[slipping] * pressure[slipping]
+            motion += change[2 * n :]
+        if not error <= MOST_ERROR:
+            self.rebuilds += 1
+            return resolved(system, now)
+        return _settled(system, now, Solution(pressure, shear, true[:n], true[n:], motion))
 
 
-class StepLostError(Exception):
-    """Internal: the step could not be followed; `code` is one of tableau.py."""
-
-    def __init__(self, code: int, fraction: float) -> None:
-        super().__init__(code, fraction)
-        self.code = code
-        self.fraction = fraction
-
-
-def build_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Tableau (2n+3, 2n) and rates (2n+3,) for given statuses; None if the closed nodes can't hold the pin.
-
-    The zero-rate variables of the unknown tractions' pairs are h and s, of the others N and tau.
-    """
-    built = _stuck_tableau(system, status, load_rate)
-    if built is not None:
-        return built
-    active = ActiveSet(system, status)
-    if active.singular:
-        return None
-    others = np.setdiff1d(np.arange(2 * system.grid.size), active.rows)
-    tied = active.columns(system.operator, others)
-    return _assembled(system, active.rows, others, active.inverse(), tied, load_rate)
-
-
-def _stuck_tableau(system: System, status: np.ndarray, load_rate: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """The tableau of equally spaced neighbours that all stick, fast; None if it can't be had in this way."""
-    closed = np.flatnonzero(status != OPEN)
-    if closed.size < 2 or not system.grid.uniform or system.friction == 0.0 or np.any(status[closed] != STICK):
-        return None
-    n, (low, high) = system.grid.size, closed[[0, -1]] + (0, 1)
-    if high - low != closed.size or (not system.grid.closed and (low == 0 or high == n)):
-        return None
-    rows = np.r_[low:high, n + low : n + high]
-    operator, count = system.operator, rows.size
-    inverse = np.empty((count + 3, count + 3))
-    core = toeplitz.inverse(operator[low:high, low], operator[n + low : n + high, n + low], operator[low:high, n + low])
-    # The three motions and conditions of equilibrium, by the complement that they leave.
-    motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
-    moved, held = core @ motion, equilibrium @ core
-    complement = system.motion_rows - equilibrium @ moved
-    scale = np.abs(equilibrium) @ np.abs(moved)
-    if not np.all(np.isfinite(complement)) or not np.linalg.cond(complement / scale.max()) < 1e8:
-        return None
-    small = np.linalg.inv(complement)
-    inverse[:count, :count] = core + moved @ small @ held
-    inverse[:count, count:] = -moved @ small
-    inverse[count:, :count] = -small @ held
-    inverse[count:, count:] = small
-    probe, tractions = np.cos(np.arange(count + 3.0)), np.zeros(2 * n)
-    found = inverse @ probe
-    tractions[rows] = found[:count]
-    displacement = system.displacement(tractions, found[count:], np.zeros_like(load_rate), 0.0)
-    back = np.r_[displacement[rows], system.equilibrium @ tractions + system.motion_rows @ found[count:]]
-    if not np.abs(back - probe).max() < MOST_RESIDUAL:
-        return None
-    others = np.setdiff1d(np.arange(2 * n), rows)
-    return _assembled(system, rows, others, inverse, operator[np.ix_(others, rows)], load_rate)
-
-
-def _assembled(
-    system: System, rows: np.ndarray, others: np.ndarray, inverse: np.ndarray, tied: np.ndarray, load_rate: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Tableau and rates from the inverse of the system of the unknown tractions `rows` and the motion.
-
-    `tied` are the columns of the operator for the unknown tractions, friction eliminated, at the `others`.
-    """
-    n, count = system.grid.size, rows.size
-    given = np.empty((count + 3, others.size), order="F")  # effect of the other tractions on the held rows
-    given[:count] = system.operator[np.ix_(rows, others)]
-    given[count:] = system.equilibrium[:, others]
-    response = inverse @ given
-    tied = np.hstack([tied, system.motion[others]])
-
-    matrix = np.empty((2 * n + 3, 2 * n), order="F")
-    free = np.r_[rows, 2 * n + np.arange(3)]
-    matrix[np.ix_(free, rows)] = inverse[:, :count]
-    matrix[np.ix_(free, others)] = -response
-    matrix[np.ix_(others, rows)] = tied @ inverse[:, :count]
-    matrix[np.ix_(others, others)] = system.operator[np.ix_(others, others)] - tied @ response
-
-    rates = np.zeros(2 * n + 3)
-    change = system.loads @ load_rate
-    rates[free] = inverse @ np.r_[-change[rows], system.forces @ load_rate]
-    rates[others] = change[others] + tied @ rates[free]
-    return matrix, rates
-
-
-def refined(system: System, configuration: Configuration) -> Configuration:
-    """The same configuration with its tractions, gap and slip recomputed from statuses, held slip and load."""
+def resolved(system: System, configuration: Configuration) -> Configuration:
+    """The same configuration with its tractions, gap and slip computed anew from statuses, held slip and load."""
     solution = system.solve(configuration.status, configuration.slip, configuration.load, configuration.rest_gap)
-    if solution is None:
-        return configuration.copy()
+    return configuration.copy() if solution is None else _settled(system, configuration, solution)
+
+
+def _settled(system: System, configuration: Configuration, solution: Solution) -> Configuration:
+    """The configuration with the solution of its statuses; what is at a bound but for rounding is put there."""
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
     tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)

@@ -1,22 +1,30 @@
 """Compiled exchange steps: follow the contact along a straight piece of the load history, exactly.
 
 Between two changes of status everything is linear in the load. The tableau holds, for every node, a normal pair
-(N, h) and a tangential pair (tau, s), where tau = T + sigma mu N at slipping nodes and tau = T elsewhere. One of
-each pair is *dependent*, the other one has rate zero:
+(N, h) and a tangential pair (tau, s), where tau = T + tie mu N; at slipping nodes the tie is the status, and tau = 0.
+One of each pair is *dependent*, the other one has rate zero:
 
     open:   N and tau have rate zero,  h and s are dependent
     stick:  h and s have rate zero,    N and tau are dependent
     slip:   h and tau have rate zero,  N and s are dependent
 
 The matrix maps the zero-rate variables to the dependent ones and to the three components of the pin's motion (its
-last rows). A change of status exchanges the members of a pair, which is a rank-one update; updates are kept as
-pairs of vectors (`left`, `right`) and applied to the matrix in blocks by the caller, one matrix product a block.
-Only the rates of the dependent variables are updated at once.
+last rows). A change of status exchanges the members of a pair, which is a rank-one update, and so is a change of a
+tie. Updates are kept in order, and a column of the matrix is brought up to date only when it is asked for: update k
+adds to column j
+
+    left[:, k] (M_k[source_k, j] + delta_k [j = slot_k]),      M_k the matrix before it (source_k < 0: no first term),
+
+so an update is one vector and three numbers. Columns are kept in blocks of `WIDTH`; the caller computes the blocks
+that are asked for and brings them up to date, `CHUNK` updates at a time, by matrix products. Only the rates of the
+dependent variables are updated at once.
 
 Kernels take arrays and numbers, change only their own arrays, and return a code.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,16 +33,23 @@ from fastpin.state import OPEN, STICK
 from fastpin.state import SLIP_NEGATIVE as NEGATIVE
 from fastpin.state import SLIP_POSITIVE as POSITIVE
 
+WIDTH = 32
+"""Columns in a block."""
+
+CHUNK = 64
+"""Updates applied to a block at a time."""
+
 # What `follow` returns.
 REACHED = 0  # the requested point of the step
-FULL = 1  # no room for more updates: apply the block and call again
+STALE = 1  # a column is needed whose block is not up to date: counts[ASKED]
 REBUILD = 2  # statuses were changed wholesale or a pivot was small: rebuild the tableau and call again
-NO_SUPPORT = 3  # nothing holds the pin any more
-CYCLING = 4  # the statuses did not settle
-ARC_END = 5  # the contact reaches an end node
+FULL = 3  # no room for more updates: rebuild the tableau and call again
+NO_SUPPORT = 4  # nothing holds the pin any more
+CYCLING = 5  # the statuses did not settle
+ARC_END = 6  # the contact reaches an end node
 
 # Slots of `counts`.
-PENDING, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, COUNTS = 0, 1, 2, 3, 4, 5, 6
+UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, ASKED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
 
@@ -44,112 +59,174 @@ PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, for mirrored nodes 
 SMALL_PIVOT = 1e-9  # pivots below this part of a typical one belong to a mechanism
 UNUSUAL_PIVOT = 1e-6  # pivots that differ by more than this from a typical one ask for a new tableau
 TOGETHER_ROUNDS = 12  # rounds in which all violators change at once; afterwards one at a time
+MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, a node that takes over included
+
+
+class Tableau(NamedTuple):
+    """The matrix (2n+3, 2n), column by column, its updates, and the rates (2n+3,) of the dependent variables.
+
+    ``fresh`` has, for every block of columns, the number of updates that it contains; -1 if it was never computed.
+    """
+
+    matrix: np.ndarray
+    fresh: np.ndarray
+    left: np.ndarray
+    source: np.ndarray
+    slot: np.ndarray
+    delta: np.ndarray
+    rates: np.ndarray
+
+
+class Contact(NamedTuple):
+    """What evolves along a step, shape (n,) each but for ``motion`` (3,). ``touched``: was the node ever closed?"""
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    gap: np.ndarray
+    slip: np.ndarray
+    status: np.ndarray
+    tie: np.ndarray
+    touched: np.ndarray
+    motion: np.ndarray
+
+
+class LoadWork(NamedTuple):
+    """What enters the work of the loads: the weights (2n,) of traction rates and the force (Q, -P) at the beginning of
+    the step, and how much both grow along it; and the weights of the nodes."""
+
+    column: np.ndarray
+    column_rate: np.ndarray
+    force: np.ndarray
+    force_rate: np.ndarray
+    weights: np.ndarray
+
+
+class Queue(NamedTuple):
+    """Changes of status that are waiting (2n,), and what is counted and summed along a step."""
+
+    node: np.ndarray
+    status: np.ndarray
+    counts: np.ndarray
+    sums: np.ndarray
 
 
 @compiled
-def _column(matrix, left, right, pending, p, out):
-    for i in range(matrix.shape[0]):
+def _column(tableau, updates, p, out):
+    """Column p after so many updates."""
+    matrix, left = tableau.matrix, tableau.left
+    for i in range(out.size):
         out[i] = matrix[i, p]
-    for k in range(pending):
-        factor = right[p, k]
+    for k in range(tableau.fresh[p // WIDTH], updates):
+        factor = 0.0
+        if tableau.source[k] >= 0:
+            factor = out[tableau.source[k]]
+        if tableau.slot[k] == p:
+            factor += tableau.delta[k]
         if factor != 0.0:
-            for i in range(matrix.shape[0]):
+            for i in range(out.size):
                 out[i] += factor * left[i, k]
 
 
 @compiled
-def _row(matrix, left, right, pending, p, out):
-    for j in range(matrix.shape[1]):
-        out[j] = matrix[p, j]
-    for k in range(pending):
-        factor = left[p, k]
-        if factor != 0.0:
-            for j in range(matrix.shape[1]):
-                out[j] += factor * right[j, k]
+def _stale(tableau, updates, p):
+    """Whether column p has a block that was never computed, or that lacks a whole chunk of updates."""
+    return tableau.fresh[p // WIDTH] < updates - updates % CHUNK
 
 
 @compiled
-def _exchange(matrix, left, right, pending, rates, p):
-    """Exchange the members of pair p; appends one update. Returns the pivot."""
-    column, row = left[:, pending], right[:, pending]
-    _column(matrix, left, right, pending, p, column)
-    _row(matrix, left, right, pending, p, row)
-    pivot = row[p]
+def _exchange(tableau, updates, p):
+    """Exchange the members of pair p, whose column stands in left[:, updates]; appends that update."""
+    column, rates = tableau.left[:, updates], tableau.rates
+    pivot = column[p]
     column[p] += 1.0
-    row[p] -= 1.0
     ratio = rates[p] / pivot
     for i in range(column.size):
         rates[i] -= column[i] * ratio
         column[i] /= -pivot
-    return pivot
+    tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = p, p, -1.0
 
 
 @compiled
-def _add_row(matrix, left, right, pending, rates, target, source, factor):
+def _add_row(tableau, updates, target, source, factor):
     """Row `target` += factor * row `source`; appends one update."""
-    _row(matrix, left, right, pending, source, right[:, pending])
+    left = tableau.left
     for i in range(left.shape[0]):
-        left[i, pending] = 0.0
-    left[target, pending] = factor
-    rates[target] += factor * rates[source]
+        left[i, updates] = 0.0
+    left[target, updates] = factor
+    tableau.rates[target] += factor * tableau.rates[source]
+    tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = source, -1, 0.0
 
 
 @compiled
-def _add_column(matrix, left, right, pending, target, source, factor):
+def _add_column(tableau, updates, target, source, factor):
     """Column `target` += factor * column `source`; appends one update."""
-    _column(matrix, left, right, pending, source, left[:, pending])
-    for j in range(right.shape[0]):
-        right[j, pending] = 0.0
-    right[target, pending] = factor
+    column = tableau.left[:, updates]
+    _column(tableau, updates, source, column)
+    for i in range(column.size):
+        column[i] *= factor
+    tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = -1, target, 1.0
 
 
 @compiled
-def _diagonal(matrix, left, right, pending, p):
-    value = matrix[p, p]
-    for k in range(pending):
-        value += left[p, k] * right[p, k]
-    return value
+def _asked(tableau, updates, node, old, new, tie):
+    """The first column that a change of status needs and that is not up to date; -1 if there is none."""
+    tangential = tableau.matrix.shape[1] // 2 + node
+    if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
+        return node
+    if (old == STICK or new == STICK or (old == OPEN and new != tie)) and _stale(tableau, updates, tangential):
+        return tangential
+    return -1
 
 
 @compiled
-def _change_status(matrix, left, right, pending, rates, status, friction, node, new):
-    """Give `node` the status `new`; the values of N and T must fit both. Returns (updates appended, pivot)."""
-    n = status.size
-    tangential = n + node
-    old = status[node]
-    appended = 0
-    pivot = np.inf
-    if old == STICK and (new == NEGATIVE or new == POSITIVE):
-        if friction > 0.0:
-            _add_row(matrix, left, right, pending, rates, tangential, node, new * friction)
-            appended += 1
-        pivot = _exchange(matrix, left, right, pending + appended, rates, tangential)
-        appended += 1
-    elif (old == NEGATIVE or old == POSITIVE) and new == STICK:
-        pivot = _exchange(matrix, left, right, pending, rates, tangential)
-        appended += 1
-        if friction > 0.0:
-            _add_row(matrix, left, right, pending + appended, rates, tangential, node, -old * friction)
-            appended += 1
-    elif old == OPEN:  # closes as slipping
-        if friction > 0.0:
-            _add_column(matrix, left, right, pending, node, tangential, -new * friction)
-            appended += 1
-        pivot = _exchange(matrix, left, right, pending + appended, rates, node)
-        appended += 1
-    else:  # a slipping node opens
-        pivot = _exchange(matrix, left, right, pending, rates, node)
-        appended += 1
-        if friction > 0.0:
-            _add_column(matrix, left, right, pending + appended, node, tangential, old * friction)
-            appended += 1
-    status[node] = new
-    return appended, abs(pivot)
+def _change_status(tableau, updates, contact, friction, typical, node, new):
+    """Give `node` the status `new`; the values of N and T must fit both. A sticking node opens in two changes.
+
+    Returns (updates, size of the pivot over a typical one). If the pivot belongs to a mechanism its size is 0 and
+    nothing is changed; left[:, updates] then holds the motion that would be free.
+    """
+    tangential = contact.status.size + node
+    old, tie = contact.status[node], contact.tie[node]
+    column = tableau.left[:, updates]
+    pair = tangential if old == STICK or new == STICK else node
+    _column(tableau, updates, pair, column)
+    if old == STICK:  # the change of T, not of tau, with s
+        stiffness = abs(column[tangential] - tie * friction * column[node]) * typical
+    elif new == OPEN:
+        stiffness = abs(column[node]) * typical
+    else:
+        stiffness = np.inf
+    if stiffness < SMALL_PIVOT:
+        return updates, 0.0
+    if old == STICK or old == OPEN:
+        factor = (new - tie) * friction
+        if factor != 0.0:
+            if old == STICK:
+                _add_row(tableau, updates, tangential, node, factor)
+            else:
+                _add_column(tableau, updates, node, tangential, -factor)
+            updates += 1
+            column = tableau.left[:, updates]
+            _column(tableau, updates, pair, column)
+        contact.tie[node] = new
+    size = abs(column[pair]) * typical
+    if old == OPEN or new == STICK:  # a compliance, not a stiffness
+        size = typical / abs(column[pair])
+    _exchange(tableau, updates, pair)
+    contact.status[node] = new
+    return updates + 1, size
 
 
 @compiled
-def _rate_scales(rates, status):
+def _shear_rate(rates, contact, friction, i):
+    """Rate of T at a sticking node."""
+    return rates[contact.status.size + i] - contact.tie[i] * friction * rates[i]
+
+
+@compiled
+def _rate_scales(rates, contact, friction):
     """Largest traction rate and largest displacement rate."""
+    status = contact.status
     n = status.size
     traction, length = 0.0, 0.0
     for i in range(n):
@@ -158,70 +235,73 @@ def _rate_scales(rates, status):
         else:
             traction = max(traction, abs(rates[i]))
             if status[i] == STICK:
-                traction = max(traction, abs(rates[n + i]))
+                traction = max(traction, abs(_shear_rate(rates, contact, friction, i)))
             else:
                 length = max(length, abs(rates[n + i]))
     return traction, length
 
 
 @compiled
-def _friction_violators(pressure, shear, status, rates, friction, traction_tol, length_tol, node_queue, status_queue):
+def _friction_violators(contact, rates, friction, traction_tol, length_tol, queue):
     """Queue the nodes whose friction status contradicts the rates: first those that stick, then those that slip."""
+    status = contact.status
     n = status.size
     queued = 0
     if friction == 0.0:
         return queued
     for i in range(n):
         if (status[i] == NEGATIVE or status[i] == POSITIVE) and status[i] * rates[n + i] < -length_tol:
-            node_queue[queued], status_queue[queued] = i, STICK
+            queue.node[queued], queue.status[queued] = i, STICK
             queued += 1
     for i in range(n):
         if status[i] == STICK:
-            bound = friction * pressure[i]
+            bound = friction * contact.pressure[i]
             growth = friction * rates[i]
-            if pressure[i] == 0.0:
-                direction = 1.0 if rates[n + i] > 0.0 else -1.0
-            elif abs(shear[i]) >= bound:
-                direction = 1.0 if shear[i] > 0.0 else -1.0
+            shear, shear_rate = contact.shear[i], _shear_rate(rates, contact, friction, i)
+            if contact.pressure[i] == 0.0:
+                direction = 1.0 if shear_rate > 0.0 else -1.0
+            elif abs(shear) >= bound:
+                direction = 1.0 if shear > 0.0 else -1.0
             else:
                 continue
-            if direction * rates[n + i] - growth > traction_tol:
-                node_queue[queued] = i
-                status_queue[queued] = NEGATIVE if direction > 0.0 else POSITIVE
+            if direction * shear_rate - growth > traction_tol:
+                queue.node[queued] = i
+                queue.status[queued] = NEGATIVE if direction > 0.0 else POSITIVE
                 queued += 1
     return queued
 
 
 @compiled
-def _contact_violators(pressure, gap, status, rates, traction_tol, length_tol, node_queue, status_queue):
+def _contact_violators(contact, rates, traction_tol, length_tol, queue):
     """Queue the open nodes that close; if there are none, the closed nodes that open."""
+    status = contact.status
     n = status.size
     queued = 0
     for i in range(n):
-        if status[i] == OPEN and gap[i] == 0.0 and rates[i] < -length_tol:
-            node_queue[queued] = i
-            status_queue[queued] = NEGATIVE if rates[n + i] < 0.0 else POSITIVE
+        if status[i] == OPEN and contact.gap[i] == 0.0 and rates[i] < -length_tol:
+            queue.node[queued] = i
+            queue.status[queued] = NEGATIVE if rates[n + i] < 0.0 else POSITIVE
             queued += 1
     if queued > 0:
         return queued
     for i in range(n):
-        if status[i] != OPEN and pressure[i] == 0.0 and rates[i] < -traction_tol:
-            node_queue[queued], status_queue[queued] = i, OPEN
+        if status[i] != OPEN and contact.pressure[i] == 0.0 and rates[i] < -traction_tol:
+            queue.node[queued], queue.status[queued] = i, OPEN
             queued += 1
     return queued
 
 
 @compiled
-def _relief(left_column, status, rates, node, direction):
+def _relief(free_motion, status, rates, node, direction):
     """The slipping node that sticks first when `node`, the last one that holds the pin, lets go in `direction`.
 
-    `left_column` holds the motion that becomes free. Returns -1 if no node would stop it.
+    `free_motion` (2n+3,) is the motion that becomes free. Returns -1 if no node would stop it.
     """
     n = status.size
     best, chosen = np.inf, -1
     for i in range(n):
         if (status[i] == NEGATIVE or status[i] == POSITIVE) and i != node:
-            drift = direction * left_column[n + i]
+            drift = direction * free_motion[n + i]
             if status[i] * drift < 0.0:
                 ratio = abs(rates[n + i]) / abs(drift)
                 if ratio < best:
@@ -230,31 +310,33 @@ def _relief(left_column, status, rates, node, direction):
 
 
 @compiled
-def _next_event(pressure, shear, gap, status, rates, friction, traction_tol, length_tol, limit):
+def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
     """Time to the next change of status, at most `limit`."""
-    n = status.size
+    status = contact.status
     first = limit
-    for i in range(n):
+    for i in range(status.size):
         rate = rates[i]
         if status[i] == OPEN:
-            if rate < -length_tol and gap[i] > 0.0:
-                first = min(first, gap[i] / -rate)
-        else:
-            if rate < -traction_tol and pressure[i] > 0.0:
-                first = min(first, pressure[i] / -rate)
-            if status[i] == STICK and pressure[i] > 0.0:
-                bound, growth = friction * pressure[i], friction * rate
+            if rate < -length_tol and contact.gap[i] > 0.0:
+                first = min(first, contact.gap[i] / -rate)
+        elif contact.pressure[i] > 0.0:
+            if rate < -traction_tol:
+                first = min(first, contact.pressure[i] / -rate)
+            if status[i] == STICK:
+                bound, growth = friction * contact.pressure[i], friction * rate
+                shear_rate = _shear_rate(rates, contact, friction, i)
                 for direction in (-1.0, 1.0):
-                    room = bound - direction * shear[i]
-                    closing = direction * rates[n + i] - growth
+                    room = bound - direction * contact.shear[i]
+                    closing = direction * shear_rate - growth
                     if closing > traction_tol and room > 0.0:
                         first = min(first, room / closing)
     return first
 
 
 @compiled
-def _advance(pressure, shear, gap, slip, motion, status, rates, friction, weights, step, sums):
-    """Move everything by `step`; values that reach their bound are put exactly there."""
+def _advance(contact, rates, friction, weights, step):
+    """Move everything by `step`; values that reach their bound are put exactly there. Returns what friction takes."""
+    status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
     n = status.size
     most_pressure, most_gap = 0.0, 0.0
     dissipated = 0.0
@@ -268,14 +350,14 @@ def _advance(pressure, shear, gap, slip, motion, status, rates, friction, weight
             pressure[i] += step * rates[i]
             most_pressure = max(most_pressure, pressure[i])
             if status[i] == STICK:
-                shear[i] += step * rates[n + i]
+                shear[i] += step * _shear_rate(rates, contact, friction, i)
             else:
                 slid = step * rates[n + i]
                 slip[i] += slid
                 shear[i] = -status[i] * friction * pressure[i]
                 dissipated += weights[i] * friction * 0.5 * (old + pressure[i]) * abs(slid)
     for i in range(3):
-        motion[i] += step * rates[2 * n + i]
+        contact.motion[i] += step * rates[2 * n + i]
     for i in range(n):
         if status[i] == OPEN:
             if gap[i] <= VALUE_TOLERANCE * most_gap:
@@ -286,137 +368,145 @@ def _advance(pressure, shear, gap, slip, motion, status, rates, friction, weight
             bound = friction * pressure[i]
             if abs(shear[i]) >= bound - VALUE_TOLERANCE * most_pressure * friction:
                 shear[i] = bound if shear[i] > 0.0 else -bound
-    sums[DISSIPATION] += dissipated
+    return dissipated
 
 
 @compiled
-def _work(shear, status, rates, friction, weights, load_work, load_work_rate, force, force_rate, time, step):
-    """Work of the loads over a step, exact for the piecewise linear path (call it before `_advance`).
-
-    `load_work` (2n,) are the weights with which traction rates enter the work of the load columns at time 0,
-    `force` (2,) the force (Q, -P) at time 0; the `_rate` arrays their growth per unit time.
-    """
+def _work(contact, rates, friction, load, time, step):
+    """Work of the loads over a step, exact for the piecewise linear path (call it before `_advance`)."""
+    status = contact.status
     n = status.size
     middle = time + 0.5 * step
     moment, moment_rate, work = 0.0, 0.0, 0.0
     for i in range(n):
         if status[i] != OPEN:
-            shear_rate = rates[n + i] if status[i] == STICK else -status[i] * friction * rates[i]
-            moment -= weights[i] * shear[i]
-            moment_rate -= weights[i] * shear_rate
-            work += (load_work[i] + middle * load_work_rate[i]) * rates[i]
-            work += (load_work[n + i] + middle * load_work_rate[n + i]) * shear_rate
+            if status[i] == STICK:
+                shear_rate = _shear_rate(rates, contact, friction, i)
+            else:
+                shear_rate = -status[i] * friction * rates[i]
+            moment -= load.weights[i] * contact.shear[i]
+            moment_rate -= load.weights[i] * shear_rate
+            work += (load.column[i] + middle * load.column_rate[i]) * rates[i]
+            work += (load.column[n + i] + middle * load.column_rate[n + i]) * shear_rate
     for k in range(2):
-        work += (force[k] + middle * force_rate[k]) * rates[2 * n + k]
+        work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
     work += (moment + 0.5 * step * moment_rate) * rates[2 * n + 2]
     return work * step
 
 
 @compiled
-def follow(
-    matrix, left, right, rates, pressure, shear, gap, slip, motion, status, friction, weights,
-    load_work, load_work_rate, force, force_rate, closed_grid, typical, stop,
-    node_queue, status_queue, touched, counts, sums, most_events, wholesale,
-):  # fmt: skip
+def _work_off(tableau, contact, queue, friction, typical, closed_grid):
+    """Make the changes of status that are waiting; returns REACHED when there are none left."""
+    counts = queue.counts
+    n = contact.status.size
+    while counts[NEXT] < counts[QUEUED]:
+        node, wanted = queue.node[counts[NEXT]], queue.status[counts[NEXT]]
+        old = contact.status[node]
+        if old == wanted:
+            counts[NEXT] += 1
+            continue
+        if old == OPEN and not closed_grid and (node == 0 or node == n - 1):
+            return ARC_END
+        updates = counts[UPDATES]
+        if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
+            return FULL
+        new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
+        counts[ASKED] = _asked(tableau, updates, node, old, new, contact.tie[node])
+        if counts[ASKED] >= 0:
+            return STALE
+        updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
+        if size == 0.0:
+            if old != STICK:
+                return NO_SUPPORT
+            # The last node that holds the pin: another one must take over first.
+            other = _relief(tableau.left[:, updates], contact.status, tableau.rates, node, new)
+            if other < 0:
+                return NO_SUPPORT
+            counts[ASKED] = _asked(tableau, updates, other, contact.status[other], STICK, contact.tie[other])
+            if counts[ASKED] >= 0:
+                return STALE
+            updates, _ = _change_status(tableau, updates, contact, friction, typical, other, STICK)
+            counts[UPDATES] = updates
+            updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
+            if size == 0.0:
+                return NO_SUPPORT
+        counts[UPDATES] = updates
+        if new != OPEN:
+            contact.touched[node] = True
+        if new == wanted:
+            counts[NEXT] += 1
+            counts[EXCHANGES] += 1
+        if size < UNUSUAL_PIVOT:  # rounding has grown by as much
+            return REBUILD
+    return REACHED
+
+
+@compiled
+def _change_wholesale(contact, queue, queued, closed_grid):
+    """Give all queued nodes their new statuses at once, for a new tableau."""
+    n = contact.status.size
+    for k in range(queued):
+        node, new = queue.node[k], queue.status[k]
+        if contact.status[node] == OPEN and not closed_grid and (node == 0 or node == n - 1):
+            return ARC_END
+        contact.status[node] = new
+        contact.touched[node] = contact.touched[node] or new != OPEN
+    queue.counts[NEXT] = queue.counts[QUEUED]
+    queue.counts[EXCHANGES] += queued
+    return REBUILD
+
+
+@compiled
+def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, wholesale):
     """Follow the load from sums[TIME] to `stop`, status change by status change (design of the path solver).
 
     Parameters
     ----------
-    matrix : (2n+3, 2n), `left` (2n+3, block), `right` (2n, block)
-        The tableau and its pending updates.
-    rates : (2n+3,)
-        Rates of the dependent variables and of the motion per unit time.
-    typical : float
-        A typical compliance (diagonal of the operator), to judge pivots.
+    tableau, contact, load, queue : Tableau, Contact, LoadWork, Queue
+        Time runs from 0 to 1 along the step; rates are per unit of it.
+    friction : float
     closed_grid : bool
         Whether the grid is the whole circle; if not, its end nodes must stay open.
+    typical : float
+        A typical compliance (diagonal of the operator), to judge pivots.
+    stop : float
+    most_events : int
+        More events than this mean that the statuses cycle.
     wholesale : int
         More changes than this at once are made in one go, without exchanges, and REBUILD is returned.
 
     Returns
     -------
     int
-        One of the codes above. After FULL and REBUILD the caller calls again.
+        One of the codes above. After STALE, FULL and REBUILD the caller calls again.
     """
-    n = status.size
-    block = left.shape[1]
+    counts, sums, rates = queue.counts, queue.sums, tableau.rates
     settled = False
     while True:
-        # Work off the queue of status changes.
-        while counts[NEXT] < counts[QUEUED]:
-            if counts[PENDING] + 6 > block:
-                return FULL
-            node, new = node_queue[counts[NEXT]], status_queue[counts[NEXT]]
-            pending = counts[PENDING]
-            old = status[node]
-            counts[NEXT] += 1
-            if old == new:
-                continue
-            if old == OPEN and not closed_grid and (node == 0 or node == n - 1):
-                return ARC_END
-            if old == STICK:
-                slipping = POSITIVE if new == OPEN else new
-                if abs(_diagonal(matrix, left, right, pending, n + node)) * typical < SMALL_PIVOT:
-                    # The last node that holds the pin: another one must take over first.
-                    _column(matrix, left, right, pending, n + node, left[:, pending])
-                    other = _relief(left[:, pending], status, rates, node, slipping)
-                    if other < 0:
-                        return NO_SUPPORT
-                    appended, _ = _change_status(matrix, left, right, pending, rates, status, friction, other, STICK)
-                    pending += appended
-                    if abs(_diagonal(matrix, left, right, pending, n + node)) * typical < SMALL_PIVOT:
-                        return NO_SUPPORT
-                appended, pivot = _change_status(matrix, left, right, pending, rates, status, friction, node, slipping)
-                pending += appended
-                unusual = pivot * typical < UNUSUAL_PIVOT
-            else:
-                unusual = False
-            if status[node] != new:
-                if new == OPEN and abs(_diagonal(matrix, left, right, pending, node)) * typical < SMALL_PIVOT:
-                    return NO_SUPPORT
-                appended, pivot = _change_status(matrix, left, right, pending, rates, status, friction, node, new)
-                pending += appended
-                ratio = pivot * typical if new == OPEN else typical / pivot
-                unusual = unusual or ratio < UNUSUAL_PIVOT
-            if new != OPEN:
-                touched[node] = True
-            counts[PENDING] = pending
-            counts[EXCHANGES] += 1
-            if unusual:  # rounding has grown by as much
-                return REBUILD
-        traction_rate, length_rate = _rate_scales(rates, status)
+        code = _work_off(tableau, contact, queue, friction, typical, closed_grid)
+        if code != REACHED:
+            return code
+        traction_rate, length_rate = _rate_scales(rates, contact, friction)
         traction_tol, length_tol = RATE_TOLERANCE * traction_rate, RATE_TOLERANCE * length_rate
         if not (np.isfinite(traction_rate) and np.isfinite(length_rate)):
             return NO_SUPPORT
 
         # Settle the statuses: friction first, then closing, then opening.
         if not settled:
-            queued = _friction_violators(
-                pressure, shear, status, rates, friction, traction_tol, length_tol, node_queue, status_queue
-            )
+            queued = _friction_violators(contact, rates, friction, traction_tol, length_tol, queue)
             if queued > 1 and counts[ROUND] >= TOGETHER_ROUNDS:
-                lowest = np.argmin(node_queue[:queued])
-                node_queue[0], status_queue[0] = node_queue[lowest], status_queue[lowest]
+                lowest = np.argmin(queue.node[:queued])
+                queue.node[0], queue.status[0] = queue.node[lowest], queue.status[lowest]
                 queued = 1
             if queued == 0:
-                queued = _contact_violators(
-                    pressure, gap, status, rates, traction_tol, length_tol, node_queue, status_queue
-                )
+                queued = _contact_violators(contact, rates, traction_tol, length_tol, queue)
             counts[NEXT], counts[QUEUED] = 0, queued
             if queued > 0:
                 counts[ROUND] += 1
-                if counts[ROUND] > 4 * n + 200:
+                if counts[ROUND] > 4 * contact.status.size + 200:
                     return CYCLING
                 if queued > wholesale:
-                    for k in range(queued):
-                        node, new = node_queue[k], status_queue[k]
-                        if status[node] == OPEN and not closed_grid and (node == 0 or node == n - 1):
-                            return ARC_END
-                        status[node] = new
-                        touched[node] = touched[node] or new != OPEN
-                    counts[NEXT] = counts[QUEUED]
-                    counts[EXCHANGES] += queued
-                    return REBUILD
+                    return _change_wholesale(contact, queue, queued, closed_grid)
                 continue
             settled = True
             counts[ROUND] = 0
@@ -425,21 +515,9 @@ def follow(
         if sums[TIME] >= stop:
             return REACHED
         room = stop - sums[TIME]
-        step = _next_event(pressure, shear, gap, status, rates, friction, traction_tol, length_tol, room)
-        sums[WORK] += _work(
-            shear,
-            status,
-            rates,
-            friction,
-            weights,
-            load_work,
-            load_work_rate,
-            force,
-            force_rate,
-            sums[TIME],
-            step,
-        )
-        _advance(pressure, shear, gap, slip, motion, status, rates, friction, weights, step, sums)
+        step = _next_event(contact, rates, friction, traction_tol, length_tol, room)
+        sums[WORK] += _work(contact, rates, friction, load, sums[TIME], step)
+        sums[DISSIPATION] += _advance(contact, rates, friction, load.weights, step)
         if step >= room:
             sums[TIME] = stop
         else:

@@ -93,6 +93,66 @@ def _fill(F, G, left, left_back, out):
                     )
 
 
+@compiled
+def _responses(first, second, cross, core, low, out):
+    """The products of the inverse `core` and the columns of the nodes beside the set, one after the other.
+
+    b_j, the column of the node j (from 0 to m-1 inside), has the entries of b_j-1, moved on by one. So, with x_j for
+    core b_j, the move Z, the block row r of the node before the first and the first block column C of `core`,
+
+        x_j+1 = Z x_j + x_m (last block of x_j) - C (r x_j - T_-1,j),
+
+    and likewise on the other side. `out` (2m, 2w) has two columns for each of the w nodes outside, `low` of them to the
+    left, first all of the first kind. Those of the nodes next to the set are given.
+    """
+    m, w = core.shape[0] // 2, out.shape[1] // 2
+    for side in range(2):
+        begin, end, sense = (low, w, 1) if side == 0 else (low - 1, -1, -1)
+        edge, corner = (m - 1, 0) if side == 0 else (0, m - 1)
+        for now in range(begin, end - sense, sense):
+            away = abs(now - begin) + m + 1  # from the node on the other side
+            for kind in range(2):
+                x, new = out[:, kind * w + now], out[:, kind * w + now + sense]
+                a, b = x[edge], x[m + edge]
+                c = -first[away] if kind == 0 else sense * cross[away]
+                d = -second[away] if kind == 1 else -sense * cross[away]
+                for k in range(m):
+                    far = k + 1 if side == 0 else m - k
+                    c += first[far] * x[k] - sense * cross[far] * x[m + k]
+                    d += second[far] * x[m + k] + sense * cross[far] * x[k]
+                for row in range(2 * m):
+                    new[row] = (
+                        a * out[row, begin]
+                        + b * out[row, w + begin]
+                        - c * core[row, corner]
+                        - d * core[row, m + corner]
+                    )
+                for k in range(1, m):
+                    to, source = (k, k - 1) if side == 0 else (k - 1, k)
+                    new[to] += x[source]
+                    new[m + to] += x[m + source]
+
+
+def responses(
+    first: np.ndarray, second: np.ndarray, cross: np.ndarray, core: np.ndarray, low: int, nodes: int
+) -> np.ndarray:
+    """The inverse `core` (2m, 2m) of m neighbours out of n `nodes` times the columns of all other nodes.
+
+    `first`, `second` and `cross` are the entries at the distances from 0 to that of the furthest of them; `low` nodes
+    are to the left. Returns (2m, 2(n-m)), first the columns of the first kind. O(m) operations a column.
+    """
+    m = core.shape[0] // 2
+    w = nodes - m
+    out = np.empty((2 * m, 2 * w), order="F")
+    near = np.arange(1, m + 1)
+    for node, distance, sense in ((low, near[::-1], -1.0), (low - 1, near, 1.0)):
+        if 0 <= node < w:
+            out[:, node] = core @ np.r_[first[distance], -sense * cross[distance]]
+            out[:, w + node] = core @ np.r_[sense * cross[distance], second[distance]]
+    _responses(first, second, cross, core, low, out)
+    return out
+
+
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
     """Inverse of [[first, cross], [-cross, second]], shape (2m, 2m), three Toeplitz matrices given by first columns.
 

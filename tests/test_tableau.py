@@ -10,10 +10,22 @@ import numpy as np
 import pytest
 
 from fastpin import OPEN, STICK, Grid, Problem
+from fastpin.basis import FactoredSet, solvable_set
 from fastpin.collocation import System
+from fastpin.columns import Columns
 from fastpin.contact import first_contact, unloaded
-from fastpin.path import PathStep, build_tableau
-from fastpin.tableau import _add_column, _add_row, _change_status, _exchange
+from fastpin.path import PathStep
+from fastpin.tableau import (
+    CHUNK,
+    WIDTH,
+    Contact,
+    Tableau,
+    _add_column,
+    _add_row,
+    _change_status,
+    _column,
+    _exchange,
+)
 
 BOTTOM = -0.5 * np.pi
 
@@ -36,56 +48,182 @@ def loads(**values):
 # --- exchange steps -----------------------------------------------------------------------------------------
 
 
+def empty_tableau(matrix, rates):
+    rows, columns = matrix.shape
+    room = 3 * CHUNK
+    return Tableau(
+        matrix=np.asfortranarray(matrix),
+        fresh=np.zeros(-(-columns // WIDTH), dtype=np.int64),
+        left=np.zeros((rows, room), order="F"),
+        source=np.zeros(room, dtype=np.int64),
+        slot=np.zeros(room, dtype=np.int64),
+        delta=np.zeros(room),
+        rates=rates.copy(),
+    )
+
+
+def dense(matrix, tableau, updates):
+    """The whole matrix after so many updates, one after the other, naively."""
+    matrix = matrix.copy()
+    for k in range(updates):
+        row = matrix[tableau.source[k]].copy() if tableau.source[k] >= 0 else np.zeros(matrix.shape[1])
+        if tableau.slot[k] >= 0:
+            row[tableau.slot[k]] += tableau.delta[k]
+        matrix += np.outer(tableau.left[:, k], row)
+    return matrix
+
+
 @pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
 def test_exchange_solves_for_the_other_member_of_the_pair(version):
     rng = np.random.default_rng(1)
     m, n, p = 9, 6, 2
-    matrix, rates = np.asfortranarray(rng.normal(size=(m, n))), rng.normal(size=m)
-    left, right = np.zeros((m, 4), order="F"), np.zeros((n, 4), order="F")
-    new_rates = rates.copy()
-    pivot = version(_exchange)(matrix, left, right, 0, new_rates, p)
-    new = matrix + left[:, :1] @ right[:, :1].T
+    matrix, rates = rng.normal(size=(m, n)), rng.normal(size=m)
+    tableau = empty_tableau(matrix, rates)
+    version(_column)(tableau, 0, p, tableau.left[:, 0])
+    version(_exchange)(tableau, 0, p)
+    new = dense(matrix, tableau, 1)
 
     # y = M z + r; the roles of y_p and z_p change.
     z = rng.normal(size=n)
     y = matrix @ z + rates
     swapped_z, swapped_y = z.copy(), y.copy()
     swapped_z[p], swapped_y[p] = y[p], z[p]
-    assert np.allclose(new @ swapped_z + new_rates, swapped_y, atol=1e-12)
-    assert pivot == matrix[p, p]
+    assert np.allclose(new @ swapped_z + tableau.rates, swapped_y, atol=1e-12)
 
 
 @pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
-def test_row_and_column_operations_with_pending_updates(version):
+def test_row_and_column_operations_and_columns_brought_up_to_date(version):
     rng = np.random.default_rng(2)
-    matrix, rates = np.asfortranarray(rng.normal(size=(7, 5))), rng.normal(size=7)
-    left, right = np.asfortranarray(rng.normal(size=(7, 4))), np.asfortranarray(rng.normal(size=(5, 4)))
-    true, new_rates = matrix + left[:, :2] @ right[:, :2].T, rates.copy()
-    version(_add_row)(matrix, left, right, 2, new_rates, 4, 1, 0.7)
-    version(_add_column)(matrix, left, right, 3, 3, 0, -0.2)
+    matrix, rates = rng.normal(size=(7, 5)), rng.normal(size=7)
+    tableau = empty_tableau(matrix, rates)
+    version(_column)(tableau, 0, 1, tableau.left[:, 0])
+    version(_exchange)(tableau, 0, 1)
+    true = dense(matrix, tableau, 1)
+    after = tableau.rates.copy()
+    version(_add_row)(tableau, 1, 4, 1, 0.7)
     true[4] += 0.7 * true[1]
+    after[4] += 0.7 * after[1]
+    version(_add_column)(tableau, 2, 3, 0, -0.2)
     true[:, 3] -= 0.2 * true[:, 0]
-    rates[4] += 0.7 * rates[1]
-    assert np.allclose(matrix + left @ right.T, true, atol=1e-13)
-    assert np.array_equal(rates, new_rates)
+    assert np.allclose(dense(matrix, tableau, 3), true, atol=1e-13)
+    assert np.array_equal(tableau.rates, after)
+    for p in range(5):
+        column = np.zeros(7)
+        version(_column)(tableau, 3, p, column)
+        assert np.allclose(column, true[:, p], atol=1e-13)
 
 
-@pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
-def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, version):
-    status = np.full(41, OPEN, dtype=np.int8)
+def at_rest_on(system, status):
+    """A contact with given statuses; its values do not matter."""
+    n = status.size
+    zeros = [np.zeros(n) for _ in range(4)]
+    return Contact(*zeros, status.copy(), np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool), np.zeros(3))
+
+
+def whole(columns):
+    for slot in range(0, columns.tableau.matrix.shape[1], WIDTH):
+        columns.refresh(slot, 0)
+    return columns.tableau.matrix.copy()
+
+
+def untied(matrix, contact, friction):
+    """The tableau of T instead of tau = T + tie mu N, at nodes that do not slip."""
+    n = contact.status.size
+    matrix, coupling = matrix.copy(), contact.tie * friction
+    stuck, gaping = contact.status == STICK, contact.status == OPEN
+    matrix[n : 2 * n][stuck] -= coupling[stuck, None] * matrix[:n][stuck]
+    matrix[:, :n][:, gaping] += coupling[gaping] * matrix[:, n:][:, gaping]
+    return matrix
+
+
+def zones(n=41):
+    status = np.full(n, OPEN, dtype=np.int8)
     status[12:30] = STICK
     status[12:16], status[26:30] = 1, -1
-    rate = loads(P=1.0, Q=0.3)
-    matrix, rates = build_tableau(system, status, rate)
-    left, right = np.zeros((85, 8), order="F"), np.zeros((82, 8), order="F")
-    for node, new in ((20, 1), (13, 0), (30, -1), (12, OPEN)):
-        changed, new_rates = status.copy(), rates.copy()
-        appended, _ = version(_change_status)(matrix, left, right, 0, new_rates, changed, 0.4, node, new)
-        updated = matrix + left[:, :appended] @ right[:, :appended].T
-        expected, expected_rates = build_tableau(system, changed, rate)
-        assert changed[node] == new
-        assert np.abs(updated - expected).max() < 1e-9 * np.abs(expected).max()
-        assert np.abs(new_rates - expected_rates).max() < 1e-9 * np.abs(expected_rates).max()
+    return status
+
+
+@pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
+@pytest.mark.parametrize("tied", [True, False], ids=["as foreseen", "otherwise"])
+def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, version, tied):
+    rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
+    for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
+        contact = at_rest_on(system, zones())
+        columns = Columns(system, solvable_set(system, contact.status), contact, rate)
+        if (contact.tie[node] == new) != tied and new in (1, -1):
+            continue
+        matrix, tableau = whole(columns), columns.tableau
+        updates, size = version(_change_status)(tableau, 0, contact, 0.4, typical, node, new)
+        assert size > 1e-3
+        assert contact.status[node] == new
+        other = at_rest_on(system, contact.status)
+        expected = Columns(system, solvable_set(system, other.status), other, rate)
+        found = untied(dense(matrix, tableau, updates), contact, 0.4)
+        wanted = untied(whole(expected), other, 0.4)
+        assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
+        rates, others = tableau.rates, expected.tableau.rates
+        shear = contact.status == STICK
+        tie = (contact.tie - other.tie)[shear] * 0.4
+        assert np.abs(rates[41:82][shear] - tie * rates[:41][shear] - others[41:82][shear]).max() < 1e-9
+        kept = np.r_[np.ones(41, dtype=bool), ~shear, np.ones(3, dtype=bool)]
+        assert np.abs((rates - others)[kept]).max() < 1e-9 * np.abs(others).max()
+
+
+@pytest.mark.parametrize("sets", ["stuck", "zones"])
+def test_columns_by_chunks_are_those_one_by_one(system, sets):
+    """Hundreds of updates: products by chunks, single columns, the naive way, and products with the whole tableau."""
+    status = zones()
+    if sets == "stuck":
+        status[status != OPEN] = STICK
+    contact = at_rest_on(system, status)
+    columns = Columns(system, solvable_set(system, status), contact, loads(P=1.0, Q=0.3))
+    matrix, tableau, updates = whole(columns), columns.tableau, 0
+    rng = np.random.default_rng(3)
+    while updates < 2 * CHUNK + 10:
+        node = int(rng.integers(14, 28))
+        new = int(rng.choice([1, -1])) if contact.status[node] == STICK else STICK
+        if new != STICK and np.count_nonzero(contact.status == STICK) < 4:
+            continue
+        updates, _ = _change_status(tableau, updates, contact, 0.4, 0.1, node, new)
+    expected = dense(matrix, tableau, updates)
+    size = np.abs(expected).max()
+    column = np.zeros(85)
+    _column(tableau, updates, 60, column)
+    assert np.abs(column - expected[:, 60]).max() < 1e-10 * size
+    columns.refresh(60, updates)
+    assert tableau.fresh[60 // WIDTH] == 2 * CHUNK
+    _column(tableau, updates, 60, column)
+    assert np.abs(column - expected[:, 60]).max() < 1e-10 * size
+
+    given = np.r_[rng.normal(size=82), np.zeros(3)]
+    given[[0, 40, 41, 81]] = 0.0  # the ends of an arc never close, and their columns stand for whole hats
+    assert np.abs(columns.response(given, updates) - expected @ given[:82]).max() < 1e-9 * size
+    contact.tie[contact.status == STICK] = 0  # compare T
+    forces = np.r_[np.zeros(82), 1.0, -2.0, 0.5]
+    unknowns = FactoredSet(system, contact.status)
+    motion = unknowns.solve(np.r_[np.zeros(unknowns.count), forces[82:]])[-3:]
+    assert np.abs(columns.response(forces, updates)[82:] - motion).max() < 1e-9 * np.abs(motion).max()
+
+
+def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeypatch):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    system = System.build(problem, Grid.arc(BOTTOM - 1.6, BOTTOM + 1.55, 201), 1.0)
+    first, _ = first_contact(system, unloaded(system), np.zeros(6), loads(P=1.0))
+    expected = PathStep(system, first, loads(P=1.0)).follow(1.0)
+    original = Columns.refresh
+
+    def spoilt(self, asked, updates):
+        original(self, asked, updates)
+        if updates < CHUNK:
+            self.tableau.matrix[50:150, asked] *= 1.0 + 1e-7
+
+    monkeypatch.setattr(Columns, "refresh", spoilt)
+    step = PathStep(system, first, loads(P=1.0))
+    found = step.follow(1.0)
+    assert step.rebuilds > 0
+    assert system.worst_residual(found) < 1e-12
+    assert np.array_equal(found.status, expected.status)
+    assert np.abs(found.pressure - expected.pressure).max() < 1e-6
 
 
 def test_the_operator_is_symmetric(titanium_in_aluminium):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, path, solve, toeplitz
+from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, solve, toeplitz
+from fastpin.basis import FactoredSet, StuckSet
 from fastpin.collocation import System
 
 BOTTOM = -0.5 * np.pi
@@ -18,12 +19,15 @@ def dense(first, second, cross):
     return np.block([[scipy.linalg.toeplitz(first), upper], [-upper, scipy.linalg.toeplitz(second)]])
 
 
+def python(function):
+    return getattr(function, "py_func", function)
+
+
 @pytest.fixture(params=["compiled", "python"])
 def inverse(request, monkeypatch):
     if request.param == "python":
         for name in ("_predictors", "_fill"):
-            kernel = getattr(toeplitz, name)
-            monkeypatch.setattr(toeplitz, name, getattr(kernel, "py_func", kernel))
+            monkeypatch.setattr(toeplitz, name, python(getattr(toeplitz, name)))
     return toeplitz.inverse
 
 
@@ -49,36 +53,61 @@ def stuck(size, low, high):
     return status
 
 
+@pytest.mark.parametrize("version", ["compiled", "python"])
+@pytest.mark.parametrize(("low", "size", "nodes"), [(4, 9, 20), (0, 7, 15), (6, 3, 9), (5, 30, 61)])
+def test_products_with_the_columns_beside(monkeypatch, version, low, size, nodes):
+    if version == "python":
+        monkeypatch.setattr(toeplitz, "_responses", python(toeplitz._responses))
+    rng = np.random.default_rng(nodes)
+    away = np.arange(nodes)
+    first, second = (rng.normal(size=nodes) * 0.8**away + 4.0 * nodes * (away == 0) for _ in range(2))
+    cross = np.where(away == 0, 0.0, rng.normal(size=nodes))
+    matrix = dense(first, second, cross)
+    rows = np.r_[low : low + size, nodes + low : nodes + low + size]
+    others = np.setdiff1d(np.arange(2 * nodes), rows)
+    core = np.linalg.inv(matrix[np.ix_(rows, rows)])
+    found = toeplitz.responses(first, second, cross, core, low, nodes)
+    assert found == pytest.approx(core @ matrix[np.ix_(rows, others)], rel=1e-10, abs=1e-13)
+
+
 @pytest.mark.parametrize("grid", [Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 121), Grid.circle(121)], ids=["arc", "circle"])
 @pytest.mark.parametrize(
     ("pin_load", "rotation", "hub"), [("body", "free", None), ("centre", "fixed", None), ("centre", "fixed", 0.2)]
 )
 @pytest.mark.parametrize("pair", ["titanium", "rigid"])
-def test_tableau_of_sticking_neighbours(titanium_in_aluminium, monkeypatch, grid, pin_load, rotation, hub, pair):
+def test_set_of_sticking_neighbours(titanium_in_aluminium, grid, pin_load, rotation, hub, pair):
     pair = titanium_in_aluminium if pair == "titanium" else RIGID_PIN
     problem = Problem.from_load_parameter(pair, 0.1, 0.4, pin_load, rotation, hub_radius=hub)
     system = System.build(problem, grid, 1.0)
-    status, rate = stuck(121, 20, 97), np.array([0.3, 1.0, 0.0, 0.1, -0.2, 0.0])
-    matrix, rates = path._stuck_tableau(system, status, rate)
-    monkeypatch.setattr(path, "_stuck_tableau", lambda *_: None)
-    expected, expected_rates = path.build_tableau(system, status, rate)
-    assert np.abs(matrix - expected).max() < 1e-11 * np.abs(expected).max()
-    assert np.abs(rates - expected_rates).max() < 1e-11 * np.abs(expected_rates).max()
+    status = stuck(121, 20, 97)
+    fast, slow = StuckSet.of(system, status), FactoredSet(system, status)
+    right = np.cos(np.arange(fast.count + 3.0))
+    close(fast.solve(right), slow.solve(right))
+    positions = np.array([0, 5, 76, 77, 120, 153])
+    for one, two in zip(fast.held_columns(positions), slow.held_columns(positions), strict=True):
+        close(one, two)
+    slots, coupling = np.array([3, 18, 19, 97, 110, 122, 140, 218]), np.array([0.4, -0.4, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0])
+    for one, two in zip(fast.given_columns(slots, coupling), slow.given_columns(slots, coupling), strict=True):
+        close(one, two)
+
+
+def close(one, two):
+    assert one.shape == two.shape
+    assert np.abs(one - two).max() < 1e-11 * np.abs(two).max()
 
 
 def test_what_it_is_not_for(titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
-    rate = np.array([0.3, 1.0, 0.0, 0.0, 0.0, 0.0])
     system = System.build(problem, Grid.circle(60), 1.0)
     split, across, slipping = stuck(60, 20, 40), stuck(60, 50, 60), stuck(60, 20, 40)
     split[30], across[:5], slipping[25] = OPEN, STICK, 1
     for status in (split, across, slipping, stuck(60, 0, 0), stuck(60, 20, 21)):
-        assert path._stuck_tableau(system, status, rate) is None
+        assert StuckSet.of(system, status) is None
     theta = BOTTOM + np.linspace(-1.2, 1.2, 60) ** 3
     graded = System.build(problem, Grid(theta), 1.0)
-    assert path._stuck_tableau(graded, stuck(60, 20, 40), rate) is None
+    assert StuckSet.of(graded, stuck(60, 20, 40)) is None
     smooth = System.build(Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0), Grid.circle(60), 1.0)
-    assert path._stuck_tableau(smooth, stuck(60, 20, 40), rate) is None
+    assert StuckSet.of(smooth, stuck(60, 20, 40)) is None
 
 
 @pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "fixed")])
@@ -87,7 +116,7 @@ def test_histories_are_those_of_factorisations(titanium_in_aluminium, monkeypatc
     grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)
     corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.4, "sxx": 0.1}, {"P": 1.2}]
     fast = solve(problem, corners, grid=grid)
-    monkeypatch.setattr(path, "_stuck_tableau", lambda *_: None)
+    monkeypatch.setattr(StuckSet, "of", lambda *_: None)
     slow = solve(problem, corners, grid=grid)
     for one, two in zip(fast, slow, strict=True):
         assert np.array_equal(one.status, two.status)

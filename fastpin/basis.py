@@ -1,0 +1,215 @@
+"""The linear systems of given statuses: the unknown tractions and the pin's motion, ready to be solved.
+
+Unknown are N where the contact is closed and T where it sticks; where it slips T = -sigma mu N is eliminated. The rows
+are those of the gap and of the slip at the same nodes, and three of equilibrium.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import lapack
+
+from fastpin import toeplitz
+from fastpin.state import OPEN, STICK
+
+if TYPE_CHECKING:
+    from fastpin.collocation import System
+
+SINGULAR = 1e-13
+"""A system whose reciprocal condition number is below this is a mechanism."""
+
+MOST_RESIDUAL = 1e-10
+"""Of a fast inverse; with more, a factorisation takes its place."""
+
+
+class Unknowns:
+    """The unknown tractions of given statuses, and what they do at the other rows.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (count,)
+        The unknowns among (N, T), and as well their equations among (h, s).
+    others : ndarray of int
+        All other rows.
+    normal, tangential : ndarray of int
+        Nodes with an unknown N, and with an unknown T.
+    """
+
+    def __init__(self, system: System, status: np.ndarray) -> None:
+        n = system.grid.size
+        self._system = system
+        self.normal = np.flatnonzero(status != OPEN)
+        self.tangential = np.flatnonzero(status == STICK)
+        self.rows = np.r_[self.normal, n + self.tangential]
+        self.others = np.setdiff1d(np.arange(2 * n), self.rows)
+        self.count = self.rows.size
+        self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
+
+    def columns(self, matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Columns of `matrix` (given `rows`) for the unknown tractions, friction eliminated."""
+        result = matrix[np.ix_(rows, self.rows)]
+        slipping = np.flatnonzero(self._coupling[self.normal])
+        nodes = self.normal[slipping]
+        result[:, slipping] += matrix[np.ix_(rows, self._coupling.size + nodes)] * self._coupling[nodes]
+        return result
+
+    def expand(self, unknowns: np.ndarray) -> np.ndarray:
+        """All tractions (2n,) from the unknown ones."""
+        tractions = np.zeros(2 * self._coupling.size)
+        tractions[self.rows] = unknowns[: self.count]
+        slipping = np.flatnonzero(self._coupling)
+        tractions[self._coupling.size + slipping] = self._coupling[slipping] * tractions[slipping]
+        return tractions
+
+    @cached_property
+    def tied(self) -> np.ndarray:
+        """Rows of the others for the unknown tractions and the motion, shape (2n-count, count+3)."""
+        system = self._system
+        return np.hstack([self.columns(system.operator, self.others), system.motion[self.others]])
+
+    def loaded(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (2n, k) and resultants (3, k) of tractions of size one among the others.
+
+        With a `coupling` other than zero the slot is a pressure N that comes with a shear coupling N.
+        """
+        system, pairs = self._system, np.flatnonzero(coupling)
+        shears = self._coupling.size + slots[pairs]
+        acting, balance = system.operator[:, slots], system.equilibrium[:, slots]
+        acting[:, pairs] += coupling[pairs] * system.operator[:, shears]
+        balance[:, pairs] += coupling[pairs] * system.equilibrium[:, shears]
+        return acting, balance
+
+
+class FactoredSet(Unknowns):
+    """Any statuses, by a factorisation. ``singular`` if the closed nodes can't hold the pin."""
+
+    def __init__(self, system: System, status: np.ndarray) -> None:
+        super().__init__(system, status)
+        matrix = np.empty((self.count + 3, self.count + 3), order="F")
+        matrix[:-3, :-3] = self.columns(system.operator, self.rows)
+        matrix[:-3, -3:] = system.motion[self.rows]
+        matrix[-3:, :-3] = self.columns(system.equilibrium, np.arange(3))
+        matrix[-3:, -3:] = system.motion_rows
+        # Unknown forces instead of tractions: entries are then of order one, and the condition number means something.
+        self._width = float(system.weights.mean())
+        matrix[:, :-3] /= self._width
+        norm = float(np.abs(matrix).sum(axis=0).max())
+        self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
+        self.singular = info != 0 or not np.isfinite(norm)
+        if not self.singular:
+            rcond, _ = lapack.dgecon(self._lu, norm)
+            self.singular = not rcond > SINGULAR
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Unknown tractions and motion, (count+3,) or (count+3, k), for given right-hand sides."""
+        unknowns = lapack.dgetrs(self._lu, self._pivots, right)[0]
+        unknowns[:-3] /= self._width
+        return unknowns
+
+    def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unknowns (count+3, k), and displacement of the others, for units of the gap or slip at rows[positions]."""
+        right = np.zeros((self.count + 3, positions.size), order="F")
+        right[positions, np.arange(positions.size)] = 1.0
+        unknowns = self.solve(right)
+        return unknowns, self.tied @ unknowns
+
+    def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
+        acting, balance = self.loaded(slots, coupling)
+        unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
+        return unknowns, acting[self.others] + self.tied @ unknowns
+
+
+class StuckSet(Unknowns):
+    """Neighbours on equally spaced nodes that all stick: a block Toeplitz matrix, inverted in O(n^2).
+
+    The three motions and conditions of equilibrium are added by the complement that they leave.
+    """
+
+    def __init__(self, system: System, status: np.ndarray) -> None:
+        super().__init__(system, status)
+        n, m = system.grid.size, self.normal.size
+        operator, end = system.operator, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
+        first, second, cross = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
+        self._entries = first, second, cross
+        self._core = toeplitz.inverse(first[:m], second[:m], cross[:m])
+        motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
+        self._moved = self._core @ motion
+        complement = system.motion_rows - self._equilibrium @ self._moved
+        scale = np.abs(self._equilibrium) @ np.abs(self._moved)
+        sound = bool(np.all(np.isfinite(complement))) and np.linalg.cond(complement / scale.max()) < 1e8
+        self.singular = not sound
+        if sound:
+            self._small = np.linalg.inv(complement)
+            self.singular = not self._probe() < MOST_RESIDUAL
+
+    @classmethod
+    def of(cls, system: System, status: np.ndarray) -> StuckSet | None:
+        """The set of given statuses; None if they or the grid are not of this kind."""
+        closed = np.flatnonzero(status != OPEN)
+        if closed.size < 2 or not system.grid.uniform or system.friction == 0.0 or np.any(status[closed] != STICK):
+            return None
+        n, low, last = system.grid.size, closed[0], closed[-1]
+        if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):
+            return None
+        found = cls(system, status)
+        return None if found.singular else found
+
+    @cached_property
+    def _responses(self) -> np.ndarray:
+        """The core times the columns of the others, shape (count, 2n-count).
+
+        Those of half hats at the ends of an arc stand for whole ones: these nodes never close.
+        """
+        return toeplitz.responses(*self._entries, self._core, int(self.normal[0]), self._system.grid.size)
+
+    @cached_property
+    def _tied_motion(self) -> np.ndarray:
+        """Displacement of the others when the pin moves and the tractions keep the set where it is."""
+        motion = self._system.motion
+        return motion[self.others] - self._responses.T @ motion[self.rows]
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Unknown tractions and motion, (count+3,), for given right-hand sides."""
+        return self._moving(self._core @ right[:-3], right[-3:])
+
+    def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unknowns (count+3, k), and displacement of the others, for units of the gap or slip at rows[positions]."""
+        unknowns = self._moving(self._core[:, positions], np.zeros((3, positions.size)))
+        return unknowns, self._responses[positions].T + self._tied_motion @ unknowns[-3:]
+
+    def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
+        acting, balance = self.loaded(slots, coupling)
+        places, pairs = np.searchsorted(self.others, slots), np.flatnonzero(coupling)
+        free = -self._responses[:, places]
+        shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
+        free[:, pairs] -= coupling[pairs] * self._responses[:, shears]
+        unknowns = self._moving(free, -balance)
+        return unknowns, acting[self.others] + self.tied @ unknowns
+
+    def _moving(self, free: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Tractions and motion from the tractions `free` without motion and the forces that are wanted."""
+        motion = self._small @ (forces - self._equilibrium @ free)
+        return np.concatenate([free - self._moved @ motion, motion])
+
+    def _probe(self) -> float:
+        """Residual of one solve, from the matrices."""
+        wanted, system = np.cos(np.arange(self.count + 3.0)), self._system
+        found = self.solve(wanted)
+        tractions = self.expand(found)
+        displacement = system.operator @ tractions + system.motion @ found[-3:]
+        balance = system.equilibrium @ tractions + system.motion_rows @ found[-3:]
+        return float(np.abs(np.r_[displacement[self.rows], balance] - wanted).max())
+
+
+def solvable_set(system: System, status: np.ndarray) -> StuckSet | FactoredSet | None:
+    """The system of given statuses, solved in the fastest way; None if the closed nodes can't hold the pin."""
+    stuck = StuckSet.of(system, status)
+    if stuck is not None:
+        return stuck
+    factored = FactoredSet(system, status)
+    return None if factored.singular else factored
