@@ -15,6 +15,7 @@ from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumErr
 from fastpin.increment import implicit_step
 from fastpin.loading import LoadHistory, named_load
 from fastpin.path import PathStep, StepLostError
+from fastpin.repeats import Repeats, Step
 from fastpin.state import OPEN, SLIP_POSITIVE, Restart, Result, State
 
 Method = Literal["path", "increment"]
@@ -97,6 +98,8 @@ class Run:
     progress : callable, optional
     configuration : Configuration, optional
         Where to start from; without load if not given.
+    repeats : Repeats, optional
+        Steps that were followed before.
 
     Attributes
     ----------
@@ -116,6 +119,7 @@ class Run:
         fractions: np.ndarray,
         progress: Progress | None = None,
         configuration: Configuration | None = None,
+        repeats: Repeats | None = None,
     ) -> None:
         self.system = system
         self.method = method
@@ -131,15 +135,15 @@ class Run:
         self.releases = 0
         self.path: PathStep | None = None
         self.path_begin = 0.0
-        self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0}
+        self.repeats = Repeats() if repeats is None else repeats
+        self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0, "repeated": 0.0}
 
     def follow(self, values: np.ndarray) -> None:
         """Follow all steps to the corners `values`, shape (corners, loads), SI units."""
         for step, target in enumerate(values / self.system.scales.loads):
             before, self.reached = self.now.load, 0.0
             try:
-                for piece in _pieces(before, target):
-                    self._follow_piece(piece, step, len(values))
+                self._follow_step(target, step, len(values))
             except SolveError as error:
                 self._leave_path()
                 load = (before + self.reached * (target - before)) * self.system.scales.loads
@@ -153,11 +157,27 @@ class Run:
     def result(self, history: LoadHistory, seconds: float) -> Result:
         """What has been solved so far."""
         system = self.system
-        restart = Restart(self.now.load * system.scales.loads, system.scales.force, self.now)
+        restart = Restart(self.now.load * system.scales.loads, system.scales.force, self.now, self.repeats)
         statistics = {**self.statistics, "seconds": seconds}
         return Result(
             self.states, system.problem, history, system.grid, self.method, statistics, self.complete, restart
         )
+
+    def _follow_step(self, target: np.ndarray, step: int, steps: int) -> None:
+        """The step to the load `target`, or what it was the last time it was followed from here."""
+        begin, kept = self.now, len(self.states)
+        key = (begin.load.tobytes(), target.tobytes(), self.fractions.tobytes(), self.method, self.increments)
+        known = self.repeats.find(key, begin)
+        if known is None:
+            for piece in _pieces(begin.load, target):
+                self._follow_piece(piece, step, steps)
+            self.repeats.add(key, Step(begin, self.now, self.states[kept:]))
+            return
+        self.now, states = known.again(begin, self.system.scales, step)
+        self.states += states
+        self.statistics["repeated"] += 1
+        if self.progress is not None:
+            self.progress(step + 1.0, steps)
 
     def _follow_piece(self, piece: _Piece, step: int, steps: int) -> None:
         """One straight piece of the history, from stop to stop."""

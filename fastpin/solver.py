@@ -99,9 +99,10 @@ def solve(
     # One thread: results don't depend on the machine, and below a thousand nodes it is the fastest way.
     with threadpool_limits(limits=1, user_api="blas"):
         if start is not None and start.restart is not None:
-            system = System.build(problem, start.grid, start.restart.force)
-            run = Run(system, method, increments, fractions, progress, start.restart.configuration.copy())
-            return _finished(run, history, history.values(initial=start.restart.load), began)
+            last = start.restart
+            system = System.build(problem, start.grid, last.force)
+            run = Run(system, method, increments, fractions, progress, last.configuration.copy(), last.repeats.copy())
+            return _finished(run, history, history.values(initial=last.load), began)
 
         values = history.values()
         force = reference_force(problem, values)

@@ -155,11 +155,13 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Restart:
-    """What a solution needs to go on: the last load (SI), the reference force (N/m) and the configuration."""
+    """What a solution needs to go on: the last load (SI), the reference force (N/m), the configuration, and the steps
+    that it may repeat."""
 
     load: np.ndarray
     force: float
     configuration: Any
+    repeats: Any
 
 
 class Result(Sequence[State]):
@@ -173,8 +175,8 @@ class Result(Sequence[State]):
     method : str
         "path" or "increment".
     statistics : dict of str to float
-        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (of the tableau), "increments" and
-        "seconds".
+        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (of the tableau, by a factorisation),
+        "increments", "repeated" (steps that were known from before, because the contact has settled) and "seconds".
     complete : bool
         Whether the whole history was followed; False in the result that an error carries.
     restart : Restart
