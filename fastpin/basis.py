@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from fastpin import toeplitz
+from fastpin.products import add_product
 from fastpin.state import OPEN, STICK
 
 if TYPE_CHECKING:
@@ -68,7 +69,10 @@ class Unknowns:
     def tied(self) -> np.ndarray:
         """Rows of the others for the unknown tractions and the motion, shape (2n-count, count+3)."""
         system = self._system
-        return np.hstack([self.columns(system.operator, self.others), system.motion[self.others]])
+        result = np.empty((self.others.size, self.count + 3), order="F")
+        result[:, :-3] = self.columns(system.operator, self.others)
+        result[:, -3:] = system.motion[self.others]
+        return result
 
     def loaded(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (2n, k) and resultants (3, k) of tractions of size one among the others.
@@ -114,13 +118,17 @@ class FactoredSet(Unknowns):
         right = np.zeros((self.count + 3, positions.size), order="F")
         right[positions, np.arange(positions.size)] = 1.0
         unknowns = self.solve(right)
-        return unknowns, self.tied @ unknowns
+        others = np.zeros((self.others.size, positions.size), order="F")
+        add_product(others, self.tied, unknowns)
+        return unknowns, others
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
         acting, balance = self.loaded(slots, coupling)
         unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
-        return unknowns, acting[self.others] + self.tied @ unknowns
+        others = np.asfortranarray(acting[self.others])
+        add_product(others, self.tied, unknowns)
+        return unknowns, others
 
 
 class StuckSet(Unknowns):
@@ -178,7 +186,7 @@ class StuckSet(Unknowns):
 
     def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Unknowns (count+3, k), and displacement of the others, for units of the gap or slip at rows[positions]."""
-        unknowns = self._moving(self._core[:, positions], np.zeros((3, positions.size)))
+        unknowns = self._moving(self._core[positions].T, np.zeros((3, positions.size)))  # the core is symmetric
         return unknowns, self._responses[positions].T + self._tied_motion @ unknowns[-3:]
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -189,12 +197,18 @@ class StuckSet(Unknowns):
         shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
         free[:, pairs] -= coupling[pairs] * self._responses[:, shears]
         unknowns = self._moving(free, -balance)
-        return unknowns, acting[self.others] + self.tied @ unknowns
+        others = np.asfortranarray(acting[self.others])
+        add_product(others, self.tied, unknowns)
+        return unknowns, others
 
     def _moving(self, free: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Tractions and motion from the tractions `free` without motion and the forces that are wanted."""
         motion = self._small @ (forces - self._equilibrium @ free)
-        return np.concatenate([free - self._moved @ motion, motion])
+        result = np.empty((self.count + 3, *free.shape[1:]), order="F")
+        result[:-3] = free
+        result[:-3] -= self._moved @ motion
+        result[-3:] = motion
+        return result
 
     def _probe(self) -> float:
         """Residual of one solve, from the matrices."""

@@ -7,6 +7,7 @@ from scipy.linalg import blas
 
 from fastpin.basis import FactoredSet, StuckSet
 from fastpin.collocation import System
+from fastpin.products import add_product
 from fastpin.state import OPEN, STICK
 from fastpin.tableau import CHUNK, WIDTH, Contact, Tableau
 
@@ -101,8 +102,8 @@ class Columns:
         held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
         nodes = slots[given]
         coupling = np.where(np.isin(nodes, self._open), -self._coupling[nodes % self._coupling.size], 0.0)
-        unknowns = np.empty((basis.count + 3, slots.size))
-        others = np.empty((basis.others.size, slots.size))
+        unknowns = np.empty((basis.count + 3, slots.size), order="F")
+        others = np.empty((basis.others.size, slots.size), order="F")
         unknowns[:, held], others[:, held] = basis.held_columns(position[held])
         unknowns[:, given], others[:, given] = basis.given_columns(nodes, coupling)
         self._spread(unknowns, others, values)
@@ -110,9 +111,10 @@ class Columns:
     def _spread(self, unknowns: np.ndarray, others: np.ndarray, values: np.ndarray) -> None:
         """All dependent variables, into `values`, from the unknowns and the displacement of the others."""
         n, stuck = self._system.grid.size, self._stuck
-        values[self._free] = unknowns
-        values[self._basis.others] = others
-        values[n + stuck] += self._coupling[stuck, None] * values[stuck]
+        for column, unknown, other in zip(values.T, unknowns.T, others.T, strict=True):
+            column[self._free] = unknown
+            column[self._basis.others] = other
+            column[n + stuck] += self._coupling[stuck] * column[stuck]
 
     def _update(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> None:
         """Apply the updates from `begin`, a multiple of CHUNK, to `end` to the columns `values`.
@@ -126,7 +128,7 @@ class Columns:
             factors = np.where(source >= 0, values[tableau.source[chunk]], 0.0)
             factors += delta * units[first - begin : chunk.stop - begin]
             factors = blas.dtrsm(1.0, self._triangle(chunk), factors, lower=1, diag=1)
-            blas.dgemm(1.0, tableau.left[:, chunk], factors, beta=1.0, c=values, overwrite_c=1)
+            add_product(values, tableau.left[:, chunk], factors)
 
     def _triangle(self, chunk: slice) -> np.ndarray:
         """What the updates of a chunk make of the rows that later ones of them take: a unit lower triangle."""

@@ -21,7 +21,7 @@ MOST_REBUILDS = 400
 MOST_DRIFT = 1e-10
 """Relative error of gap and slip, checked after every chunk of updates, above which the tableau is built anew."""
 
-ROUNDING = 1e-15
+ROUNDING = 1e-14
 """Relative error of gap and slip below which nothing is left to correct."""
 
 MOST_ERROR = 1e-12

@@ -1,0 +1,66 @@
+"""Matrix products in two threads, with the same bits on every machine: the two halves are always the same.
+
+BLAS runs on one thread each. Its own threads wait in loops that cost more than they give as soon as another process
+wants a core, and the bits of their results may depend on how many there are.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numba.extending import get_cython_function_address
+
+WORTHWHILE = 4_000_000
+"""Multiplications from which on a product is made in two threads."""
+
+_POINTER = ctypes.c_void_p
+# SciPy's own BLAS. Called in this way it leaves the interpreter free, and works on parts of arrays in place.
+_dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
+_second: ThreadPoolExecutor | None = None
+
+
+def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
+    """out (m, n) += left (m, k) @ right (k, n), in place; all of them stored column by column, parts of arrays too."""
+    m, n = out.shape
+    if m * n * left.shape[1] < WORTHWHILE:
+        _add(out, left, right)
+        return
+    global _second
+    if _second is None:
+        _second = ThreadPoolExecutor(1, thread_name_prefix="fastpin")
+    half = m // 2
+    other = _second.submit(_add, out[half:], left[half:], right)
+    try:
+        _add(out[:half], left[:half], right)
+    finally:
+        other.result()
+
+
+def _add(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
+    (m, n), k = out.shape, left.shape[1]
+    if m * n * k == 0:
+        return
+    one, plain = ctypes.byref(ctypes.c_double(1.0)), ctypes.c_char_p(b"N")
+    sizes = [ctypes.byref(ctypes.c_int(size)) for size in (m, n, k)]
+    (a, lda), (b, ldb), (c, ldc) = (_place(array) for array in (left, right, out))
+    _dgemm(plain, plain, *sizes, one, a, lda, b, ldb, one, c, ldc)
+
+
+def _place(array: np.ndarray) -> tuple[int, object]:
+    """Where an array begins, and the distance of its columns, for BLAS."""
+    rows, columns = array.shape
+    step = array.strides[1] if columns > 1 else 8 * rows
+    if array.dtype != np.float64 or (rows > 1 and array.strides[0] != 8) or step < 8 * rows or step % 8:
+        raise ValueError("must be stored column by column")
+    return array.ctypes.data, ctypes.byref(ctypes.c_int(step // 8))
+
+
+def _forget_threads() -> None:
+    global _second
+    _second = None
+
+
+os.register_at_fork(after_in_child=_forget_threads)  # threads do not survive in a forked process
