@@ -24,6 +24,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import zeta
 
 from fastpin.jit import compiled
@@ -41,6 +42,12 @@ AROUND_ZERO_TERMS = 14
 AROUND_PI_TERMS = 18
 
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
+
+FAR = 8.0  # lengths of the longer half of a hat beyond which a series in its moments is used
+TERMS = 13  # of that series
+HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of half a hat, on (0, 1)
+HAT_POINT = 0.5 * (1.0 + HAT_POINT)
+HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
 
 
 @compiled
@@ -199,23 +206,128 @@ def hat_cauchy(u, h_left, h_right):
 
 
 @compiled
-def _fill_toeplitz(values, parity, closed, out):
-    """out[i, j] = values[i - j], with values[-k] = parity values[k]; mirrored entries have the same bits.
+def _series(h_left, h_right, ratio, real, imag):
+    """Coefficients of :func:`log_columns` for one hat: its moments, by Gauss quadrature over both halves.
 
-    On a circle only the first half of `values` is given; the rest follows by symmetry.
+    Returns the real and imaginary part of int hat exp(-it) dt; the others come in `real` and `imag`, shape (TERMS,).
     """
-    n = values.size
-    if closed:
-        for k in range(n // 2 + 1, n):
-            values[k] = parity * values[n - k]
-        if parity < 0.0 and n % 2 == 0:
-            values[n // 2] = 0.0  # odd about the opposite node
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = values[i - j] if i >= j else parity * values[j - i]
+    zeroth_real, zeroth_imag = 0.0, 0.0
+    for p in range(TERMS):
+        real[p] = imag[p] = 0.0
+    for side in (-1.0, 1.0):
+        h = h_left if side < 0.0 else h_right
+        for k in range(HAT_POINT.size):
+            t = side * h * HAT_POINT[k]
+            weight = h * HAT_WEIGHT[k]
+            tangent = math.tan(0.5 * t)
+            c, s = weight * math.cos(t), -weight * math.sin(t)
+            zeroth_real += c
+            zeroth_imag += s
+            constant = math.log1p(tangent * tangent)  # -2 ln cos(t/2)
+            real[0] -= 0.5 * ratio * t * c + constant * s
+            imag[0] -= 0.5 * ratio * t * s - constant * c
+            for p in range(1, TERMS):
+                c *= tangent
+                s *= tangent
+                real[p] -= 2.0 / p * s
+                imag[p] += 2.0 / p * c
+    return zeroth_real, zeroth_imag
 
 
 @compiled
+def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
+    """`scale` times the integrals of direct and cross over hats, one column for each hat.
+
+    Far from a hat's node, at x = seen - node, the kernels at x - t are those of
+
+        cross + i direct = exp(i (x - t)) [ratio A(x - t) - i L(x - t)],
+        A(x - t) = A(x) - t/2,   L(x - t) = L(x) + 2 ln cos(t/2) - 2 sum_p (cot(x/2) tan(t/2))^p / p,
+
+    so that a hat is known by its moments, and a point costs one logarithm and a polynomial in cot(x/2).
+
+    Parameters
+    ----------
+    seen : ndarray, shape (m,)
+        Angles at which the integrals are taken, rad.
+    nodes, h_left, h_right : ndarray, shape (k,)
+        Nodes of the hats and distances to their outer knots, rad. `seen` and `nodes` lie within one turn.
+    ratio, scale : float
+        alpha*/beta*; a factor.
+    direct, cross : ndarray, shape (m, k), output
+    """
+    m = seen.size
+    sin_seen, cos_seen = np.empty(m), np.empty(m)
+    for i in range(m):
+        sin_seen[i] = math.sin(0.5 * seen[i])
+        cos_seen[i] = math.cos(0.5 * seen[i])
+    sine, cosine, log = np.empty(m), np.empty(m), np.empty(m)
+    column_d, column_c = np.empty(m), np.empty(m)
+    real, imag = np.empty(TERMS), np.empty(TERMS)
+    for j in range(nodes.size):
+        node = nodes[j]
+        sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
+        zeroth_real, zeroth_imag = _series(h_left[j], h_right[j], ratio, real, imag)
+        near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
+        for i in range(m):
+            sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
+            cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
+        for i in range(m):
+            log[i] = math.log(4.0 * sine[i] * sine[i]) if abs(sine[i]) > near else 0.0
+        for i in range(m):
+            s, c = sine[i], cosine[i]
+            x = seen[i] - node
+            cot = c / s
+            a = 0.0
+            b = 0.0
+            for p in range(TERMS - 1, -1, -1):
+                a = a * cot + real[p]
+                b = b * cot + imag[p]
+            saw = ratio * (0.5 * x - math.copysign(0.5 * math.pi, x))
+            a += saw * zeroth_real + log[i] * zeroth_imag
+            b += saw * zeroth_imag - log[i] * zeroth_real
+            sin_x, cos_x = 2.0 * s * c, c * c - s * s
+            column_c[i] = a * cos_x - b * sin_x
+            column_d[i] = a * sin_x + b * cos_x
+        for i in range(m):
+            if abs(sine[i]) <= near:
+                column_d[i], column_c[i] = hat_log(seen[i] - node, h_left[j], h_right[j], ratio)
+        for i in range(m):
+            direct[i, j] = scale * column_d[i]
+            cross[i, j] = scale * column_c[i]
+
+
+@compiled
+def cauchy_columns(seen, nodes, h_left, h_right, out):
+    """Principal values of the integrals of cot(x/2) over hats, one column each; arguments as in :func:`log_columns`."""
+    for j in range(nodes.size):
+        for i in range(seen.size):
+            out[i, j] = hat_cauchy(seen[i] - nodes[j], h_left[j], h_right[j])
+
+
+def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, operator):
+    """The symmetric part of the displacements (30), (31): (gap, slip) of tractions (N, T), without the motion.
+
+    Parameters
+    ----------
+    theta, left, right, uniform, closed, ratio
+        As in :func:`fill_log`.
+    uniform_part : float
+        Expansion of the pin, taken off `direct` in the gap of a pressure.
+    operator : ndarray, shape (2n, 2n), Fortran order, output
+        [[direct - uniform_part, cross], [-cross, direct]] / (4 pi), integrated over every hat, columns.
+    """
+    n = theta.size
+    blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    scale = 1.0 / (4.0 * math.pi)
+    (expanded, cross), (mirrored, direct) = blocks[..., : nodes.size]
+    log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross)
+    np.subtract(direct, 0.5 * scale * uniform_part * (h_left + h_right), out=expanded)
+    np.negative(cross, out=mirrored)
+    if uniform:
+        _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
+
+
 def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     """Integrals of direct and cross over every hat, seen from every node.
 
@@ -224,7 +336,8 @@ def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     theta, left, right : ndarray, shape (n,)
         Nodes and the outer knots of their hats, rad; a half hat has its outer knot at the node.
     uniform : bool
-        Nodes are equally spaced: n kernel values fill the matrices, and mirrored entries have the same bits.
+        Nodes are equally spaced: two columns are integrated, the others are copies, and mirrored entries have the
+        same bits.
     closed : bool
         The nodes go round the whole circle.
     ratio : float
@@ -232,54 +345,60 @@ def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     direct, cross : ndarray, shape (n, n), output
         direct[i, j] = int hat_j(xi) (ratio S A - C L)(theta_i - xi) dxi, cross likewise with ratio C A + S L.
     """
-    n = theta.size
-    if not uniform:
-        for j in range(n):
-            h_left = theta[j] - left[j]
-            h_right = right[j] - theta[j]
-            for i in range(n):
-                d, c = hat_log(theta[i] - theta[j], h_left, h_right, ratio)
-                direct[i, j] = d
-                cross[i, j] = c
-        return
-    h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
-    row_d = np.empty(n)
-    row_c = np.empty(n)
-    for k in range(n // 2 + 1 if closed else n):
-        row_d[k], row_c[k] = hat_log(k * h, h, h, ratio)
-    _fill_toeplitz(row_d, 1.0, closed, direct)
-    _fill_toeplitz(row_c, -1.0, closed, cross)
-    if not closed:
-        for i in range(n):
-            d, c = hat_log(i * h, 0.0, h, ratio)
-            direct[i, 0] = d
-            cross[i, 0] = c
-            direct[n - 1 - i, n - 1] = d
-            cross[n - 1 - i, n - 1] = -c
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    log_columns(seen, nodes, h_left, h_right, ratio, 1.0, direct[:, : nodes.size], cross[:, : nodes.size])
+    if uniform:
+        _copy_columns(direct, np.array(1.0), closed)
+        _copy_columns(cross, np.array(-1.0), closed)
 
 
-@compiled
 def fill_cauchy(theta, left, right, uniform, closed, out):
     """Principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
 
     Parameters as in :func:`fill_log`. The half hats of an arc have no principal value at their own nodes:
     out[0, 0] and out[n-1, n-1] are NaN (tractions vanish at the ends of an arc: leave those columns out).
     """
-    n = theta.size
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    cauchy_columns(seen, nodes, h_left, h_right, out[:, : nodes.size])
+    if uniform:
+        _copy_columns(out, np.array(-1.0), closed)
+
+
+def _hats(theta, left, right, uniform, closed):
+    """The hats to be integrated: all; of equally spaced nodes those from which the others follow.
+
+    Returns where they are seen from, shape (n,), and their nodes and distances to the outer knots, shape (k,). Equally
+    spaced nodes are counted from the first one; an arc's first half hat and first whole one are enough, or one hat of
+    a circle.
+    """
     if not uniform:
-        for j in range(n):
-            h_left = theta[j] - left[j]
-            h_right = right[j] - theta[j]
-            for i in range(n):
-                out[i, j] = hat_cauchy(theta[i] - theta[j], h_left, h_right)
-        return
-    h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
-    row = np.empty(n)
-    for k in range(n // 2 + 1 if closed else n):
-        row[k] = hat_cauchy(k * h, h, h)
-    _fill_toeplitz(row, -1.0, closed, out)
-    if not closed:
-        for i in range(n):
-            value = hat_cauchy(i * h, 0.0, h)
-            out[i, 0] = value
-            out[n - 1 - i, n - 1] = -value
+        return theta, theta, theta - left, right - theta
+    n = theta.size
+    h = TWO_PI / n if closed else (theta[-1] - theta[0]) / (n - 1)
+    seen = h * np.arange(n)
+    if closed:
+        return seen, seen[:1], np.array([h]), np.array([h])
+    return seen, seen[:2], np.array([0.0, h]), np.array([h, h])
+
+
+def _copy_columns(out, parity, closed):
+    """The columns of equally spaced nodes from those of :func:`_hats`: entries depend on i - j, with a parity.
+
+    `out` (..., n, n) are matrices of which the first columns are given, `parity` (...) is 1 or -1 for each.
+    """
+    n = out.shape[-1]
+    odd = parity < 0.0
+    parity = parity[..., np.newaxis]
+    if closed:
+        values = out[..., 0].copy()
+        values[..., n // 2 + 1 :] = parity * values[..., (n - 1) // 2 : 0 : -1]
+        if n % 2 == 0:
+            values[odd, n // 2] = 0.0  # odd about the opposite node
+        inner = out
+    else:
+        values = out[..., 1:, 1].copy()
+        out[..., -1] = parity * out[..., ::-1, 0]
+        inner = out[..., 1:-1]
+    mirrored = np.concatenate([parity * values[..., :0:-1], values], axis=-1)
+    windows = sliding_window_view(mirrored, n, axis=-1)
+    inner[...] = windows[..., ::-1, :].swapaxes(-1, -2)
