@@ -43,8 +43,8 @@ AROUND_PI_TERMS = 18
 
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
 
-FAR = 8.0  # lengths of the longer half of a hat beyond which a series in its moments is used
-TERMS = 13  # of that series
+FAR = 6.0  # lengths of the longer half of a hat beyond which a series in its moments is used
+TERMS = 15  # of that series
 HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of half a hat, on (0, 1)
 HAT_POINT = 0.5 * (1.0 + HAT_POINT)
 HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)

@@ -21,7 +21,7 @@ def dense(first, second, cross):
 @pytest.fixture(params=["compiled", "python"])
 def inverse(request, monkeypatch):
     if request.param == "python":
-        for name in ("_predictors", "_fill"):
+        for name in ("_predictor", "_fill"):
             kernel = getattr(toeplitz, name)
             monkeypatch.setattr(toeplitz, name, getattr(kernel, "py_func", kernel))
     return toeplitz.inverse
