@@ -206,39 +206,73 @@ def hat_cauchy(u, h_left, h_right):
 
 
 @compiled
-def _series(h_left, h_right, ratio, real, imag):
-    """Coefficients of :func:`log_columns` for one hat: its moments, by Gauss quadrature over both halves.
+def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
+    """The loops of :func:`log_columns`; `series` as from :func:`_hat_series`."""
+    m = seen.size
+    sin_seen, cos_seen = np.empty(m), np.empty(m)
+    for i in range(m):
+        sin_seen[i] = math.sin(0.5 * seen[i])
+        cos_seen[i] = math.cos(0.5 * seen[i])
+    sine, cosine, log = np.empty(m), np.empty(m), np.empty(m)
+    column_d, column_c = np.empty(m), np.empty(m)
+    for j in range(nodes.size):
+        node = nodes[j]
+        sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
+        real, imag = series[j, 0], series[j, 1]
+        near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
+        for i in range(m):  # of half the distance
+            sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
+            cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
+        for i in range(m):
+            log[i] = math.log(4.0 * sine[i] * sine[i]) if abs(sine[i]) > near else 0.0
+        for i in range(m):
+            s, c = sine[i], cosine[i]
+            cot = c / s
+            a = 0.0
+            b = 0.0
+            for p in range(TERMS - 1, -1, -1):
+                a = a * cot + real[p]
+                b = b * cot + imag[p]
+            x = seen[i] - node
+            saw = ratio * (0.5 * x - math.copysign(0.5 * math.pi, x))
+            a += saw * real[TERMS] + log[i] * imag[TERMS]
+            b += saw * imag[TERMS] - log[i] * real[TERMS]
+            sin_x, cos_x = 2.0 * s * c, c * c - s * s
+            column_c[i] = a * cos_x - b * sin_x
+            column_d[i] = a * sin_x + b * cos_x
+        for i in range(m):
+            if abs(sine[i]) <= near:
+                column_d[i], column_c[i] = hat_log(seen[i] - node, h_left[j], h_right[j], ratio)
+        for i in range(m):
+            direct[i, j] = scale * column_d[i]
+            cross[i, j] = scale * column_c[i]
 
-    Returns the real and imaginary part of int hat exp(-it) dt; the others come in `real` and `imag`, shape (TERMS,).
+
+def _hat_series(h_left, h_right, ratio):
+    """Coefficients of the powers of cot(x/2) in :func:`log_columns` for each hat, by Gauss quadrature over its halves.
+
+    Returns
+    -------
+    series : ndarray, shape (k, 2, TERMS + 1)
+        Real and imaginary parts; last the factor of ratio A(x) - i L(x).
     """
-    zeroth_real, zeroth_imag = 0.0, 0.0
-    for p in range(TERMS):
-        real[p] = imag[p] = 0.0
-    for side in (-1.0, 1.0):
-        h = h_left if side < 0.0 else h_right
-        for k in range(HAT_POINT.size):
-            t = side * h * HAT_POINT[k]
-            weight = h * HAT_WEIGHT[k]
-            tangent = math.tan(0.5 * t)
-            c, s = weight * math.cos(t), -weight * math.sin(t)
-            zeroth_real += c
-            zeroth_imag += s
-            constant = math.log1p(tangent * tangent)  # -2 ln cos(t/2)
-            real[0] -= 0.5 * ratio * t * c + constant * s
-            imag[0] -= 0.5 * ratio * t * s - constant * c
-            for p in range(1, TERMS):
-                c *= tangent
-                s *= tangent
-                real[p] -= 2.0 / p * s
-                imag[p] += 2.0 / p * c
-    return zeroth_real, zeroth_imag
+    t = np.hstack([np.multiply.outer(h_right, HAT_POINT), np.multiply.outer(-h_left, HAT_POINT)])
+    weight = np.hstack([np.multiply.outer(h_right, HAT_WEIGHT), np.multiply.outer(h_left, HAT_WEIGHT)])
+    tangent = np.tan(0.5 * t)
+    moment = weight * np.exp(-1j * t)
+    series = np.empty((h_left.size, TERMS + 1), dtype=complex)
+    series[:, TERMS] = moment.sum(axis=1)
+    series[:, 0] = (moment * (1j * np.log1p(tangent * tangent) - 0.5 * ratio * t)).sum(axis=1)  # ln cos(t/2)
+    for p in range(1, TERMS):
+        moment *= tangent
+        series[:, p] = 2j / p * moment.sum(axis=1)
+    return np.stack([series.real, series.imag], axis=1)
 
 
-@compiled
 def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
     """`scale` times the integrals of direct and cross over hats, one column for each hat.
 
-    Far from a hat's node, at x = seen - node, the kernels at x - t are those of
+    Far from a hat's node, at x = seen - node, the kernels at x - t are
 
         cross + i direct = exp(i (x - t)) [ratio A(x - t) - i L(x - t)],
         A(x - t) = A(x) - t/2,   L(x - t) = L(x) + 2 ln cos(t/2) - 2 sum_p (cot(x/2) tan(t/2))^p / p,
@@ -255,45 +289,8 @@ def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
         alpha*/beta*; a factor.
     direct, cross : ndarray, shape (m, k), output
     """
-    m = seen.size
-    sin_seen, cos_seen = np.empty(m), np.empty(m)
-    for i in range(m):
-        sin_seen[i] = math.sin(0.5 * seen[i])
-        cos_seen[i] = math.cos(0.5 * seen[i])
-    sine, cosine, log = np.empty(m), np.empty(m), np.empty(m)
-    column_d, column_c = np.empty(m), np.empty(m)
-    real, imag = np.empty(TERMS), np.empty(TERMS)
-    for j in range(nodes.size):
-        node = nodes[j]
-        sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
-        zeroth_real, zeroth_imag = _series(h_left[j], h_right[j], ratio, real, imag)
-        near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
-        for i in range(m):
-            sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
-            cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
-        for i in range(m):
-            log[i] = math.log(4.0 * sine[i] * sine[i]) if abs(sine[i]) > near else 0.0
-        for i in range(m):
-            s, c = sine[i], cosine[i]
-            x = seen[i] - node
-            cot = c / s
-            a = 0.0
-            b = 0.0
-            for p in range(TERMS - 1, -1, -1):
-                a = a * cot + real[p]
-                b = b * cot + imag[p]
-            saw = ratio * (0.5 * x - math.copysign(0.5 * math.pi, x))
-            a += saw * zeroth_real + log[i] * zeroth_imag
-            b += saw * zeroth_imag - log[i] * zeroth_real
-            sin_x, cos_x = 2.0 * s * c, c * c - s * s
-            column_c[i] = a * cos_x - b * sin_x
-            column_d[i] = a * sin_x + b * cos_x
-        for i in range(m):
-            if abs(sine[i]) <= near:
-                column_d[i], column_c[i] = hat_log(seen[i] - node, h_left[j], h_right[j], ratio)
-        for i in range(m):
-            direct[i, j] = scale * column_d[i]
-            cross[i, j] = scale * column_c[i]
+    series = _hat_series(h_left, h_right, ratio)
+    _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross)
 
 
 @compiled

@@ -59,7 +59,10 @@ def _predictor(first, second, cross, F, error):
 
 @compiled
 def _fill(before, after, out):
-    """out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1] from the first row and column of out (m, m)."""
+    """out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1]; its first row and column are given.
+
+    `before` and `after` are (4, m - 1).
+    """
     m = out.shape[0]
     for i in range(1, m):
         a, b, c, d = before[0, i - 1], before[1, i - 1], before[2, i - 1], before[3, i - 1]
