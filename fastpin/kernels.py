@@ -213,7 +213,7 @@ def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
     for i in range(m):
         sin_seen[i] = math.sin(0.5 * seen[i])
         cos_seen[i] = math.cos(0.5 * seen[i])
-    sine, cosine, log = np.empty(m), np.empty(m), np.empty(m)
+    sine, cosine, cot, log = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
     column_d, column_c = np.empty(m), np.empty(m)
     for j in range(nodes.size):
         node = nodes[j]
@@ -224,19 +224,20 @@ def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
             sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
             cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
         for i in range(m):
-            log[i] = math.log(4.0 * sine[i] * sine[i]) if abs(sine[i]) > near else 0.0
+            far = abs(sine[i]) > near
+            cot[i] = cosine[i] / sine[i] if far else 0.0
+            log[i] = math.log(4.0 * sine[i] * sine[i]) if far else 0.0
         for i in range(m):
-            s, c = sine[i], cosine[i]
-            cot = c / s
             a = 0.0
             b = 0.0
             for p in range(TERMS - 1, -1, -1):
-                a = a * cot + real[p]
-                b = b * cot + imag[p]
+                a = a * cot[i] + real[p]
+                b = b * cot[i] + imag[p]
             x = seen[i] - node
             saw = ratio * (0.5 * x - math.copysign(0.5 * math.pi, x))
             a += saw * real[TERMS] + log[i] * imag[TERMS]
             b += saw * imag[TERMS] - log[i] * real[TERMS]
+            s, c = sine[i], cosine[i]
             sin_x, cos_x = 2.0 * s * c, c * c - s * s
             column_c[i] = a * cos_x - b * sin_x
             column_d[i] = a * sin_x + b * cos_x
