@@ -20,24 +20,24 @@ the paper (R = F = beta* = 1). All arrays of a state have one entry per node, sh
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
-from fastpin.errors import (
-    ArcError,
-    ConvergenceError,
-    FastpinError,
-    InputError,
-    NoEquilibriumError,
-    SolveError,
-)
-from fastpin.grid import Grid
-from fastpin.loading import LoadHistory
-from fastpin.materials import MATERIALS, Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Result, State
-
 if TYPE_CHECKING:
+    from fastpin.errors import (
+        ArcError,
+        ConvergenceError,
+        FastpinError,
+        InputError,
+        NoEquilibriumError,
+        SolveError,
+    )
+    from fastpin.grid import Grid
+    from fastpin.loading import LoadHistory
+    from fastpin.materials import MATERIALS, Material, MaterialPair
+    from fastpin.problem import Problem
     from fastpin.solver import solve
+    from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Result, State
 
 __version__ = "0.1.0"
 
@@ -63,12 +63,27 @@ __all__ = [
     "solve",
 ]
 
+_MODULES = {
+    "errors": ("ArcError", "ConvergenceError", "FastpinError", "InputError", "NoEquilibriumError", "SolveError"),
+    "grid": ("Grid",),
+    "loading": ("LoadHistory",),
+    "materials": ("MATERIALS", "Material", "MaterialPair"),
+    "problem": ("Problem",),
+    "solver": ("solve",),
+    "state": ("OPEN", "SLIP_NEGATIVE", "SLIP_POSITIVE", "STICK", "Result", "State"),
+}
+"""Where the names of ``__all__`` are defined."""
+
 
 def __getattr__(name: str) -> Any:
-    """Import the solver, and with it the compiled code, only when it is asked for."""
-    if name == "solve":
-        from fastpin.solver import solve
-
-        globals()["solve"] = solve
-        return solve
+    """Import a public name only when it is asked for: the command line answers at once when it needs none."""
+    for module, names in _MODULES.items():
+        if name in names:
+            value = getattr(importlib.import_module(f"fastpin.{module}"), name)
+            globals()[name] = value
+            return value
     raise AttributeError(f"module 'fastpin' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from fastpin.caselines import CaseText, Section, choice, closest, number, shown, string, whole
 from fastpin.caseloads import check_loads, read_history
-from fastpin.errors import InputError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.loading import LOADS, LoadHistory
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
@@ -49,22 +49,6 @@ _KEYS: dict[str, tuple[str, ...]] = {
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # where a pair is wrong, to check the rest
 
 T = TypeVar("T")
-
-
-class CaseFileError(InputError):
-    """A case file with faults.
-
-    Attributes
-    ----------
-    problems : list of (int, str)
-        Line, from 1, and one sentence for each fault, in the order of the lines. Line 0 is the whole file.
-    """
-
-    def __init__(self, name: str, problems: list[tuple[int, str]]) -> None:
-        self.problems = sorted(problems, key=lambda problem: problem[0])
-        super().__init__(name, self.problems[0][1])
-        lines = [f"{name}{f', line {line}' if line else ''}: {text}" for line, text in self.problems]
-        self.args = ("\n".join(lines),)
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``, ``fastpin paper``.
 
-Solver, figures and storage are imported when they are needed, so that help and checks answer at once.
+Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
+the solver.
 """
 
 from __future__ import annotations
@@ -15,13 +16,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastpin import __version__, paper
-from fastpin.casefile import EXAMPLE, Case, CaseFileError, builtin_case, checked_between, read_case
-from fastpin.errors import FastpinError, InputError, SolveError
+from fastpin import __version__
+from fastpin.errors import CaseFileError, FastpinError, InputError, SolveError
 from fastpin.files import check_writable, replacing
-from fastpin.report import describe, state_table, summary
 
 if TYPE_CHECKING:
+    from fastpin.casefile import Case
     from fastpin.state import Result
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
@@ -119,7 +119,7 @@ def _parser() -> argparse.ArgumentParser:
         help="a figure's number, 3 to 17, or one that the paper does not have: memory, sliding-onset, half-plane, "
         "rigid-pin (may be repeated; default: all of the paper)",
     )
-    figures.add_argument("--nodes", type=int, default=paper.NODES, help=f"number of nodes (default {paper.NODES})")
+    figures.add_argument("--nodes", type=int, help="number of nodes (default 400)")
     figures.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
@@ -128,16 +128,24 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _example(_: argparse.Namespace) -> int:
+    from fastpin.casefile import EXAMPLE
+
     print(EXAMPLE, end="")
     return EXIT_OK
 
 
 def _check(options: argparse.Namespace) -> int:
+    from fastpin.casefile import read_case
+    from fastpin.report import describe
+
     print(describe(read_case(options.case)))
     return EXIT_OK
 
 
 def _run(options: argparse.Namespace) -> int:
+    from fastpin.casefile import builtin_case, read_case
+    from fastpin.report import summary
+
     case = builtin_case() if options.case is None else read_case(options.case)
     case = _overridden(case, options)
     _check_outputs(options)
@@ -171,9 +179,12 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _paper(options: argparse.Namespace) -> int:
+    from fastpin import paper
+
+    nodes = paper.NODES if options.nodes is None else options.nodes
     try:
         names = list(dict.fromkeys(paper.known(name) for name in options.figure or paper.PAPER))
-        paper.check(names, options.output, options.nodes)
+        paper.check(names, options.output, nodes)
     except InputError as error:
         option = f"--{error.field}" if error.field in vars(options) else error.field
         raise InputError(option, error.reason) from None
@@ -183,9 +194,7 @@ def _paper(options: argparse.Namespace) -> int:
             for name in names:
                 began = time.perf_counter()
                 bar.set_description_str(name, refresh=False)
-                files = paper.make(
-                    name, options.output, options.nodes, lambda part: bar.update(len(finished) + part - bar.n)
-                )
+                files = paper.make(name, options.output, nodes, lambda part: bar.update(len(finished) + part - bar.n))
                 finished.append(name)
                 seconds = time.perf_counter() - began
                 bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
@@ -210,6 +219,8 @@ def _overridden(case: Case, options: argparse.Namespace) -> Case:
 
 
 def _between(text: str) -> int | tuple[float, ...]:
+    from fastpin.casefile import checked_between
+
     try:
         value: object = int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
     except ValueError:
@@ -267,6 +278,8 @@ def _bar(total: int, text: str) -> Any:
 
 
 def _print_states(case: Case, result: Result | None) -> None:
+    from fastpin.report import state_table
+
     if case.title:
         print(case.title)
     if result is None or not len(result):

@@ -124,17 +124,11 @@ class System:
         pair = problem.pair
         n, theta = grid.size, grid.theta
         left, right = grid.knots()
-        direct, cross = np.empty((n, n)), np.empty((n, n))
-        ratio = pair.alpha_star / pair.beta_star
-        kernels.fill_log(theta, left, right, grid.uniform, grid.closed, ratio, direct, cross)
-
-        operator = np.empty((2 * n, 2 * n), order="F")
         weights = grid.weights
+        ratio = pair.alpha_star / pair.beta_star
         uniform_part = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
-        operator[:n, :n] = (direct - uniform_part * weights) / (4.0 * math.pi)
-        operator[:n, n:] = cross / (4.0 * math.pi)
-        operator[n:, :n] = -cross / (4.0 * math.pi)
-        operator[n:, n:] = direct / (4.0 * math.pi)
+        operator = np.empty((2 * n, 2 * n), order="F")
+        kernels.fill_operator(theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])

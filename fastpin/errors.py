@@ -24,6 +24,22 @@ class InputError(FastpinError, ValueError):
         self.reason = message
 
 
+class CaseFileError(InputError):
+    """A case file with faults.
+
+    Attributes
+    ----------
+    problems : list of (int, str)
+        Line, from 1, and one sentence for each fault, in the order of the lines. Line 0 is the whole file.
+    """
+
+    def __init__(self, name: str, problems: list[tuple[int, str]]) -> None:
+        self.problems = sorted(problems, key=lambda problem: problem[0])
+        super().__init__(name, self.problems[0][1])
+        lines = [f"{name}{f', line {line}' if line else ''}: {text}" for line, text in self.problems]
+        self.args = ("\n".join(lines),)
+
+
 class SolveError(FastpinError):
     """A history that could not be followed to its end.
 

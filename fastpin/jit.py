@@ -1,14 +1,28 @@
 """The one place for the settings of compiled code.
 
-Set ``FASTPIN_CACHE=0`` to compile without an on-disk cache; Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything
-as plain Python.
+What is compiled is kept beside the package, or in the user's cache directory where the package can't be written; where
+neither can, it is compiled again in every process. Set ``FASTPIN_CACHE=0`` to compile without an on-disk cache;
+Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything as plain Python.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from typing import Any
 
 import numba
 
-compiled = numba.njit(cache=os.environ.get("FASTPIN_CACHE", "1") != "0", error_model="numpy", nogil=True)
-"""Decorator of every kernel: cached, no fastmath, no parallel sums, division by zero gives inf or nan."""
+CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
+SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+"""No fastmath, no parallel sums; division by zero gives inf or nan; nothing is called from C, which saves compiling."""
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator of every kernel."""
+    if CACHED:
+        try:
+            return numba.njit(cache=True, **SETTINGS)(function)
+        except RuntimeError:  # there is no directory that can be written
+            pass
+    return numba.njit(**SETTINGS)(function)

@@ -16,7 +16,8 @@ A hat is two half hats, and a half hat that falls from 1 at u = theta - node to 
 
 K1 and K2 vanish at 0 (but for K1 = L of the cotangent), so that their difference near a node keeps its
 digits. Further away than 8 lengths of the half hat it would lose them; there 4-point Gauss quadrature is
-right to 1e-12.
+right to 1e-12. That is for single hats. In matrices nearly all hats are seen from afar, and are summed up by their
+moments (:func:`log_columns`), to 1e-14.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import zeta
 
 from fastpin.jit import compiled
@@ -41,6 +43,12 @@ AROUND_ZERO_TERMS = 14
 AROUND_PI_TERMS = 18
 
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
+
+FAR = 6.0  # lengths of the longer half of a hat beyond which a series in its moments is used
+TERMS = 15  # of that series
+HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of half a hat, on (0, 1)
+HAT_POINT = 0.5 * (1.0 + HAT_POINT)
+HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
 
 
 @compiled
@@ -199,23 +207,126 @@ def hat_cauchy(u, h_left, h_right):
 
 
 @compiled
-def _fill_toeplitz(values, parity, closed, out):
-    """out[i, j] = values[i - j], with values[-k] = parity values[k]; mirrored entries have the same bits.
+def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
+    """The loops of :func:`log_columns`; `series` as from :func:`_hat_series`."""
+    m = seen.size
+    sin_seen, cos_seen = np.empty(m), np.empty(m)
+    for i in range(m):
+        sin_seen[i] = math.sin(0.5 * seen[i])
+        cos_seen[i] = math.cos(0.5 * seen[i])
+    sine, cosine, cot, log = np.empty(m), np.empty(m), np.empty(m), np.empty(m)
+    column_d, column_c = np.empty(m), np.empty(m)
+    for j in range(nodes.size):
+        node = nodes[j]
+        sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
+        real, imag = series[j, 0], series[j, 1]
+        near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
+        for i in range(m):  # of half the distance
+            sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
+            cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
+        for i in range(m):
+            far = abs(sine[i]) > near
+            cot[i] = cosine[i] / sine[i] if far else 0.0
+            log[i] = math.log(4.0 * sine[i] * sine[i]) if far else 0.0
+        for i in range(m):
+            a = 0.0
+            b = 0.0
+            for p in range(TERMS - 1, -1, -1):
+                a = a * cot[i] + real[p]
+                b = b * cot[i] + imag[p]
+            x = seen[i] - node
+            saw = ratio * (0.5 * x - math.copysign(0.5 * math.pi, x))
+            a += saw * real[TERMS] + log[i] * imag[TERMS]
+            b += saw * imag[TERMS] - log[i] * real[TERMS]
+            s, c = sine[i], cosine[i]
+            sin_x, cos_x = 2.0 * s * c, c * c - s * s
+            column_c[i] = a * cos_x - b * sin_x
+            column_d[i] = a * sin_x + b * cos_x
+        for i in range(m):
+            if abs(sine[i]) <= near:
+                column_d[i], column_c[i] = hat_log(seen[i] - node, h_left[j], h_right[j], ratio)
+        for i in range(m):
+            direct[i, j] = scale * column_d[i]
+            cross[i, j] = scale * column_c[i]
 
-    On a circle only the first half of `values` is given; the rest follows by symmetry.
+
+def _hat_series(h_left, h_right, ratio):
+    """Coefficients of the powers of cot(x/2) in :func:`log_columns` for each hat, by Gauss quadrature over its halves.
+
+    Returns
+    -------
+    series : ndarray, shape (k, 2, TERMS + 1)
+        Real and imaginary parts; last the factor of ratio A(x) - i L(x).
     """
-    n = values.size
-    if closed:
-        for k in range(n // 2 + 1, n):
-            values[k] = parity * values[n - k]
-        if parity < 0.0 and n % 2 == 0:
-            values[n // 2] = 0.0  # odd about the opposite node
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = values[i - j] if i >= j else parity * values[j - i]
+    t = np.hstack([np.multiply.outer(h_right, HAT_POINT), np.multiply.outer(-h_left, HAT_POINT)])
+    weight = np.hstack([np.multiply.outer(h_right, HAT_WEIGHT), np.multiply.outer(h_left, HAT_WEIGHT)])
+    tangent = np.tan(0.5 * t)
+    moment = weight * np.exp(-1j * t)
+    series = np.empty((h_left.size, TERMS + 1), dtype=complex)
+    series[:, TERMS] = moment.sum(axis=1)
+    series[:, 0] = (moment * (1j * np.log1p(tangent * tangent) - 0.5 * ratio * t)).sum(axis=1)  # ln cos(t/2)
+    for p in range(1, TERMS):
+        moment *= tangent
+        series[:, p] = 2j / p * moment.sum(axis=1)
+    return np.stack([series.real, series.imag], axis=1)
+
+
+def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
+    """`scale` times the integrals of direct and cross over hats, one column for each hat.
+
+    Far from a hat's node, at x = seen - node, the kernels at x - t are
+
+        cross + i direct = exp(i (x - t)) [ratio A(x - t) - i L(x - t)],
+        A(x - t) = A(x) - t/2,   L(x - t) = L(x) + 2 ln cos(t/2) - 2 sum_p (cot(x/2) tan(t/2))^p / p,
+
+    so that a hat is known by its moments, and a point costs one logarithm and a polynomial in cot(x/2).
+
+    Parameters
+    ----------
+    seen : ndarray, shape (m,)
+        Angles at which the integrals are taken, rad.
+    nodes, h_left, h_right : ndarray, shape (k,)
+        Nodes of the hats and distances to their outer knots, rad. `seen` and `nodes` lie within one turn.
+    ratio, scale : float
+        alpha*/beta*; a factor.
+    direct, cross : ndarray, shape (m, k), output
+    """
+    series = _hat_series(h_left, h_right, ratio)
+    _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross)
 
 
 @compiled
+def cauchy_columns(seen, nodes, h_left, h_right, out):
+    """Principal values of the integrals of cot(x/2) over hats, one column each; arguments as in :func:`log_columns`."""
+    for j in range(nodes.size):
+        for i in range(seen.size):
+            out[i, j] = hat_cauchy(seen[i] - nodes[j], h_left[j], h_right[j])
+
+
+def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, operator):
+    """The symmetric part of the displacements (30), (31): (gap, slip) of tractions (N, T), without the motion.
+
+    Parameters
+    ----------
+    theta, left, right, uniform, closed, ratio
+        As in :func:`fill_log`.
+    uniform_part : float
+        Expansion of the pin, taken off `direct` in the gap of a pressure.
+    operator : ndarray, shape (2n, 2n), Fortran order, output
+        [[direct - uniform_part, cross], [-cross, direct]] / (4 pi), integrated over every hat, columns.
+    """
+    n = theta.size
+    blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    scale = 1.0 / (4.0 * math.pi)
+    (expanded, cross), (mirrored, direct) = blocks[..., : nodes.size]
+    log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross)
+    np.subtract(direct, 0.5 * scale * uniform_part * (h_left + h_right), out=expanded)
+    np.negative(cross, out=mirrored)
+    if uniform:
+        _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
+
+
 def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     """Integrals of direct and cross over every hat, seen from every node.
 
@@ -224,7 +335,8 @@ def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     theta, left, right : ndarray, shape (n,)
         Nodes and the outer knots of their hats, rad; a half hat has its outer knot at the node.
     uniform : bool
-        Nodes are equally spaced: n kernel values fill the matrices, and mirrored entries have the same bits.
+        Nodes are equally spaced: two columns are integrated, the others are copies, and mirrored entries have the
+        same bits.
     closed : bool
         The nodes go round the whole circle.
     ratio : float
@@ -232,54 +344,60 @@ def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
     direct, cross : ndarray, shape (n, n), output
         direct[i, j] = int hat_j(xi) (ratio S A - C L)(theta_i - xi) dxi, cross likewise with ratio C A + S L.
     """
-    n = theta.size
-    if not uniform:
-        for j in range(n):
-            h_left = theta[j] - left[j]
-            h_right = right[j] - theta[j]
-            for i in range(n):
-                d, c = hat_log(theta[i] - theta[j], h_left, h_right, ratio)
-                direct[i, j] = d
-                cross[i, j] = c
-        return
-    h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
-    row_d = np.empty(n)
-    row_c = np.empty(n)
-    for k in range(n // 2 + 1 if closed else n):
-        row_d[k], row_c[k] = hat_log(k * h, h, h, ratio)
-    _fill_toeplitz(row_d, 1.0, closed, direct)
-    _fill_toeplitz(row_c, -1.0, closed, cross)
-    if not closed:
-        for i in range(n):
-            d, c = hat_log(i * h, 0.0, h, ratio)
-            direct[i, 0] = d
-            cross[i, 0] = c
-            direct[n - 1 - i, n - 1] = d
-            cross[n - 1 - i, n - 1] = -c
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    log_columns(seen, nodes, h_left, h_right, ratio, 1.0, direct[:, : nodes.size], cross[:, : nodes.size])
+    if uniform:
+        _copy_columns(direct, np.array(1.0), closed)
+        _copy_columns(cross, np.array(-1.0), closed)
 
 
-@compiled
 def fill_cauchy(theta, left, right, uniform, closed, out):
     """Principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
 
     Parameters as in :func:`fill_log`. The half hats of an arc have no principal value at their own nodes:
     out[0, 0] and out[n-1, n-1] are NaN (tractions vanish at the ends of an arc: leave those columns out).
     """
-    n = theta.size
+    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    cauchy_columns(seen, nodes, h_left, h_right, out[:, : nodes.size])
+    if uniform:
+        _copy_columns(out, np.array(-1.0), closed)
+
+
+def _hats(theta, left, right, uniform, closed):
+    """The hats to be integrated: all; of equally spaced nodes those from which the others follow.
+
+    Returns where they are seen from, shape (n,), and their nodes and distances to the outer knots, shape (k,). Equally
+    spaced nodes are counted from the first one; an arc's first half hat and first whole one are enough, or one hat of
+    a circle.
+    """
     if not uniform:
-        for j in range(n):
-            h_left = theta[j] - left[j]
-            h_right = right[j] - theta[j]
-            for i in range(n):
-                out[i, j] = hat_cauchy(theta[i] - theta[j], h_left, h_right)
-        return
-    h = TWO_PI / n if closed else (theta[n - 1] - theta[0]) / (n - 1)
-    row = np.empty(n)
-    for k in range(n // 2 + 1 if closed else n):
-        row[k] = hat_cauchy(k * h, h, h)
-    _fill_toeplitz(row, -1.0, closed, out)
-    if not closed:
-        for i in range(n):
-            value = hat_cauchy(i * h, 0.0, h)
-            out[i, 0] = value
-            out[n - 1 - i, n - 1] = -value
+        return theta, theta, theta - left, right - theta
+    n = theta.size
+    h = TWO_PI / n if closed else (theta[-1] - theta[0]) / (n - 1)
+    seen = h * np.arange(n)
+    if closed:
+        return seen, seen[:1], np.array([h]), np.array([h])
+    return seen, seen[:2], np.array([0.0, h]), np.array([h, h])
+
+
+def _copy_columns(out, parity, closed):
+    """The columns of equally spaced nodes from those of :func:`_hats`: entries depend on i - j, with a parity.
+
+    `out` (..., n, n) are matrices of which the first columns are given, `parity` (...) is 1 or -1 for each.
+    """
+    n = out.shape[-1]
+    odd = parity < 0.0
+    parity = parity[..., np.newaxis]
+    if closed:
+        values = out[..., 0].copy()
+        values[..., n // 2 + 1 :] = parity * values[..., (n - 1) // 2 : 0 : -1]
+        if n % 2 == 0:
+            values[odd, n // 2] = 0.0  # odd about the opposite node
+        inner = out
+    else:
+        values = out[..., 1:, 1].copy()
+        out[..., -1] = parity * out[..., ::-1, 0]
+        inner = out[..., 1:-1]
+    mirrored = np.concatenate([parity * values[..., :0:-1], values], axis=-1)
+    windows = sliding_window_view(mirrored, n, axis=-1)
+    inner[...] = windows[..., ::-1, :].swapaxes(-1, -2)

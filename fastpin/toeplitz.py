@@ -4,6 +4,9 @@ On equally spaced nodes the operator of m neighbours that all stick is such a ma
 two nodes only. Its inverse follows from its first and last block columns (Whittle's recursion, the block form of
 Levinson's) by a recurrence along the diagonals (Gohberg, Semencul and Heinig). A factorisation takes O(m^3).
 
+Seen from the other end the nodes are the same with the shear turned round, D = diag(1, -1): blocks at opposite
+distances are B(-k) = D B(k) D, and the last block column of the inverse is the first one in reverse, D F D.
+
 Blocks of two are kept as four rows, 00, 01, 10 and 11, of arrays (4, m).
 """
 
@@ -13,84 +16,59 @@ import numpy as np
 
 from fastpin.jit import compiled
 
+TURNED = np.array([1.0, -1.0, -1.0, 1.0])
+"""D B D of a block B."""
+
 
 @compiled
-def _predictors(first, second, cross, forward, backward, errors):
-    """Block columns F, G with T F = (E, 0, ..., 0) and T G = (0, ..., 0, E'); F begins and G ends with the unit matrix.
+def _predictor(first, second, cross, F, error):
+    """The block column F with T F = (E, 0, ..., 0) that begins with the unit matrix, by Whittle's recursion.
 
     `first`, `second` (even) and `cross` (odd), shape (m,), are the entries [[first, cross], [-cross, second]] of T at
-    the distances 0 to m - 1. F and G come in `forward` and `backward`, shape (2, 4, m), at the first index that is
-    returned, E and E' in `errors`, shape (2, 4).
+    the distances 0 to m - 1. `F` (4, m) and `error` (4,), which is E, are output.
     """
-    m = first.size
-    now = 0
-    forward[0, 0, 0] = forward[0, 3, 0] = backward[0, 0, 0] = backward[0, 3, 0] = 1.0
-    forward[0, 1, 0] = forward[0, 2, 0] = backward[0, 1, 0] = backward[0, 2, 0] = 0.0
+    F[:, :] = 0.0
+    F[0, 0] = F[3, 0] = 1.0
     e00, e01, e10, e11 = first[0], cross[0], -cross[0], second[0]
-    b00, b01, b10, b11 = e00, e01, e10, e11
-    for k in range(1, m):
-        F, G = forward[now], backward[now]
-        # What the extended columns leave in the new block row: g below F, h above G.
-        g00 = g01 = g10 = g11 = h00 = h01 = h10 = h11 = 0.0
+    for k in range(1, first.size):
+        # What the column, extended by a zero, leaves in the new block row.
+        g00 = g01 = g10 = g11 = 0.0
         for j in range(k):
             a, b, c = first[k - j], cross[k - j], second[k - j]
             g00 += a * F[0, j] + b * F[2, j]
             g01 += a * F[1, j] + b * F[3, j]
             g10 += c * F[2, j] - b * F[0, j]
             g11 += c * F[3, j] - b * F[1, j]
-            a, b, c = first[j + 1], cross[j + 1], second[j + 1]
-            h00 += a * G[0, j] - b * G[2, j]
-            h01 += a * G[1, j] - b * G[3, j]
-            h10 += c * G[2, j] + b * G[0, j]
-            h11 += c * G[3, j] + b * G[1, j]
-        # p = E'^-1 g, q = E^-1 h
-        d = b00 * b11 - b01 * b10
-        p00, p01 = (b11 * g00 - b01 * g10) / d, (b11 * g01 - b01 * g11) / d
-        p10, p11 = (b00 * g10 - b10 * g00) / d, (b00 * g11 - b10 * g01) / d
+        # D p = E^-1 D g takes it away: F_j - D F_{k-j} D p, two blocks at a time.
         d = e00 * e11 - e01 * e10
-        q00, q01 = (e11 * h00 - e01 * h10) / d, (e11 * h01 - e01 * h11) / d
-        q10, q11 = (e00 * h10 - e10 * h00) / d, (e00 * h11 - e10 * h01) / d
-        for r in range(4):
-            F[r, k] = 0.0
-        X, Y = forward[1 - now], backward[1 - now]
-        for j in range(k + 1):
-            s, t, u, v = (G[0, j - 1], G[1, j - 1], G[2, j - 1], G[3, j - 1]) if j > 0 else (0.0, 0.0, 0.0, 0.0)
-            X[0, j], X[1, j] = F[0, j] - s * p00 - t * p10, F[1, j] - s * p01 - t * p11
-            X[2, j], X[3, j] = F[2, j] - u * p00 - v * p10, F[3, j] - u * p01 - v * p11
-            Y[0, j], Y[1, j] = s - F[0, j] * q00 - F[1, j] * q10, t - F[0, j] * q01 - F[1, j] * q11
-            Y[2, j], Y[3, j] = u - F[2, j] * q00 - F[3, j] * q10, v - F[2, j] * q01 - F[3, j] * q11
-        e00, e01 = e00 - h00 * p00 - h01 * p10, e01 - h00 * p01 - h01 * p11
-        e10, e11 = e10 - h10 * p00 - h11 * p10, e11 - h10 * p01 - h11 * p11
-        b00, b01 = b00 - g00 * q00 - g01 * q10, b01 - g00 * q01 - g01 * q11
-        b10, b11 = b10 - g10 * q00 - g11 * q10, b11 - g10 * q01 - g11 * q11
-        now = 1 - now
-    errors[0, 0], errors[0, 1], errors[0, 2], errors[0, 3] = e00, e01, e10, e11
-    errors[1, 0], errors[1, 1], errors[1, 2], errors[1, 3] = b00, b01, b10, b11
-    return now
+        p00, p01 = (e11 * g00 + e01 * g10) / d, (e11 * g01 + e01 * g11) / d
+        p10, p11 = (e00 * g10 + e10 * g00) / d, (e00 * g11 + e10 * g01) / d
+        for j in range(k // 2 + 1):
+            i = k - j
+            s, t, u, v = F[0, j], F[1, j], F[2, j], F[3, j]
+            w, x, y, z = F[0, i], F[1, i], F[2, i], F[3, i]
+            F[0, j], F[1, j] = s - w * p00 + x * p10, t - w * p01 + x * p11
+            F[2, j], F[3, j] = u + y * p00 - z * p10, v + y * p01 - z * p11
+            F[0, i], F[1, i] = w - s * p00 + t * p10, x - s * p01 + t * p11
+            F[2, i], F[3, i] = y + u * p00 - v * p10, z + u * p01 - v * p11
+        # E - D g D p
+        e00, e01 = e00 - g00 * p00 + g01 * p10, e01 - g00 * p01 + g01 * p11
+        e10, e11 = e10 + g10 * p00 - g11 * p10, e11 + g10 * p01 - g11 * p11
+    error[0], error[1], error[2], error[3] = e00, e01, e10, e11
 
 
 @compiled
-def _fill(F, G, left, left_back, out):
-    """The inverse (2m, 2m) from F, G and left = F E^-1, left_back = G E'^-1, all (4, m)."""
-    m = F.shape[1]
-    for r in range(2):
-        for s in range(2):
-            for j in range(m):
-                # the first block row is the first block column transposed: T is symmetric
-                out[r * m, s * m + j] = left[2 * s + r, j]
-    for i in range(m - 1):
-        for r in range(2):
-            a, b = left[2 * r, i + 1], left[2 * r + 1, i + 1]
-            c, d = left_back[2 * r, i], left_back[2 * r + 1, i]
-            for s in range(2):
-                row, above = r * m + i + 1, r * m + i
-                out[row, s * m] = left[2 * r + s, i + 1]
-                for j in range(m - 1):
-                    out[row, s * m + j + 1] = (
-                        out[above, s * m + j]
-                        + (a * F[2 * s, j + 1] + b * F[2 * s + 1, j + 1])
-                        - (c * G[2 * s, j] + d * G[2 * s + 1, j])
-                    )
+def _fill(before, after, out):
+    """out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1]; its first row and column are given.
+
+    `before` and `after` are (4, m - 1).
+    """
+    m = out.shape[0]
+    for i in range(1, m):
+        a, b, c, d = before[0, i - 1], before[1, i - 1], before[2, i - 1], before[3, i - 1]
+        for j in range(1, m):
+            step = (a * after[0, j - 1] + b * after[1, j - 1]) + (c * after[2, j - 1] + d * after[3, j - 1])
+            out[i, j] = out[i - 1, j - 1] + step
 
 
 @compiled
@@ -160,13 +138,20 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     if a leading block is singular.
     """
     m = first.size
-    forward, backward, errors = np.empty((2, 4, m)), np.empty((2, 4, m)), np.empty((2, 4))
-    now = _predictors(first, second, cross, forward, backward, errors)
-    F, G = forward[now], backward[now]
+    forward, error = np.empty((4, m)), np.empty(4)
+    _predictor(first, second, cross, forward, error)
     with np.errstate(divide="ignore", invalid="ignore"):
-        left, left_back = (_divided(column, error) for column, error in zip((F, G), errors, strict=True))
+        column = _divided(forward, error)
+    backward, last = (TURNED[:, np.newaxis] * blocks[:, ::-1] for blocks in (forward, column))
     out = np.empty((2 * m, 2 * m))
-    _fill(F, G, left, left_back, out)
+    for r in range(2):
+        for s in range(2):
+            block = out[r * m : (r + 1) * m, s * m : (s + 1) * m]
+            block[0] = column[2 * s + r]  # the first block column transposed: T is symmetric
+            block[:, 0] = column[2 * r + s]
+            before = np.concatenate([column[2 * r : 2 * r + 2, 1:], last[2 * r : 2 * r + 2, :-1]])
+            after = np.concatenate([forward[2 * s : 2 * s + 2, 1:], -backward[2 * s : 2 * s + 2, :-1]])
+            _fill(before, after, block)
     return out
 
 

@@ -106,28 +106,49 @@ def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.Cap
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    ("arguments", "needed"),
     [
-        ["--help"],
-        ["run", "--help"],
-        ["paper", "--help"],
-        ["example"],
-        ["check", "CASE"],
-        ["run", "CASE", "--nodes", "1"],
+        (["--help"], []),
+        (["--version"], []),
+        (["run", "--help"], []),
+        (["paper", "--help"], []),
+        (["run", "--colour"], []),
+        (["example"], ["numpy"]),
+        (["check", "CASE"], ["numpy"]),
+        (["run", "CASE", "--nodes", "1"], ["numpy"]),
     ],
-    ids=" ".join,
+    ids=str,
 )
-def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], case: Path) -> None:
+def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], needed: list[str], case: Path) -> None:
     code = (
         "import sys\nfrom fastpin.cli import main\n"
         "try:\n    main(sys.argv[1:])\nexcept SystemExit:\n    pass\n"
-        "print([name for name in ('numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])"
+        "print([name for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])"
     )
     arguments = [str(case) if word == "CASE" else word for word in arguments]
     done = subprocess.run(
         [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True, cwd=ROOT
     )
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert done.stdout.splitlines()[-1] == str(needed)
+
+
+def test_public_names_are_imported_when_they_are_asked_for() -> None:
+    code = (
+        "import sys, fastpin\nassert 'numpy' not in sys.modules\n"
+        "assert set(fastpin.__all__) <= set(dir(fastpin))\n"
+        "from fastpin import *\nprint([name for name in fastpin.__all__ if name not in globals()])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout == "[]\n"
+    assert fastpin.solve is fastpin.solver.solve
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = fastpin.nothing
+
+
+def test_help_names_the_default_of_the_figures(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["paper", "--help"])
+    assert f"number of nodes (default {fastpin.paper.NODES})" in " ".join(capsys.readouterr().out.split())
 
 
 def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]) -> None:

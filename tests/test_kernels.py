@@ -110,6 +110,13 @@ def matrices(grid: Grid, uniform: bool) -> tuple[np.ndarray, np.ndarray]:
     return direct, cross
 
 
+def operator(grid: Grid, uniform: bool, uniform_part: float) -> np.ndarray:
+    left, right = grid.knots()
+    out = np.full((2 * grid.size, 2 * grid.size), np.nan, order="F")
+    kernels.fill_operator(grid.theta, left, right, uniform, grid.closed, RATIO, uniform_part, out)
+    return out
+
+
 def cauchy(grid: Grid, uniform: bool) -> np.ndarray:
     left, right = grid.knots()
     out = np.empty((grid.size, grid.size))
@@ -235,6 +242,42 @@ def test_near_and_far_integration_meet():
 
 @pytest.mark.parametrize("n", [20, 240, 4096])
 @pytest.mark.parametrize("shape", HATS)
+@pytest.mark.parametrize("node", [0.0, -1.7])
+def test_columns_are_hats_seen_from_everywhere(n, shape, node):
+    # on both sides of where the series begins, and all round; hat_log is right to 1e-11
+    h = 2.0 * math.pi / n
+    away = np.concatenate([np.arange(-12.0, 13.0), [0.3, -5.99, 5.99, -6.01, 6.01, n // 3, -n // 3, n // 2 - 0.5]]) * h
+    direct, cross = np.empty((2, away.size, 1))
+    sides = np.array([shape[0] * h]), np.array([shape[1] * h])
+    kernels.log_columns(node + away, np.array([node]), *sides, RATIO, 2.0, direct, cross)
+    expected = np.array([kernels.hat_log(u, sides[0][0], sides[1][0], RATIO) for u in (node + away) - node])
+    assert np.abs(direct[:, 0] - 2.0 * expected[:, 0]).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(cross[:, 0] - 2.0 * expected[:, 1]).max() < 1e-11 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("shape", HATS)
+def test_far_columns_against_mpmath(shape):
+    mpmath.mp.dps = 25
+    h = 2.0 * math.pi / 400
+    sides = np.array([shape[0] * h]), np.array([shape[1] * h])
+    away = np.array([6.01, -6.01, 7.5, 9.0, -20.0, 150.0, 199.0]) * h
+    direct, cross = np.empty((2, away.size, 1))
+    kernels.log_columns(away, np.zeros(1), *sides, RATIO, 1.0, direct, cross)
+
+    def kernel(x):  # cross + i direct
+        saw = (x - 2 * mpmath.pi * mpmath.floor(x / (2 * mpmath.pi))) / 2 - mpmath.pi / 2
+        return mpmath.expj(x) * (RATIO * saw - 1j * mpmath.log(4 * mpmath.sin(x / 2) ** 2))
+
+    for u, d, c in zip(away, direct[:, 0], cross[:, 0], strict=True):
+        total = mpmath.mpc(0)
+        for side, width in ((-1, sides[0][0]), (1, sides[1][0])):
+            if width > 0.0:
+                total += mpmath.quad(lambda t, u=u, s=side, w=width: kernel(u - s * t) * (1 - t / w), [0, width])
+        assert (c, d) == pytest.approx((float(total.real), float(total.imag)), abs=1e-15)
+
+
+@pytest.mark.parametrize("n", [20, 240, 4096])
+@pytest.mark.parametrize("shape", HATS)
 def test_hat_cauchy_against_paired_quadrature(n, shape):
     h = 2.0 * math.pi / n
     h_left, h_right = shape[0] * h, shape[1] * h
@@ -294,15 +337,46 @@ def test_fills_against_naive_quadrature(grid):
 
 @pytest.mark.parametrize("grid", [Grid.arc(-2.5, 0.4, 12), Grid.circle(12), Grid(graded_nodes(12, -3.0, 0.0))])
 @pytest.mark.parametrize("uniform", [True, False])
-def test_plain_python_fills_agree_with_compiled_ones(grid, uniform):
+def test_plain_python_fills_agree_with_compiled_ones(grid, uniform, monkeypatch):
     if uniform and np.ptp(np.diff(grid.theta)) > 1e-9:
         uniform = False
-    left, right = grid.knots()
-    direct, cross, pv = np.empty((3, grid.size, grid.size))
-    python(kernels.fill_log)(grid.theta, left, right, uniform, grid.closed, RATIO, direct, cross)
-    python(kernels.fill_cauchy)(grid.theta, left, right, uniform, grid.closed, pv)
-    np.testing.assert_allclose([direct, cross], matrices(grid, uniform), rtol=0.0, atol=1e-14)
-    np.testing.assert_allclose(pv, cauchy(grid, uniform), rtol=0.0, atol=1e-13, equal_nan=True)
+    compiled = *matrices(grid, uniform), operator(grid, uniform, 0.7)
+    pv = cauchy(grid, uniform)
+    for name in ("_columns", "cauchy_columns"):
+        monkeypatch.setattr(kernels, name, python(getattr(kernels, name)))
+    plain = *matrices(grid, uniform), operator(grid, uniform, 0.7)
+    for one, other in zip(plain, compiled, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(cauchy(grid, uniform), pv, rtol=0.0, atol=1e-13, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("grid", "uniform"),
+    [
+        (Grid.arc(-2.5, 0.4, 13), True),
+        (Grid.arc(-2.5, 0.4, 13), False),
+        (Grid.circle(12), True),
+        (Grid.circle(13), True),
+        (Grid(graded_nodes(12, -3.0, 0.0)), False),
+        (Grid(graded_nodes(12, -3.0, 3.0), True), False),
+    ],
+)
+def test_operator_is_made_of_the_matrices(grid, uniform):
+    direct, cross = matrices(grid, uniform)
+    found = operator(grid, uniform, 0.7)
+    expected = np.block([[direct - 0.7 * grid.weights, cross], [-cross, direct]]) / (4.0 * np.pi)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-15)
+    n = grid.size
+    assert np.array_equal(found[:n, n:], -found[n:, :n])
+    if uniform:
+        inner = slice(None) if grid.closed else slice(1, -1)
+        for a in (slice(0, n), slice(n, 2 * n)):
+            for b in (slice(0, n), slice(n, 2 * n)):
+                block = found[a, b]
+                parity = 1.0 if a == b else -1.0
+                assert np.array_equal(block[::-1, ::-1], parity * block)
+                assert np.array_equal(block[inner, inner], parity * block[inner, inner].T)
+                assert np.array_equal(block[1:, inner][:, 1:], block[:-1, inner][:, :-1])
 
 
 def test_circle_is_circulant_and_arc_is_toeplitz_inside():
