@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -69,15 +70,40 @@ Timed = Callable[..., Any]
 
 @pytest.fixture
 def timed(benchmark: Any) -> Timed:
-    """``timed(function, nodes, setup=None, **info)``: time it, the fewer rounds the larger it is; what it returned.
+    """``timed(function, nodes, setup=None, watch=False, **info)``: time it in rounds, fewer of large sizes.
 
-    `setup` is called before every round, outside the timing, and returns the arguments. `info` is stored.
+    Returns what the function returned. `setup` is called before every round, outside the timing, and returns the
+    argument. `info` is stored; with `watch` also the processors in use, as a limit on threads does not tell how many
+    there are and whether others left them free.
     """
 
-    def run(function: Callable[..., Any], nodes: int, setup: Callable[[], Any] | None = None, **info: Any) -> Any:
+    def run(
+        function: Callable[..., Any],
+        nodes: int,
+        setup: Callable[[], Any] | None = None,
+        watch: bool = False,
+        **info: Any,
+    ) -> Any:
         prepared = None if setup is None else lambda: ((setup(),), {})
-        value = benchmark.pedantic(function, setup=prepared, rounds=rounds(nodes), warmup_rounds=int(nodes < 800))
+        spent: list[tuple[float, float]] = []
+        target = watched(function, spent) if watch else function
+        value = benchmark.pedantic(target, setup=prepared, rounds=rounds(nodes), warmup_rounds=int(nodes < 800))
+        if watch:
+            wall, processor = min(spent)
+            info["processors"] = processor / wall
         benchmark.extra_info.update(nodes=nodes, **info)
+        return value
+
+    return run
+
+
+def watched(function: Callable[..., Any], spent: list[tuple[float, float]]) -> Callable[..., Any]:
+    """The function, which then also notes its wall time and the processors' time, of all threads."""
+
+    def run(*arguments: Any) -> Any:
+        began = time.perf_counter(), time.process_time()
+        value = function(*arguments)
+        spent.append((time.perf_counter() - began[0], time.process_time() - began[1]))
         return value
 
     return run

@@ -25,7 +25,7 @@ Timed = Callable[..., Any]
 
 def solved(timed: Timed, benchmark: Any, nodes: int, history: fastpin.LoadHistory, /, **options: Any) -> fastpin.Result:
     """Time a call of ``solve``; its statistics are stored with the time."""
-    result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, threads=blas_threads())
+    result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True, threads=blas_threads())
     assert result.complete
     benchmark.extra_info.update({key: value for key, value in result.statistics.items() if key != "seconds"})
     return result
