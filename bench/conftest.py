@@ -70,7 +70,7 @@ Timed = Callable[..., Any]
 
 @pytest.fixture
 def timed(benchmark: Any) -> Timed:
-    """``timed(function, nodes, setup=None, watch=False, **info)``: time it in rounds, fewer of large sizes.
+    """``timed(function, nodes, setup=None, watch=False, least=2, **info)``: time it in rounds, at least `least`.
 
     Returns what the function returned. `setup` is called before every round, outside the timing, and returns the
     argument. `info` is stored; with `watch` also the processors in use, as a limit on threads does not tell how many
@@ -82,12 +82,14 @@ def timed(benchmark: Any) -> Timed:
         nodes: int,
         setup: Callable[[], Any] | None = None,
         watch: bool = False,
+        least: int = 2,
         **info: Any,
     ) -> Any:
         prepared = None if setup is None else lambda: ((setup(),), {})
         spent: list[tuple[float, float]] = []
         target = watched(function, spent) if watch else function
-        value = benchmark.pedantic(target, setup=prepared, rounds=rounds(nodes), warmup_rounds=int(nodes < 800))
+        rounds = max(least, min(20, 2400 // nodes))
+        value = benchmark.pedantic(target, setup=prepared, rounds=rounds, warmup_rounds=int(nodes < 800))
         if watch:
             wall, processor = min(spent)
             info["processors"] = processor / wall
@@ -107,8 +109,3 @@ def watched(function: Callable[..., Any], spent: list[tuple[float, float]]) -> C
         return value
 
     return run
-
-
-def rounds(nodes: int) -> int:
-    """Twenty rounds of the smallest sizes, two of the largest."""
-    return max(2, min(20, 2400 // nodes))

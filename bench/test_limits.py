@@ -38,7 +38,7 @@ def test_lapack_solve(timed: Timed, nodes: int, threads: int) -> None:
 
     with threadpool_limits(limits=threads, user_api="blas"):
         solution = timed(
-            factor_and_solve, nodes, setup=lambda: matrix.copy(order="F"), watch=True,
+            factor_and_solve, nodes, setup=lambda: matrix.copy(order="F"), watch=True, least=5,
             threads=threads, flops=2.0 / 3.0 * order**3,
         )  # fmt: skip
     assert np.abs(matrix @ solution - right).max() < 1e-6
@@ -51,7 +51,7 @@ def test_matrix_product(timed: Timed, nodes: int, threads: int) -> None:
     matrix, out = random_matrix(order), np.zeros((order, order), order="F")
     with threadpool_limits(limits=threads, user_api="blas"):
         timed(
-            lambda: blas.dgemm(1.0, matrix, matrix, beta=0.0, c=out, overwrite_c=1), nodes, watch=True,
+            lambda: blas.dgemm(1.0, matrix, matrix, beta=0.0, c=out, overwrite_c=1), nodes, watch=True, least=5,
             threads=threads, flops=2.0 * order**3,
         )  # fmt: skip
     assert np.isfinite(out[0, 0])
@@ -65,7 +65,7 @@ def test_write(timed: Timed, nodes: int, memory: str) -> None:
     old = np.zeros(shape)
     old.fill(0.5)
     write = (lambda: np.full(shape, 1.0)) if memory == "fresh" else (lambda: old.fill(1.0))
-    timed(write, nodes, threads=1, bytes=old.nbytes)
+    timed(write, nodes, least=10, threads=1, bytes=old.nbytes)
 
 
 @pytest.mark.parametrize("memory", ["fresh", "touched"])
@@ -75,4 +75,4 @@ def test_copy(timed: Timed, nodes: int, memory: str) -> None:
     matrix = random_matrix(2 * nodes)
     old = matrix.copy(order="F")
     copy = (lambda: matrix.copy(order="F")) if memory == "fresh" else (lambda: np.copyto(old, matrix))
-    timed(copy, nodes, threads=1, bytes=matrix.nbytes)
+    timed(copy, nodes, least=10, threads=1, bytes=matrix.nbytes)

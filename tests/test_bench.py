@@ -123,12 +123,15 @@ def test_slope_of_large_sizes_only(report: ModuleType) -> None:
     assert math.isnan(report.slope({401: 1.0}))
 
 
-def test_two_threads_without_two_processors_are_noticed(report: ModuleType, stored: dict[str, Any]) -> None:
-    assert report.disturbed(stored) == []
+def test_two_threads_without_two_processors_are_left_out(report: ModuleType, stored: dict[str, Any]) -> None:
+    assert report.disturbed(stored, "LAPACK solve", 2) == []
     for one in stored["benchmarks"]:
         if one["group"] == "LAPACK solve" and one["params"]["nodes"] in (101, 801):
             one["extra_info"]["processors"] = 1.0
-    assert report.disturbed(stored) == [801]
+    assert report.disturbed(stored, "LAPACK solve", 1) == []
+    assert report.disturbed(stored, "LAPACK solve", 2) == [801]
+    assert cells(report.sizes_table(stored), 801)["2 threads"] == ""
+    assert cells(report.sizes_table(stored), 801)["cycle / solve, 1 thread"] != ""
 
 
 def test_missing_benchmarks_leave_cells_empty(report: ModuleType, stored: dict[str, Any]) -> None:
