@@ -230,12 +230,12 @@ def draw(stored: Stored) -> Any:
 
     figure, axes = plot.panels(1, 2, height=3.4)
     rows = []
-    for panel, lines, label in (
-        (axes[0, 0], curves(stored), "seconds"),
-        (axes[0, 1], counts(stored), "number"),
+    for panel, lines, label, first in (
+        (axes[0, 0], curves(stored), "seconds", 0),
+        (axes[0, 1], counts(stored), "number", 4),
     ):
         entries = []
-        for index, (name, series) in enumerate(lines):
+        for index, (name, series) in enumerate(lines, start=first):
             if series:
                 style = plot.line(index, index)
                 panel.loglog(list(series), list(series.values()), marker="o", markersize=3.0, **style)
