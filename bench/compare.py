@@ -27,7 +27,7 @@ import numpy as np
 
 import fastpin
 
-QUANTITIES = ("peak N", "peak T", "int T", "int |T|")
+QUANTITIES = ("peak N", "peak T", "int T", "int abs T")
 PATH_SIZES = (101, 151, 201, 301, 401, 501, 601, 701, 801, 1001, 1201, 1601)
 COUNTS = (10, 20, 40, 80, 160, 320, 640, 1280)
 PLACES = (0.0, 0.2, 0.4, 0.6, 0.8)
