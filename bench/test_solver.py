@@ -1,61 +1,95 @@
-"""Times of the solver: filling the matrices, the first load, a fretting cycle, from small to large.
+"""Times of the solver, from small to large: filling the matrices, the first load, cycles, histories, fields.
 
-    pytest bench                       times
-    pytest bench --benchmark-disable   runs everything once, so that the benchmarks keep working
+    pytest bench --benchmark-json=bench/results/NAME.json   times, stored for bench/report.py
+    pytest bench --benchmark-disable                        runs everything once, so that the benchmarks keep working
 
-Compilation is not timed: everything runs once at a small size before.
+A time of the solver is that of a call of ``fastpin.solve``: it includes the matrices of the grid and the checks of the
+states that are returned.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
+import cases
 import pytest
-from cases import ARC, CYCLE, FIRST_LOAD, PROBLEM, SIZES
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import fastpin
-from fastpin.kernels import fill_log
+from fastpin.collocation import System
 
-Benchmark = Callable[..., Any]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _compiled() -> None:
-    first = fastpin.solve(PROBLEM, FIRST_LOAD, nodes=41, arc=ARC)
-    fastpin.solve(PROBLEM, CYCLE, start=first)
-    fill(41, uniform=False)
+Timed = Callable[..., Any]
 
 
-def fill(nodes: int, uniform: bool) -> np.ndarray:
-    grid = fastpin.Grid.arc(*ARC, nodes)
-    left, right = grid.knots()
-    direct, cross = np.empty((nodes, nodes)), np.empty((nodes, nodes))
-    ratio = PROBLEM.pair.alpha_star / PROBLEM.pair.beta_star
-    fill_log(grid.theta, left, right, uniform, grid.closed, ratio, direct, cross)
-    return direct
+def solved(timed: Timed, benchmark: Any, nodes: int, history: fastpin.LoadHistory, /, **options: Any) -> fastpin.Result:
+    """Time a call of ``solve``; its statistics are stored with the time."""
+    result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True, threads=blas_threads())
+    assert result.complete
+    benchmark.extra_info.update({key: value for key, value in result.statistics.items() if key != "seconds"})
+    return result
 
 
-@pytest.mark.parametrize("nodes", SIZES)
-@pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "graded"])
+def blas_threads() -> int:
+    """Threads that the solver leaves to the linear algebra, seen from inside."""
+    seen = []
+
+    def look(done: float, steps: int) -> None:
+        seen.extend(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+
+    fastpin.solve(cases.PROBLEM, cases.FIRST_LOAD, nodes=61, arc=cases.ARC, progress=look)
+    return max(seen)
+
+
+@pytest.mark.parametrize("grid", cases.GRIDS)
 @pytest.mark.benchmark(group="fill")
-def test_fill(benchmark: Benchmark, nodes: int, uniform: bool) -> None:
-    assert np.isfinite(benchmark(fill, nodes, uniform)).all()
+def test_fill(timed: Timed, grid: str, nodes: int) -> None:
+    spaced = cases.GRIDS[grid](nodes)
+    with threadpool_limits(limits=1, user_api="blas"):
+        system = timed(lambda: System.build(cases.PROBLEM, spaced, cases.FORCE), nodes, least=5, threads=1)
+    assert system.grid.size == nodes
 
 
-@pytest.mark.parametrize("nodes", SIZES)
-@pytest.mark.parametrize("method", ["path", "increment"])
 @pytest.mark.benchmark(group="first load")
-def test_first_load(benchmark: Benchmark, nodes: int, method: str) -> None:
-    result = benchmark(fastpin.solve, PROBLEM, FIRST_LOAD, nodes=nodes, method=method, increments=20, arc=ARC)
-    assert result.complete
+def test_first_load(timed: Timed, benchmark: Any, nodes: int) -> None:
+    solved(timed, benchmark, nodes, cases.FIRST_LOAD, nodes=nodes, arc=cases.ARC)
 
 
-@pytest.mark.parametrize("nodes", SIZES)
 @pytest.mark.benchmark(group="cycle")
-def test_cycle(benchmark: Benchmark, nodes: int) -> None:
-    first = fastpin.solve(PROBLEM, FIRST_LOAD, nodes=nodes, arc=ARC)
-    result = benchmark(fastpin.solve, PROBLEM, CYCLE, start=first)
-    assert result.complete
-    benchmark.extra_info.update(result.statistics)  # type: ignore[attr-defined]
+def test_cycle(timed: Timed, benchmark: Any, nodes: int) -> None:
+    solved(timed, benchmark, nodes, cases.CYCLE, start=cases.steady_state(nodes))
+
+
+@pytest.mark.benchmark(group="history")
+def test_history(timed: Timed, benchmark: Any, nodes: int) -> None:
+    history = cases.variable_cycles(cases.HISTORY_CYCLES)
+    solved(timed, benchmark, nodes, history, start=cases.steady_state(nodes))
+    benchmark.extra_info["cycles"] = cases.HISTORY_CYCLES
+
+
+@pytest.mark.benchmark(group="increment cycle")
+def test_increment_cycle(timed: Timed, benchmark: Any, nodes: int) -> None:
+    if nodes > cases.LARGEST_INCREMENT_SIZE:
+        pytest.skip("takes minutes")
+    options = {"method": "increment", "increments": cases.INCREMENTS}
+    solved(timed, benchmark, nodes, cases.CYCLE, start=cases.steady_state(nodes), **options)
+
+
+@pytest.mark.benchmark(group="residuals")
+def test_residuals(timed: Timed, nodes: int) -> None:
+    """Residuals of the singular integral equations (46), (47) at all nodes."""
+    state = cases.steady_state(nodes)[-1]
+    first, second = timed(lambda: cases.singular_residuals(state), nodes, least=5)
+    assert first.size == second.size == nodes
+
+
+@pytest.mark.benchmark(group="readings")
+def test_readings(timed: Timed, nodes: int) -> None:
+    """Edges, borders, peaks and resultants of a state; the copy has not read them before."""
+    state = cases.steady_state(nodes)[-1]
+
+    def read(fresh: fastpin.State) -> tuple[Any, ...]:
+        return fresh.contact, fresh.stick, fresh.slip_zones, fresh.peak_pressure, fresh.peak_shear, fresh.resultants
+
+    assert timed(read, nodes, least=5, setup=lambda: dataclasses.replace(state))[0]
