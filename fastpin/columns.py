@@ -34,10 +34,11 @@ class Columns:
         n = system.grid.size
         self._system, self._basis = system, basis
         self._free = np.r_[basis.rows, 2 * n + np.arange(3)]
+        self._order = np.argsort(np.r_[self._free, basis.others])
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
         self._open, self._stuck = np.flatnonzero(contact.status == OPEN), np.flatnonzero(contact.status == STICK)
-        self._triangles: list[np.ndarray] = []
+        self._rows: list[np.ndarray] = []
         capacity = 2 * n + CHUNK
         self.tableau = Tableau(
             matrix=np.empty((2 * n + 3, 2 * n), order="F"),  # pages that are never asked for take no memory
@@ -92,7 +93,7 @@ class Columns:
         unknowns = basis.solve(np.r_[given[basis.rows] - acting[basis.rows], balance])
         acting += system.operator @ basis.expand(unknowns) + system.motion @ unknowns[-3:]
         values = np.empty((2 * n + 3, 1), order="F")
-        self._spread(unknowns[:, None], acting[basis.others, None], values)
+        self._spread(np.r_[unknowns, acting[basis.others]][:, None], values)
         self._update(values, given[self.tableau.slot[:updates], None], 0, updates)
         return values[:, 0]
 
@@ -102,42 +103,43 @@ class Columns:
         held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
         nodes = slots[given]
         coupling = np.where(np.isin(nodes, self._open), -self._coupling[nodes % self._coupling.size], 0.0)
-        unknowns = np.empty((basis.count + 3, slots.size), order="F")
-        others = np.empty((basis.others.size, slots.size), order="F")
-        unknowns[:, held], others[:, held] = basis.held_columns(position[held])
-        unknowns[:, given], others[:, given] = basis.given_columns(nodes, coupling)
-        self._spread(unknowns, others, values)
+        stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.count + 3
+        stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
+        stacked[:count, given], stacked[count:, given] = basis.given_columns(nodes, coupling)
+        self._spread(stacked, values)
 
-    def _spread(self, unknowns: np.ndarray, others: np.ndarray, values: np.ndarray) -> None:
-        """All dependent variables, into `values`, from the unknowns and the displacement of the others."""
+    def _spread(self, stacked: np.ndarray, values: np.ndarray) -> None:
+        """All dependent variables, into `values`, from the unknowns and, below them, the displacement of the others."""
         n, stuck = self._system.grid.size, self._stuck
-        for column, unknown, other in zip(values.T, unknowns.T, others.T, strict=True):
-            column[self._free] = unknown
-            column[self._basis.others] = other
-            column[n + stuck] += self._coupling[stuck] * column[stuck]
+        np.take(stacked.T, self._order, axis=1, out=values.T, mode="clip")  # by rows of the transposed: contiguous
+        tied = np.zeros(n)
+        tied[stuck] = self._coupling[stuck]
+        values[n : 2 * n] += tied[:, None] * values[:n]
 
     def _update(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> None:
         """Apply the updates from `begin`, a multiple of CHUNK, to `end` to the columns `values`.
 
         `units` (end-begin, k) are the zero-rate variables that they are the responses to, in the slots of the updates.
+        First the factors of the updates, from the rows that they take, then all updates in one product.
         """
         tableau = self.tableau
+        factors = np.where(tableau.source[begin:end, None] >= 0, values[tableau.source[begin:end]], 0.0)
+        factors = np.asfortranarray(factors + tableau.delta[begin:end, None] * units)
         for first in range(begin, end, CHUNK):
             chunk = slice(first, min(first + CHUNK, end))
-            source, delta = tableau.source[chunk, None], tableau.delta[chunk, None]
-            factors = np.where(source >= 0, values[tableau.source[chunk]], 0.0)
-            factors += delta * units[first - begin : chunk.stop - begin]
-            factors = blas.dtrsm(1.0, self._triangle(chunk), factors, lower=1, diag=1)
-            add_product(values, tableau.left[:, chunk], factors)
+            taken, now = self._taken(chunk), slice(first - begin, chunk.stop - begin)
+            add_product(factors[now], taken[:, begin:first], factors[: first - begin])
+            # what the updates of the chunk itself make of the rows that later ones of them take
+            factors[now] = blas.dtrsm(1.0, -taken[:, first:], factors[now], lower=1, diag=1)
+        add_product(values, tableau.left[:, begin:end], factors)
 
-    def _triangle(self, chunk: slice) -> np.ndarray:
-        """What the updates of a chunk make of the rows that later ones of them take: a unit lower triangle."""
-        number = chunk.start // CHUNK
-        if number < len(self._triangles):
-            return self._triangles[number]
-        tableau = self.tableau
+    def _taken(self, chunk: slice) -> np.ndarray:
+        """The rows of ``left`` that the updates of a chunk take, up to themselves; kept for whole chunks."""
+        number, tableau = chunk.start // CHUNK, self.tableau
+        if number < len(self._rows):
+            return self._rows[number]
         source = tableau.source[chunk]
-        triangle = np.asfortranarray(np.where(source[:, None] >= 0, -tableau.left[source, chunk], 0.0))
+        rows = np.asfortranarray(np.where(source[:, None] >= 0, tableau.left[source, : chunk.stop], 0.0))
         if source.size == CHUNK:
-            self._triangles.append(triangle)
-        return triangle
+            self._rows.append(rows)
+        return rows
