@@ -141,9 +141,9 @@ class StuckSet(Unknowns):
         super().__init__(system, status)
         n, m = system.grid.size, self.normal.size
         operator, end = system.operator, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
-        first, second, cross = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
-        self._entries = first, second, cross
-        self._core = toeplitz.inverse(first[:m], second[:m], cross[:m])
+        self._entries = np.zeros((3, n))  # by distance; that of the two ends of an arc is not needed
+        self._entries[:, : n - end] = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
+        self._core = toeplitz.inverse(*self._entries[:, :m])
         motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
         self._moved = self._core @ motion
         complement = system.motion_rows - self._equilibrium @ self._moved
@@ -167,12 +167,21 @@ class StuckSet(Unknowns):
         return None if found.singular else found
 
     @cached_property
+    def _beside(self) -> toeplitz.Beside:
+        return toeplitz.Beside(self._entries, self._core, int(self.normal[0]))
+
+    @cached_property
     def _responses(self) -> np.ndarray:
         """The core times the columns of the others, shape (count, 2n-count).
 
         Those of half hats at the ends of an arc stand for whole ones: these nodes never close.
         """
-        return toeplitz.responses(*self._entries, self._core, int(self.normal[0]), self._system.grid.size)
+        return self._beside.responses()
+
+    @cached_property
+    def _complement(self) -> np.ndarray:
+        """Displacement of the others for units of their tractions, the set held."""
+        return self._beside.complement()
 
     @cached_property
     def _tied_motion(self) -> np.ndarray:
@@ -193,13 +202,17 @@ class StuckSet(Unknowns):
         """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
         acting, balance = self.loaded(slots, coupling)
         places, pairs = np.searchsorted(self.others, slots), np.flatnonzero(coupling)
-        free = -self._responses[:, places]
         shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
+        free = -self._responses[:, places]
         free[:, pairs] -= coupling[pairs] * self._responses[:, shears]
         unknowns = self._moving(free, -balance)
-        others = np.asfortranarray(acting[self.others])
-        add_product(others, self.tied, unknowns)
-        return unknowns, others
+        if self.count < self.others.size:  # a small set: the product is the smaller effort
+            others = np.asfortranarray(acting[self.others])
+            add_product(others, self.tied, unknowns)
+            return unknowns, others
+        others = self._complement[:, places]
+        others[:, pairs] += coupling[pairs] * self._complement[:, shears]
+        return unknowns, others + self._tied_motion @ unknowns[-3:]
 
     def _moving(self, free: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Tractions and motion from the tractions `free` without motion and the forces that are wanted."""

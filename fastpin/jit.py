@@ -18,11 +18,20 @@ SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wra
 """No fastmath, no parallel sums; division by zero gives inf or nan; nothing is called from C, which saves compiling."""
 
 
-def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(function: Callable[..., Any], **settings: Any) -> Callable[..., Any]:
     """Decorator of every kernel."""
     if CACHED:
         try:
-            return numba.njit(cache=True, **SETTINGS)(function)
+            return numba.njit(cache=True, **SETTINGS, **settings)(function)
         except RuntimeError:  # there is no directory that can be written
             pass
-    return numba.njit(**SETTINGS)(function)
+    return numba.njit(**SETTINGS, **settings)(function)
+
+
+def inner(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator of a kernel that only kernels call.
+
+    What Python would need to call it is left out: with arguments of many arrays that takes longer to compile than the
+    kernel.
+    """
+    return compiled(function, no_cpython_wrapper=True)

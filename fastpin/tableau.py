@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.jit import compiled
+from fastpin.jit import compiled, inner
 from fastpin.state import OPEN, STICK
 from fastpin.state import SLIP_NEGATIVE as NEGATIVE
 from fastpin.state import SLIP_POSITIVE as POSITIVE
@@ -110,7 +110,7 @@ class Queue(NamedTuple):
     sums: np.ndarray
 
 
-@compiled
+@inner
 def _column(tableau, updates, p, out):
     """Column p after so many updates."""
     matrix, left = tableau.matrix, tableau.left
@@ -127,13 +127,13 @@ def _column(tableau, updates, p, out):
                 out[i] += factor * left[i, k]
 
 
-@compiled
+@inner
 def _stale(tableau, updates, p):
     """Whether column p has a block that was never computed, or that lacks a whole chunk of updates."""
     return tableau.fresh[p // WIDTH] < updates - updates % CHUNK
 
 
-@compiled
+@inner
 def _exchange(tableau, updates, p):
     """Exchange the members of pair p, whose column stands in left[:, updates]; appends that update."""
     column, rates = tableau.left[:, updates], tableau.rates
@@ -146,7 +146,7 @@ def _exchange(tableau, updates, p):
     tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = p, p, -1.0
 
 
-@compiled
+@inner
 def _add_row(tableau, updates, target, source, factor):
     """Row `target` += factor * row `source`; appends one update."""
     left = tableau.left
@@ -157,7 +157,7 @@ def _add_row(tableau, updates, target, source, factor):
     tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = source, -1, 0.0
 
 
-@compiled
+@inner
 def _add_column(tableau, updates, target, source, factor):
     """Column `target` += factor * column `source`; appends one update."""
     column = tableau.left[:, updates]
@@ -167,7 +167,7 @@ def _add_column(tableau, updates, target, source, factor):
     tableau.source[updates], tableau.slot[updates], tableau.delta[updates] = -1, target, 1.0
 
 
-@compiled
+@inner
 def _asked(tableau, updates, node, old, new, tie):
     """The first column that a change of status needs and that is not up to date; -1 if there is none."""
     tangential = tableau.matrix.shape[1] // 2 + node
@@ -178,7 +178,7 @@ def _asked(tableau, updates, node, old, new, tie):
     return -1
 
 
-@compiled
+@inner
 def _change_status(tableau, updates, contact, friction, typical, node, new):
     """Give `node` the status `new`; the values of N and T must fit both. A sticking node opens in two changes.
 
@@ -217,13 +217,13 @@ def _change_status(tableau, updates, contact, friction, typical, node, new):
     return updates + 1, size
 
 
-@compiled
+@inner
 def _shear_rate(rates, contact, friction, i):
     """Rate of T at a sticking node."""
     return rates[contact.status.size + i] - contact.tie[i] * friction * rates[i]
 
 
-@compiled
+@inner
 def _rate_scales(rates, contact, friction):
     """Largest traction rate and largest displacement rate."""
     status = contact.status
@@ -241,7 +241,7 @@ def _rate_scales(rates, contact, friction):
     return traction, length
 
 
-@compiled
+@inner
 def _friction_violators(contact, rates, friction, traction_tol, length_tol, queue):
     """Queue the nodes whose friction status contradicts the rates: first those that stick, then those that slip."""
     status = contact.status
@@ -271,7 +271,7 @@ def _friction_violators(contact, rates, friction, traction_tol, length_tol, queu
     return queued
 
 
-@compiled
+@inner
 def _contact_violators(contact, rates, traction_tol, length_tol, queue):
     """Queue the open nodes that close; if there are none, the closed nodes that open."""
     status = contact.status
@@ -291,7 +291,7 @@ def _contact_violators(contact, rates, traction_tol, length_tol, queue):
     return queued
 
 
-@compiled
+@inner
 def _relief(free_motion, status, rates, node, direction):
     """The slipping node that sticks first when `node`, the last one that holds the pin, lets go in `direction`.
 
@@ -309,7 +309,7 @@ def _relief(free_motion, status, rates, node, direction):
     return chosen
 
 
-@compiled
+@inner
 def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
     """Time to the next change of status, at most `limit`."""
     status = contact.status
@@ -333,7 +333,7 @@ def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
     return first
 
 
-@compiled
+@inner
 def _advance(contact, rates, friction, weights, step):
     """Move everything by `step`; values that reach their bound are put exactly there. Returns what friction takes."""
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
@@ -371,7 +371,7 @@ def _advance(contact, rates, friction, weights, step):
     return dissipated
 
 
-@compiled
+@inner
 def _work(contact, rates, friction, load, time, step):
     """Work of the loads over a step, exact for the piecewise linear path (call it before `_advance`)."""
     status = contact.status
@@ -394,14 +394,14 @@ def _work(contact, rates, friction, load, time, step):
     return work * step
 
 
-@compiled
+@inner
 def _work_off(tableau, contact, queue, friction, typical, closed_grid):
     """Make the changes of status that are waiting; returns REACHED when there are none left."""
     counts = queue.counts
     n = contact.status.size
     while counts[NEXT] < counts[QUEUED]:
-        node, wanted = queue.node[counts[NEXT]], queue.status[counts[NEXT]]
-        old = contact.status[node]
+        node, wanted = queue.node[counts[NEXT]], np.int64(queue.status[counts[NEXT]])  # one type: compiled once
+        old = np.int64(contact.status[node])
         if old == wanted:
             counts[NEXT] += 1
             continue
@@ -411,7 +411,7 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
             return FULL
         new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
-        counts[ASKED] = _asked(tableau, updates, node, old, new, contact.tie[node])
+        counts[ASKED] = _asked(tableau, updates, node, old, new, np.int64(contact.tie[node]))
         if counts[ASKED] >= 0:
             return STALE
         updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
@@ -422,10 +422,11 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
             other = _relief(tableau.left[:, updates], contact.status, tableau.rates, node, new)
             if other < 0:
                 return NO_SUPPORT
-            counts[ASKED] = _asked(tableau, updates, other, contact.status[other], STICK, contact.tie[other])
+            slipping, stick = np.int64(contact.status[other]), np.int64(STICK)
+            counts[ASKED] = _asked(tableau, updates, other, slipping, stick, np.int64(contact.tie[other]))
             if counts[ASKED] >= 0:
                 return STALE
-            updates, _ = _change_status(tableau, updates, contact, friction, typical, other, STICK)
+            updates, _ = _change_status(tableau, updates, contact, friction, typical, other, stick)
             counts[UPDATES] = updates
             updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
             if size == 0.0:
@@ -441,7 +442,7 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
     return REACHED
 
 
-@compiled
+@inner
 def _change_wholesale(contact, queue, queued, closed_grid):
     """Give all queued nodes their new statuses at once, for a new tableau."""
     n = contact.status.size
@@ -495,8 +496,9 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
         if not settled:
             queued = _friction_violators(contact, rates, friction, traction_tol, length_tol, queue)
             if queued > 1 and counts[ROUND] >= TOGETHER_ROUNDS:
-                lowest = np.argmin(queue.node[:queued])
-                queue.node[0], queue.status[0] = queue.node[lowest], queue.status[lowest]
+                for k in range(1, queued):  # the lowest node alone
+                    if queue.node[k] < queue.node[0]:
+                        queue.node[0], queue.status[0] = queue.node[k], queue.status[k]
                 queued = 1
             if queued == 0:
                 queued = _contact_violators(contact, rates, traction_tol, length_tol, queue)

@@ -1,8 +1,9 @@
-"""Compiled: the inverse of a symmetric block Toeplitz matrix with blocks of two, in O(m^2).
+"""Compiled: symmetric block Toeplitz matrices with blocks of two, in O(n^2).
 
-On equally spaced nodes the operator of m neighbours that all stick is such a matrix: entries depend on the distance of
-two nodes only. Its inverse follows from its first and last block columns (Whittle's recursion, the block form of
-Levinson's) by a recurrence along the diagonals (Gohberg, Semencul and Heinig). A factorisation takes O(m^3).
+On equally spaced nodes the operator of m neighbours that all stick is such a matrix T: entries depend on the distance
+of two nodes only. Its inverse follows from its first and last block columns (Whittle's recursion, the block form of
+Levinson's) by a recurrence along the diagonals (Gohberg, Semencul and Heinig); a factorisation takes O(m^3). What the
+set does to the nodes beside it has recurrences of the same kind (:class:`Beside`).
 
 Seen from the other end the nodes are the same with the shear turned round, D = diag(1, -1): blocks at opposite
 distances are B(-k) = D B(k) D, and the last block column of the inverse is the first one in reverse, D F D.
@@ -13,6 +14,7 @@ Blocks of two are kept as four rows, 00, 01, 10 and 11, of arrays (4, m).
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import matmul_toeplitz
 
 from fastpin.jit import compiled
 
@@ -61,74 +63,13 @@ def _predictor(first, second, cross, F, error):
 def _fill(before, after, out):
     """out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1]; its first row and column are given.
 
-    `before` and `after` are (4, m - 1).
+    `before` is (4, rows - 1), `after` (4, columns - 1).
     """
-    m = out.shape[0]
-    for i in range(1, m):
+    for i in range(1, out.shape[0]):
         a, b, c, d = before[0, i - 1], before[1, i - 1], before[2, i - 1], before[3, i - 1]
-        for j in range(1, m):
+        for j in range(1, out.shape[1]):
             step = (a * after[0, j - 1] + b * after[1, j - 1]) + (c * after[2, j - 1] + d * after[3, j - 1])
             out[i, j] = out[i - 1, j - 1] + step
-
-
-@compiled
-def _responses(first, second, cross, core, low, out):
-    """The products of the inverse `core` and the columns of the nodes beside the set, one after the other.
-
-    b_j, the column of the node j (from 0 to m-1 inside), has the entries of b_j-1, moved on by one. So, with x_j for
-    core b_j, the move Z, the block row r of the node before the first and the first block column C of `core`,
-
-        x_j+1 = Z x_j + x_m (last block of x_j) - C (r x_j - T_-1,j),
-
-    and likewise on the other side. `out` (2m, 2w) has two columns for each of the w nodes outside, `low` of them to the
-    left, first all of the first kind. Those of the nodes next to the set are given.
-    """
-    m, w = core.shape[0] // 2, out.shape[1] // 2
-    for side in range(2):
-        begin, end, sense = (low, w, 1) if side == 0 else (low - 1, -1, -1)
-        edge, corner = (m - 1, 0) if side == 0 else (0, m - 1)
-        for now in range(begin, end - sense, sense):
-            away = abs(now - begin) + m + 1  # from the node on the other side
-            for kind in range(2):
-                x, new = out[:, kind * w + now], out[:, kind * w + now + sense]
-                a, b = x[edge], x[m + edge]
-                c = -first[away] if kind == 0 else sense * cross[away]
-                d = -second[away] if kind == 1 else -sense * cross[away]
-                for k in range(m):
-                    far = k + 1 if side == 0 else m - k
-                    c += first[far] * x[k] - sense * cross[far] * x[m + k]
-                    d += second[far] * x[m + k] + sense * cross[far] * x[k]
-                for row in range(2 * m):
-                    new[row] = (
-                        a * out[row, begin]
-                        + b * out[row, w + begin]
-                        - c * core[row, corner]
-                        - d * core[row, m + corner]
-                    )
-                for k in range(1, m):
-                    to, source = (k, k - 1) if side == 0 else (k - 1, k)
-                    new[to] += x[source]
-                    new[m + to] += x[m + source]
-
-
-def responses(
-    first: np.ndarray, second: np.ndarray, cross: np.ndarray, core: np.ndarray, low: int, nodes: int
-) -> np.ndarray:
-    """The inverse `core` (2m, 2m) of m neighbours out of n `nodes` times the columns of all other nodes.
-
-    `first`, `second` and `cross` are the entries at the distances from 0 to that of the furthest of them; `low` nodes
-    are to the left. Returns (2m, 2(n-m)), first the columns of the first kind. O(m) operations a column.
-    """
-    m = core.shape[0] // 2
-    w = nodes - m
-    out = np.empty((2 * m, 2 * w), order="F")
-    near = np.arange(1, m + 1)
-    for node, distance, sense in ((low, near[::-1], -1.0), (low - 1, near, 1.0)):
-        if 0 <= node < w:
-            out[:, node] = core @ np.r_[first[distance], -sense * cross[distance]]
-            out[:, w + node] = core @ np.r_[sense * cross[distance], second[distance]]
-    _responses(first, second, cross, core, low, out)
-    return out
 
 
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
@@ -162,3 +103,111 @@ def _divided(column: np.ndarray, error: np.ndarray) -> np.ndarray:
     return np.array([one * d - two * c, two * a - one * b, three * d - four * c, four * a - three * b]) / (
         a * d - b * c
     )
+
+
+class Beside:
+    """What a set of neighbours, all other nodes free, does to the nodes beside it, without a product of matrices.
+
+    With the nodes of the set 0 to m-1, b_j the block column of T that a node j beside it makes in the rows of the set
+    and T_ij the block of two nodes, these are, for all nodes beside,
+
+        x_j = T^-1 b_j,        Y_ij = T_ij - b_i' x_j.
+
+    b_j+1 is b_j moved on by one. So, with C and C' the first and the last block column of the inverse,
+
+        x_j+1[i] = x_j[i-1] + x_m[i] x_j[m-1] + C[i] Y_-1,j,
+        Y_i+1,j+1 = Y_ij + Y_i+1,m x_j[m-1] - x_i+1[0]' Y_-1,j,
+
+    and the same from the other end. What stands on the right is known for all j from products with few columns:
+    x_j[0] = C' b_j, x_j[m-1] = C'' b_j, Y_-1,j and Y_mj.
+
+    Parameters
+    ----------
+    entries : ndarray, shape (3, n)
+        First, second and cross as for :func:`inverse`, for all n nodes.
+    core : ndarray, shape (2m, 2m)
+        The inverse of the set.
+    low : int
+        Number of nodes before the set.
+    """
+
+    def __init__(self, entries: np.ndarray, core: np.ndarray, low: int) -> None:
+        n, m = entries.shape[1], core.shape[0] // 2
+        self._entries = np.zeros((3, n + 1))  # what would be further away than any two nodes are is not used
+        self._entries[:, :n] = entries
+        self._m, self._low, self._others = m, low, np.r_[:low, low + m : n] - low
+        self._back = slice(low - 1, None, -1) if low else slice(0, 0)  # the nodes before the set, from it on
+        corners = core[:, [0, m]], core[:, [m - 1, 2 * m - 1]]
+        columns = np.hstack([self._block_column(np.arange(m), node) for node in (-1, m, -low)])
+        neighbours = np.split(core @ columns, 3, axis=1)
+        seeds = np.hstack([*corners, *neighbours])
+        at_others = self._products(seeds).reshape(2, n - m, 5, 2)
+        # blocks as [kind of the node, node, kind of the column]
+        self._corner = [corner.reshape(2, m, 2) for corner in corners]
+        self._neighbour = [x.reshape(2, m, 2) for x in neighbours[:2]]
+        self._end = [at_others[:, :, k] for k in (0, 1)]  # x_j[0], x_j[m-1]
+        self._across = [
+            self._block_column(self._others, node).reshape(2, n - m, 2) - at_others[:, :, k]
+            for k, node in ((2, -1), (3, m), (4, -low))
+        ]  # Y_j,-1, Y_jm and Y_j,-low
+
+    def responses(self) -> np.ndarray:
+        """x_j of all nodes beside, shape (2m, 2(n-m)), first the columns of the first kind."""
+        (before, after, _), low, w = self._across, self._low, self._others.size
+        out, back = np.empty((2, self._m, 2, w)), self._back
+        for r in range(2):
+            for s in range(2):
+                x, corner = self._neighbour[1][r], self._corner[0][r]
+                _extend(
+                    out[r, :, s, low:], self._end[0][s, low:, r], x[:, s],
+                    np.hstack([x, corner]), np.hstack([self._end[1][s, low:], before[s, low:]]),
+                )  # fmt: skip
+                x, corner = self._neighbour[0][r, ::-1], self._corner[1][r, ::-1]
+                _extend(
+                    out[r, ::-1, s, back], self._end[1][s, back, r], x[:, s],
+                    np.hstack([x, corner]), np.hstack([self._end[0][s, back], after[s, back]]),
+                )  # fmt: skip
+        return out.reshape(2 * self._m, 2 * w)
+
+    def complement(self) -> np.ndarray:
+        """Y of all nodes beside, shape (2(n-m), 2(n-m)), first the rows and columns of the first kind."""
+        (before, after, far), low, w = self._across, self._low, self._others.size
+        first, last = self._end
+        out, back = np.empty((2, w, 2, w)), self._back
+        for r in range(2):
+            for s in range(2):
+                on = np.hstack([last[s, low:], before[s, low:]])
+                down = np.hstack([after[r], -first[r]])
+                _extend(out[r, low:, s, low:], after[s, low:, r], after[r, low:, s], down[low:], on)
+                _extend(out[r, :low, s, low:], far[s, low:, r], after[r, :low, s], down[:low], on)
+                out[s, low:, r, :low] = out[r, :low, s, low:].T
+                on, down = np.hstack([first[s, back], after[s, back]]), np.hstack([before[r, back], -last[r, back]])
+                _extend(out[r, back, s, back], before[s, back, r], before[r, back, s], down, on)
+        return out.reshape(2 * w, 2 * w)
+
+    def _block_column(self, nodes: np.ndarray, column: int) -> np.ndarray:
+        """Blocks of T at `nodes` in the columns of the node `column`, shape (2 nodes, 2)."""
+        first, second, cross = self._entries[:, np.abs(nodes - column)]
+        cross = np.sign(nodes - column) * cross
+        return np.column_stack([np.r_[first, -cross], np.r_[cross, second]])
+
+    def _products(self, vectors: np.ndarray) -> np.ndarray:
+        """b_j' times vectors (2m, k) on the set, for all nodes beside, shape (2(n-m), k)."""
+        n, m, low = self._entries.shape[1] - 1, self._m, self._low
+        one, two = np.zeros((2, n, vectors.shape[1]))
+        one[low : low + m], two[low : low + m] = vectors[:m], vectors[m:]
+        first, second, cross = self._entries[:, :n]
+        odd = cross, -cross
+        upper = matmul_toeplitz(first, one) + matmul_toeplitz(odd, two)
+        lower = matmul_toeplitz(second, two) - matmul_toeplitz(odd, one)
+        return np.concatenate([upper[self._others + low], lower[self._others + low]])
+
+
+def _extend(out: np.ndarray, row: np.ndarray, column: np.ndarray, down: np.ndarray, on: np.ndarray) -> None:
+    """Fill `out` (p, q) from its first row and column by out[i, j] = out[i-1, j-1] + down[i] @ on[j-1].
+
+    `down` is (p, 4), `on` (q, 4).
+    """
+    if out.size:
+        out[0], out[:, 0] = row, column
+        _fill(np.ascontiguousarray(down[1:].T), np.ascontiguousarray(on[:-1].T), out)  # one type: compiled once

@@ -2,36 +2,43 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import subprocess
 import sys
 
+import numba
 import numpy as np
 import pytest
 
 from fastpin import OPEN, STICK, Grid, Problem
+from fastpin import tableau as tableau_module
 from fastpin.basis import FactoredSet, solvable_set
 from fastpin.collocation import System
 from fastpin.columns import Columns
 from fastpin.contact import first_contact, unloaded
 from fastpin.path import PathStep
-from fastpin.tableau import (
-    CHUNK,
-    WIDTH,
-    Contact,
-    Tableau,
-    _add_column,
-    _add_row,
-    _change_status,
-    _column,
-    _exchange,
-)
+from fastpin.tableau import CHUNK, WIDTH, Contact, Tableau
 
 BOTTOM = -0.5 * np.pi
 
 
-def python(function):
-    return getattr(function, "py_func", function)
+@pytest.fixture(params=["compiled", "python"])
+def kernel(request, monkeypatch):
+    """Kernels by name, compiled or as plain Python with all that they call."""
+    if request.param == "compiled":
+        return compiled_kernel
+    for name, function in vars(tableau_module).items():
+        if hasattr(function, "py_func"):
+            monkeypatch.setattr(tableau_module, name, function.py_func)
+    return lambda name: getattr(tableau_module, name)
+
+
+@functools.cache
+def compiled_kernel(name):
+    """An inner kernel can be called by compiled code only."""
+    inner = getattr(tableau_module, name)
+    return numba.njit(lambda *arguments: inner(*arguments))
 
 
 @pytest.fixture(scope="module")
@@ -73,14 +80,13 @@ def dense(matrix, tableau, updates):
     return matrix
 
 
-@pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
-def test_exchange_solves_for_the_other_member_of_the_pair(version):
+def test_exchange_solves_for_the_other_member_of_the_pair(kernel):
     rng = np.random.default_rng(1)
     m, n, p = 9, 6, 2
     matrix, rates = rng.normal(size=(m, n)), rng.normal(size=m)
     tableau = empty_tableau(matrix, rates)
-    version(_column)(tableau, 0, p, tableau.left[:, 0])
-    version(_exchange)(tableau, 0, p)
+    kernel("_column")(tableau, 0, p, tableau.left[:, 0])
+    kernel("_exchange")(tableau, 0, p)
     new = dense(matrix, tableau, 1)
 
     # y = M z + r; the roles of y_p and z_p change.
@@ -91,25 +97,24 @@ def test_exchange_solves_for_the_other_member_of_the_pair(version):
     assert np.allclose(new @ swapped_z + tableau.rates, swapped_y, atol=1e-12)
 
 
-@pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
-def test_row_and_column_operations_and_columns_brought_up_to_date(version):
+def test_row_and_column_operations_and_columns_brought_up_to_date(kernel):
     rng = np.random.default_rng(2)
     matrix, rates = rng.normal(size=(7, 5)), rng.normal(size=7)
     tableau = empty_tableau(matrix, rates)
-    version(_column)(tableau, 0, 1, tableau.left[:, 0])
-    version(_exchange)(tableau, 0, 1)
+    kernel("_column")(tableau, 0, 1, tableau.left[:, 0])
+    kernel("_exchange")(tableau, 0, 1)
     true = dense(matrix, tableau, 1)
     after = tableau.rates.copy()
-    version(_add_row)(tableau, 1, 4, 1, 0.7)
+    kernel("_add_row")(tableau, 1, 4, 1, 0.7)
     true[4] += 0.7 * true[1]
     after[4] += 0.7 * after[1]
-    version(_add_column)(tableau, 2, 3, 0, -0.2)
+    kernel("_add_column")(tableau, 2, 3, 0, -0.2)
     true[:, 3] -= 0.2 * true[:, 0]
     assert np.allclose(dense(matrix, tableau, 3), true, atol=1e-13)
     assert np.array_equal(tableau.rates, after)
     for p in range(5):
         column = np.zeros(7)
-        version(_column)(tableau, 3, p, column)
+        kernel("_column")(tableau, 3, p, column)
         assert np.allclose(column, true[:, p], atol=1e-13)
 
 
@@ -143,9 +148,8 @@ def zones(n=41):
     return status
 
 
-@pytest.mark.parametrize("version", [lambda f: f, python], ids=["compiled", "python"])
 @pytest.mark.parametrize("tied", [True, False], ids=["as foreseen", "otherwise"])
-def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, version, tied):
+def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, kernel, tied):
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
         contact = at_rest_on(system, zones())
@@ -153,7 +157,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ve
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
         matrix, tableau = whole(columns), columns.tableau
-        updates, size = version(_change_status)(tableau, 0, contact, 0.4, typical, node, new)
+        updates, size = kernel("_change_status")(tableau, 0, contact, 0.4, typical, node, new)
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
@@ -178,21 +182,22 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets):
     contact = at_rest_on(system, status)
     columns = Columns(system, solvable_set(system, status), contact, loads(P=1.0, Q=0.3))
     matrix, tableau, updates = whole(columns), columns.tableau, 0
+    change, fetch = compiled_kernel("_change_status"), compiled_kernel("_column")
     rng = np.random.default_rng(3)
     while updates < 2 * CHUNK + 10:
         node = int(rng.integers(14, 28))
         new = int(rng.choice([1, -1])) if contact.status[node] == STICK else STICK
         if new != STICK and np.count_nonzero(contact.status == STICK) < 4:
             continue
-        updates, _ = _change_status(tableau, updates, contact, 0.4, 0.1, node, new)
+        updates, _ = change(tableau, updates, contact, 0.4, 0.1, node, new)
     expected = dense(matrix, tableau, updates)
     size = np.abs(expected).max()
     column = np.zeros(85)
-    _column(tableau, updates, 60, column)
+    fetch(tableau, updates, 60, column)
     assert np.abs(column - expected[:, 60]).max() < 1e-10 * size
     columns.refresh(60, updates)
     assert tableau.fresh[60 // WIDTH] == 2 * CHUNK
-    _column(tableau, updates, 60, column)
+    fetch(tableau, updates, 60, column)
     assert np.abs(column - expected[:, 60]).max() < 1e-10 * size
 
     given = np.r_[rng.normal(size=82), np.zeros(3)]

@@ -54,10 +54,12 @@ def stuck(size, low, high):
 
 
 @pytest.mark.parametrize("version", ["compiled", "python"])
-@pytest.mark.parametrize(("low", "size", "nodes"), [(4, 9, 20), (0, 7, 15), (6, 3, 9), (5, 30, 61)])
-def test_products_with_the_columns_beside(monkeypatch, version, low, size, nodes):
+@pytest.mark.parametrize(
+    ("low", "size", "nodes"), [(4, 9, 20), (0, 7, 15), (6, 3, 9), (5, 30, 61), (1, 2, 4), (3, 8, 12), (2, 1, 4)]
+)
+def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes):
     if version == "python":
-        monkeypatch.setattr(toeplitz, "_responses", python(toeplitz._responses))
+        monkeypatch.setattr(toeplitz, "_fill", python(toeplitz._fill))
     rng = np.random.default_rng(nodes)
     away = np.arange(nodes)
     first, second = (rng.normal(size=nodes) * 0.8**away + 4.0 * nodes * (away == 0) for _ in range(2))
@@ -66,8 +68,11 @@ def test_products_with_the_columns_beside(monkeypatch, version, low, size, nodes
     rows = np.r_[low : low + size, nodes + low : nodes + low + size]
     others = np.setdiff1d(np.arange(2 * nodes), rows)
     core = np.linalg.inv(matrix[np.ix_(rows, rows)])
-    found = toeplitz.responses(first, second, cross, core, low, nodes)
-    assert found == pytest.approx(core @ matrix[np.ix_(rows, others)], rel=1e-10, abs=1e-13)
+    beside = toeplitz.Beside(np.array([first, second, cross]), core, low)
+    responses = core @ matrix[np.ix_(rows, others)]
+    assert beside.responses() == pytest.approx(responses, rel=1e-10, abs=1e-13)
+    complement = matrix[np.ix_(others, others)] - matrix[np.ix_(others, rows)] @ responses
+    assert beside.complement() == pytest.approx(complement, rel=1e-10, abs=1e-12)
 
 
 @pytest.mark.parametrize("grid", [Grid.arc(BOTTOM - 1.7, BOTTOM + 1.6, 121), Grid.circle(121)], ids=["arc", "circle"])
@@ -75,15 +80,17 @@ def test_products_with_the_columns_beside(monkeypatch, version, low, size, nodes
     ("pin_load", "rotation", "hub"), [("body", "free", None), ("centre", "fixed", None), ("centre", "fixed", 0.2)]
 )
 @pytest.mark.parametrize("pair", ["titanium", "rigid"])
-def test_set_of_sticking_neighbours(titanium_in_aluminium, grid, pin_load, rotation, hub, pair):
+@pytest.mark.parametrize("ends", [(20, 97), (50, 70)], ids=["wide", "narrow"])
+def test_set_of_sticking_neighbours(titanium_in_aluminium, grid, pin_load, rotation, hub, pair, ends):
     pair = titanium_in_aluminium if pair == "titanium" else RIGID_PIN
     problem = Problem.from_load_parameter(pair, 0.1, 0.4, pin_load, rotation, hub_radius=hub)
     system = System.build(problem, grid, 1.0)
-    status = stuck(121, 20, 97)
+    status = stuck(121, *ends)
     fast, slow = StuckSet.of(system, status), FactoredSet(system, status)
     right = np.cos(np.arange(fast.count + 3.0))
     close(fast.solve(right), slow.solve(right))
-    positions = np.array([0, 5, 76, 77, 120, 153])
+    m = ends[1] - ends[0]
+    positions = np.array([0, 5, m - 1, m, 2 * m - 30, 2 * m - 1])
     for one, two in zip(fast.held_columns(positions), slow.held_columns(positions), strict=True):
         close(one, two)
     slots, coupling = np.array([3, 18, 19, 97, 110, 122, 140, 218]), np.array([0.4, -0.4, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0])
