@@ -92,8 +92,11 @@ def flop_rate(stored: Stored, group: str, threads: int) -> Series:
 
 
 def update_rate(stored: Stored, group: str = "cycle") -> Series:
-    """GFlop/s of the solver if every exchange were a rank-one update of the whole tableau, 8 n^2 flops."""
-    flops = {nodes: 8.0 * nodes**2 * count for nodes, count in recorded(stored, group, "exchanges").items()}
+    """GFlop/s of the solver's exchanges at their least cost: every one brings one column up to date, once.
+
+    In a step with k exchanges column i takes i updates of 2n entries, 2n k^2 flops in all; a cycle is two steps.
+    """
+    flops = {nodes: nodes * count**2 for nodes, count in recorded(stored, group, "exchanges").items()}
     return scaled(ratio(flops, seconds(stored, group)), 1e-9)
 
 
@@ -183,13 +186,12 @@ def start_up_table(stored: Stored) -> str:
 
 def machine_text(stored: Stored) -> str:
     """One paragraph: where and with what it was measured."""
-    machine, info = stored["machine_info"], select(stored, "cycle")
-    threads = max((entry["extra_info"].get("threads", 1) for entry in info.values()), default=1)
+    machine = stored["machine_info"]
     versions = ", ".join(f"{name} {version}" for name, version in machine["versions"].items())
     python = f"{machine['python_implementation']} {machine['python_version']}"
     return (
-        f"{machine['cpu']}, {machine['cores']} cores; the solver uses {threads} thread{'s' * (threads > 1)} for its "
-        f"linear algebra. {machine['system']}, {python}, {versions}, {'; '.join(machine['blas'])}. "
+        f"{machine['cpu']}, {machine['cores']} cores; the solver leaves one thread to BLAS and makes its large "
+        f"products in two. {machine['system']}, {python}, {versions}, {'; '.join(machine['blas'])}. "
         f"Measured on {stored['datetime'][:10]}."
     )
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import cases
 import pytest
-from threadpoolctl import threadpool_info, threadpool_limits
+from threadpoolctl import threadpool_limits
 
 import fastpin
 from fastpin.collocation import System
@@ -25,21 +25,10 @@ Timed = Callable[..., Any]
 
 def solved(timed: Timed, benchmark: Any, nodes: int, history: fastpin.LoadHistory, /, **options: Any) -> fastpin.Result:
     """Time a call of ``solve``; its statistics are stored with the time."""
-    result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True, threads=blas_threads())
+    result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True)
     assert result.complete
     benchmark.extra_info.update({key: value for key, value in result.statistics.items() if key != "seconds"})
     return result
-
-
-def blas_threads() -> int:
-    """Threads that the solver leaves to the linear algebra, seen from inside."""
-    seen = []
-
-    def look(done: float, steps: int) -> None:
-        seen.extend(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
-
-    fastpin.solve(cases.PROBLEM, cases.FIRST_LOAD, nodes=61, arc=cases.ARC, progress=look)
-    return max(seen)
 
 
 @pytest.mark.parametrize("grid", cases.GRIDS)

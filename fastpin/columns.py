@@ -11,6 +11,9 @@ from fastpin.products import add_product
 from fastpin.state import OPEN, STICK
 from fastpin.tableau import CHUNK, WIDTH, Contact, Tableau
 
+ROOM = 2
+"""Updates a node for which there is room; with more, the tableau is built anew."""
+
 
 class Columns:
     """The tableau of :mod:`fastpin.tableau` for given statuses and what becomes of it by updates.
@@ -39,7 +42,7 @@ class Columns:
         self._position[basis.rows] = np.arange(basis.count)
         self._open, self._stuck = np.flatnonzero(contact.status == OPEN), np.flatnonzero(contact.status == STICK)
         self._rows: list[np.ndarray] = []
-        capacity = 2 * n + CHUNK
+        capacity = ROOM * n + CHUNK
         self.tableau = Tableau(
             matrix=np.empty((2 * n + 3, 2 * n), order="F"),  # pages that are never asked for take no memory
             fresh=np.full(-(-2 * n // WIDTH), -1),

@@ -11,7 +11,7 @@ import numba
 import numpy as np
 import pytest
 
-from fastpin import OPEN, STICK, Grid, Problem
+from fastpin import OPEN, STICK, Grid, Problem, solve
 from fastpin import tableau as tableau_module
 from fastpin.basis import FactoredSet, solvable_set
 from fastpin.collocation import System
@@ -340,3 +340,16 @@ def test_compiled_and_plain_python_give_the_same_states():
     compiled, plain = run("0"), run("1")
     assert compiled.shape == (3, 64)
     assert np.abs(compiled - plain).max() < 1e-10
+
+
+def test_a_full_tableau_is_built_anew(titanium_in_aluminium, monkeypatch):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    history, arc = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], (BOTTOM - 1.6, BOTTOM + 1.55)
+    plenty = solve(problem, history, nodes=101, arc=arc)
+    monkeypatch.setattr("fastpin.columns.ROOM", 0)
+    little = solve(problem, history, nodes=101, arc=arc)
+    assert little.statistics["rebuilds"] > plenty.statistics["rebuilds"]
+    for one, two in zip(little, plenty, strict=True):
+        assert np.array_equal(one.status, two.status)
+        assert np.abs(one.pressure - two.pressure).max() < 1e-12
+        assert np.abs(one.shear - two.shear).max() < 1e-11
