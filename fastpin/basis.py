@@ -65,8 +65,14 @@ class Unknowns:
         tractions[self._coupling.size + slipping] = self._coupling[slipping] * tractions[slipping]
         return tractions
 
+    def at_others(self, unknowns: np.ndarray, acting: np.ndarray) -> np.ndarray:
+        """Displacement of the others from the unknowns (count+3, k), added to `acting` (2n-count, k)."""
+        others = np.asfortranarray(acting)
+        add_product(others, self._tied, unknowns)
+        return others
+
     @cached_property
-    def tied(self) -> np.ndarray:
+    def _tied(self) -> np.ndarray:
         """Rows of the others for the unknown tractions and the motion, shape (2n-count, count+3)."""
         system = self._system
         result = np.empty((self.others.size, self.count + 3), order="F")
@@ -118,17 +124,13 @@ class FactoredSet(Unknowns):
         right = np.zeros((self.count + 3, positions.size), order="F")
         right[positions, np.arange(positions.size)] = 1.0
         unknowns = self.solve(right)
-        others = np.zeros((self.others.size, positions.size), order="F")
-        add_product(others, self.tied, unknowns)
-        return unknowns, others
+        return unknowns, self.at_others(unknowns, np.zeros((self.others.size, positions.size)))
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
         acting, balance = self.loaded(slots, coupling)
         unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
-        others = np.asfortranarray(acting[self.others])
-        add_product(others, self.tied, unknowns)
-        return unknowns, others
+        return unknowns, self.at_others(unknowns, acting[self.others])
 
 
 class StuckSet(Unknowns):
@@ -207,9 +209,7 @@ class StuckSet(Unknowns):
         free[:, pairs] -= coupling[pairs] * self._responses[:, shears]
         unknowns = self._moving(free, -balance)
         if self.count < self.others.size:  # a small set: the product is the smaller effort
-            others = np.asfortranarray(acting[self.others])
-            add_product(others, self.tied, unknowns)
-            return unknowns, others
+            return unknowns, self.at_others(unknowns, acting[self.others])
         others = self._complement[:, places]
         others[:, pairs] += coupling[pairs] * self._complement[:, shears]
         return unknowns, others + self._tied_motion @ unknowns[-3:]

@@ -21,13 +21,14 @@ MOST_REBUILDS = 400
 MOST_DRIFT = 1e-10
 """Relative error of gap and slip, checked after every chunk of updates, above which the tableau is built anew."""
 
-ROUNDING = 1e-14
+ROUNDING = 5e-15
 """Relative error of gap and slip below which nothing is left to correct."""
 
 MOST_ERROR = 1e-12
 """Relative error that corrections may leave; with more, a factorisation computes the state anew."""
 
 SAMPLED_NODES = 16
+"""Nodes at which gap and slip are compared with the matrices after every chunk."""
 
 
 class StepLostError(Exception):
@@ -208,7 +209,7 @@ class PathStep:
         return not np.abs(true - np.r_[now.gap, now.slip][rows]).max() <= MOST_DRIFT * length
 
     def _mend(self) -> None:
-        """Compute the present configuration and the tableau anew, by a factorisation."""
+        """Compute the present configuration anew, by a factorisation, and the tableau."""
         self._book()
         mended = resolved(self.system, self.now)
         for name in ("pressure", "shear", "gap", "slip", "motion"):
@@ -229,7 +230,8 @@ class PathStep:
             true[:n] += now.rest_gap
             balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
-            error = float(np.abs(missing).max()) / max(float(np.abs(elastic).max()), float(np.abs(motion).max()))
+            length = max(float(np.abs(elastic).max()), float(np.abs(motion).max()), 1e-300)
+            error = float(np.abs(missing).max()) / length
             if error <= ROUNDING or not error < 0.5 * last:
                 break
             last = error

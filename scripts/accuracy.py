@@ -8,10 +8,6 @@ from __future__ import annotations
 import argparse
 import csv
 import math
-import resource
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -209,43 +205,10 @@ def singular_equations(sizes: list[int]) -> None:
     print(f"\nOrders: {order(sizes, first):.2f} and {order(sizes, second):.2f}.")
 
 
-def times(sizes: list[int]) -> None:
-    print("\n## Time and memory")
-    print("\nSimilar materials, body load, free rotation, mu = 0.55, L_p = 0.05: the load P and one steady cycle of")
-    print("Q = +-0.275 on an arc of 3.5 rad, each size in a process of its own; LAPACK is one solve with 2n unknowns.")
-    rows = []
-    for nodes in sizes:
-        done = subprocess.run(
-            [sys.executable, __file__, "--one-size", str(nodes)], capture_output=True, text=True, check=True
-        )
-        rows.append([nodes, *done.stdout.split()])
-    table(["nodes", "P, s", "cycle, s", "events", "LAPACK, s", "memory, MB"], rows)
-
-
-def one_size(nodes: int) -> None:
-    problem = Problem.from_load_parameter(SIMILAR, 0.05, 0.55, "body")
-    arc = (BOTTOM - 1.75, BOTTOM + 1.75)
-    solve(problem, FIXED_CYCLE, nodes=41, arc=arc)  # compiles
-    first = solve(problem, FIXED_CYCLE[:1], nodes=nodes, arc=arc)
-    second = solve(problem, FIXED_CYCLE[1:2], start=first)
-    cycle = solve(problem, [{"Q": -0.275}, {"Q": 0.275}], start=second)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-    matrix = np.random.default_rng(0).random((2 * nodes, 2 * nodes)) + nodes * np.eye(2 * nodes)
-    began = time.perf_counter()
-    np.linalg.solve(matrix, matrix[0])
-    lapack = time.perf_counter() - began
-    seconds = [result.statistics["seconds"] for result in (first, cycle)]
-    print(f"{seconds[0]:.2f} {seconds[1]:.2f} {cycle.statistics['events']:.0f} {lapack:.3f} {peak:.0f}")
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="small grids")
-    parser.add_argument("--one-size", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
-    if options.one_size:
-        one_size(options.one_size)
-        return
     quick = options.quick
     closed_form([50, 100, 200] if quick else [100, 200, 400, 800, 1600])
     with_friction([101, 201] if quick else [101, 201, 401, 801, 1601])
@@ -256,7 +219,6 @@ def main() -> None:
         [4, 8, 12, 16] if quick else [4, 8, 12, 16, 32, 64, 128], [101] if quick else [101, 201, 401, 801, 1601]
     )
     singular_equations([101, 201] if quick else [101, 201, 401, 801, 1601])
-    times([101] if quick else [401, 1201, 2401, 4096])
 
 
 if __name__ == "__main__":
