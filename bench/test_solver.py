@@ -27,6 +27,7 @@ def solved(timed: Timed, benchmark: Any, nodes: int, history: fastpin.LoadHistor
     """Time a call of ``solve``; its statistics are stored with the time."""
     result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True)
     assert result.complete
+    assert result.statistics["repeated"] == 0  # solved, not remembered
     benchmark.extra_info.update({key: value for key, value in result.statistics.items() if key != "seconds"})
     return result
 

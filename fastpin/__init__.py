@@ -21,6 +21,7 @@ the paper (R = F = beta* = 1). All arrays of a state have one entry per node, sh
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -76,12 +77,14 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name only when it is asked for: the command line answers at once when it needs none."""
+    """Import a public name or a module only when it is asked for: the command line answers at once if it needs none."""
     for module, names in _MODULES.items():
         if name in names:
             value = getattr(importlib.import_module(f"fastpin.{module}"), name)
             globals()[name] = value
             return value
+    if not name.startswith("_") and importlib.util.find_spec(f"fastpin.{name}") is not None:
+        return importlib.import_module(f"fastpin.{name}")
     raise AttributeError(f"module 'fastpin' has no attribute {name!r}")
 
 

@@ -25,6 +25,9 @@ SINGULAR = 1e-13
 MOST_RESIDUAL = 1e-10
 """Of a fast inverse; with more, a factorisation takes its place."""
 
+LEAST_NEIGHBOURS = 128
+"""Sets of fewer nodes are factored, which is as fast."""
+
 
 class Unknowns:
     """The unknown tractions of given statuses, and what they do at the other rows.
@@ -159,10 +162,12 @@ class StuckSet(Unknowns):
     @classmethod
     def of(cls, system: System, status: np.ndarray) -> StuckSet | None:
         """The set of given statuses; None if they or the grid are not of this kind."""
-        closed = np.flatnonzero(status != OPEN)
-        if closed.size < 2 or not system.grid.uniform or system.friction == 0.0 or np.any(status[closed] != STICK):
+        closed, n = np.flatnonzero(status != OPEN), system.grid.size
+        if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
             return None
-        n, low, last = system.grid.size, closed[0], closed[-1]
+        if not system.grid.uniform or system.friction == 0.0:
+            return None
+        low, last = closed[0], closed[-1]
         if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):
             return None
         found = cls(system, status)

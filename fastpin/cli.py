@@ -290,7 +290,7 @@ def _print_states(case: Case, result: Result | None) -> None:
     if strain > LARGE_STRAIN and not case.problem.dimensionless:
         print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
     statistics = result.statistics
-    names = ("events", "exchanges", "increments", "seconds")
+    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
     known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
     print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
 

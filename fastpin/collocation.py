@@ -219,7 +219,7 @@ class System:
         return float(np.sum(np.r_[self.weights, self.weights] * tractions * elastic))
 
     def worst_residual(self, configuration: Configuration) -> float:
-        return max(self.residuals(configuration).values())
+        return float(np.max(list(self.residuals(configuration).values())))
 
     def residuals(self, configuration: Configuration) -> dict[str, float]:
         """Largest relative violation of the contact conditions, recomputed from the matrices."""

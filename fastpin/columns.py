@@ -15,6 +15,15 @@ ROOM = 2
 """Updates a node for which there is room; with more, the tableau is built anew."""
 
 
+class Memory:
+    """Where tableaus are kept, one at a time, step after step. Fresh memory comes page by page, which takes time."""
+
+    def __init__(self, nodes: int) -> None:
+        updates = ROOM * nodes + CHUNK
+        self.matrix = np.empty((2 * nodes + 3, 2 * nodes), order="F")  # what is never asked for takes no memory
+        self.left = np.empty((2 * nodes + 3, updates), order="F")
+
+
 class Columns:
     """The tableau of :mod:`fastpin.tableau` for given statuses and what becomes of it by updates.
 
@@ -27,29 +36,36 @@ class Columns:
         The configuration. Its ties are set.
     load_rate : ndarray, shape (6,)
         Dimensionless, per unit of the step.
+    memory : Memory
+        For the tableau. What was there is overwritten.
 
     Attributes
     ----------
     tableau : Tableau
     """
 
-    def __init__(self, system: System, basis: StuckSet | FactoredSet, contact: Contact, load_rate: np.ndarray) -> None:
-        n = system.grid.size
+    def __init__(
+        self,
+        system: System,
+        basis: StuckSet | FactoredSet,
+        contact: Contact,
+        load_rate: np.ndarray,
+        memory: Memory,
+    ) -> None:
+        n, updates = system.grid.size, memory.left.shape[1]
         self._system, self._basis = system, basis
         self._free = np.r_[basis.rows, 2 * n + np.arange(3)]
         self._order = np.argsort(np.r_[self._free, basis.others])
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
-        self._open, self._stuck = np.flatnonzero(contact.status == OPEN), np.flatnonzero(contact.status == STICK)
         self._rows: list[np.ndarray] = []
-        capacity = ROOM * n + CHUNK
         self.tableau = Tableau(
-            matrix=np.empty((2 * n + 3, 2 * n), order="F"),  # pages that are never asked for take no memory
+            matrix=memory.matrix,
             fresh=np.full(-(-2 * n // WIDTH), -1),
-            left=np.empty((2 * n + 3, capacity), order="F"),
-            source=np.empty(capacity, dtype=np.int64),
-            slot=np.empty(capacity, dtype=np.int64),
-            delta=np.empty(capacity),
+            left=memory.left,
+            source=np.empty(updates, dtype=np.int64),
+            slot=np.empty(updates, dtype=np.int64),
+            delta=np.empty(updates),
             rates=self._rates(load_rate),
         )
         self._tie(contact)
@@ -67,15 +83,19 @@ class Columns:
         """Tie the shear of every node as it will be when it slips; where that turns out wrong it costs an update."""
         n, rates = contact.status.size, self.tableau.rates
         contact.tie[:] = contact.status
-        stuck, open_ = self._stuck, self._open
+        stuck, open_ = np.flatnonzero(contact.status == STICK), np.flatnonzero(contact.status == OPEN)
         contact.tie[stuck] = np.where(contact.shear[stuck] + rates[n + stuck] > 0.0, -1, 1)
         contact.tie[open_] = np.where(rates[n + open_] < 0.0, -1, 1)
-        self._coupling = self._system.friction * contact.tie
-        rates[n + stuck] += self._coupling[stuck] * rates[stuck]
+        coupling = self._system.friction * contact.tie
+        self._tied, self._drag = np.zeros(n), np.zeros(2 * n)
+        self._tied[stuck] = coupling[stuck]  # tau = T + tied N where it sticks
+        self._drag[open_] = -coupling[open_]  # a unit of N comes with so much T where it is open
+        rates[n : 2 * n] += self._tied * rates[:n]
 
     def refresh(self, asked: int, updates: int) -> None:
         """Bring the block of the column `asked` up to the last whole chunk of the updates."""
-        tableau, block = self.tableau, asked // WIDTH
+        tableau = self.tableau
+        block = asked // WIDTH
         slots = np.arange(block * WIDTH, min((block + 1) * WIDTH, tableau.matrix.shape[1]))
         values = tableau.matrix[:, slots[0] : slots[-1] + 1]
         if tableau.fresh[block] < 0:
@@ -90,7 +110,7 @@ class Columns:
         system, basis, n = self._system, self._basis, self._system.grid.size
         tractions = np.zeros(2 * n)
         tractions[basis.others] = given[basis.others]
-        tractions[n + self._open] -= self._coupling[self._open] * tractions[self._open]
+        tractions[n:] += self._drag[:n] * tractions[:n]
         acting = system.operator @ tractions
         balance = given[2 * n :] - system.equilibrium @ tractions
         unknowns = basis.solve(np.r_[given[basis.rows] - acting[basis.rows], balance])
@@ -104,20 +124,18 @@ class Columns:
         """Columns `slots` before any update."""
         basis, position = self._basis, self._position[slots]
         held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
-        nodes = slots[given]
-        coupling = np.where(np.isin(nodes, self._open), -self._coupling[nodes % self._coupling.size], 0.0)
         stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.count + 3
-        stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
-        stacked[:count, given], stacked[count:, given] = basis.given_columns(nodes, coupling)
+        if held.size:
+            stacked[:count, held], stacked[count:, held] = basis.held_columns(position[held])
+        if given.size:
+            stacked[:count, given], stacked[count:, given] = basis.given_columns(slots[given], self._drag[slots[given]])
         self._spread(stacked, values)
 
     def _spread(self, stacked: np.ndarray, values: np.ndarray) -> None:
         """All dependent variables, into `values`, from the unknowns and, below them, the displacement of the others."""
-        n, stuck = self._system.grid.size, self._stuck
+        n = self._system.grid.size
         np.take(stacked.T, self._order, axis=1, out=values.T, mode="clip")  # by rows of the transposed: contiguous
-        tied = np.zeros(n)
-        tied[stuck] = self._coupling[stuck]
-        values[n : 2 * n] += tied[:, None] * values[:n]
+        values[n : 2 * n] += self._tied[:, None] * values[:n]
 
     def _update(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> None:
         """Apply the updates from `begin`, a multiple of CHUNK, to `end` to the columns `values`.

@@ -32,6 +32,6 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Decorator of a kernel that only kernels call.
 
     What Python would need to call it is left out: with arguments of many arrays that takes longer to compile than the
-    kernel.
+    kernel. Called from Python all the same, it takes the interpreter down.
     """
     return compiled(function, no_cpython_wrapper=True)

@@ -14,7 +14,7 @@ import numpy as np
 from fastpin import tableau
 from fastpin.basis import FactoredSet, StuckSet, solvable_set
 from fastpin.collocation import Configuration, P, Q, Solution, System
-from fastpin.columns import Columns
+from fastpin.columns import Columns, Memory
 from fastpin.state import OPEN, STICK
 
 MOST_REBUILDS = 400
@@ -22,10 +22,13 @@ MOST_DRIFT = 1e-10
 """Relative error of gap and slip, checked after every chunk of updates, above which the tableau is built anew."""
 
 ROUNDING = 5e-15
-"""Relative error of gap and slip below which nothing is left to correct."""
+"""Relative error of gap, slip and equilibrium below which nothing is left to correct."""
 
 MOST_ERROR = 1e-12
 """Relative error that corrections may leave; with more, a factorisation computes the state anew."""
+
+MOST_SETTLINGS = 3
+"""Times that statuses are settled anew at a stop, where the corrected state oversteps them."""
 
 SAMPLED_NODES = 16
 """Nodes at which gap and slip are compared with the matrices after every chunk."""
@@ -50,10 +53,15 @@ class PathStep:
         Where the step starts; it is not changed. It must be in contact.
     after : ndarray, shape (6,)
         Dimensionless load at the end of the step.
+    memory : Memory, optional
+        For the tableau; of a step that has been followed.
     """
 
-    def __init__(self, system: System, configuration: Configuration, after: np.ndarray) -> None:
+    def __init__(
+        self, system: System, configuration: Configuration, after: np.ndarray, memory: Memory | None = None
+    ) -> None:
         self.system = system
+        self._memory = Memory(system.grid.size) if memory is None else memory
         self.now = configuration.copy()
         self.before = configuration.load.copy()
         self.rate = after - self.before
@@ -95,6 +103,7 @@ class PathStep:
         if basis is None:
             self._rebuild()
         else:
+            now.status[basis.normal] = STICK
             self._begin(basis)
 
     @property
@@ -126,9 +135,8 @@ class PathStep:
             If the load can't be followed any further.
         """
         system, counts = self.system, self._queue.counts
-        n, checked = system.grid.size, 0
+        n, checked, reached = system.grid.size, 0, 0
         while True:
-            checkpoint = self.now.status.copy()
             code = tableau.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
                 system.friction, system.grid.closed, self._typical, stop, 1000 * n, self._wholesale,
@@ -144,17 +152,20 @@ class PathStep:
                         checked = 0
                         continue
                 self._columns.refresh(int(counts[tableau.ASKED]), updates)
-            elif code in (tableau.REBUILD, tableau.FULL):
+            elif code in (tableau.REBUILD, tableau.WHOLESALE):
                 self._book()
-                self._rebuild(checkpoint)
+                self._rebuild(wholesale=code == tableau.WHOLESALE)
                 checked = 0
-            elif code == tableau.REACHED:
-                break
             else:
                 self._book()
-                raise StepLostError(code, self.fraction)
-        self._book()
-        return self._corrected()
+                if code != tableau.REACHED:
+                    raise StepLostError(code, self.fraction)
+                solution = self._corrected()
+                if not self._exceeds(solution):
+                    return _settled(system, self.now, solution)
+                if reached == MOST_SETTLINGS:
+                    raise StepLostError(tableau.CYCLING, self.fraction)
+                reached += 1
 
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
@@ -163,7 +174,10 @@ class PathStep:
         self.now.work = float(self._queue.sums[tableau.WORK])
 
     def _turned(self) -> StuckSet | None:
-        """The set in which all closed nodes stick, if the load has turned so that most of the slipping ones would."""
+        """The set in which all closed nodes stick, if the load has turned so that most of the slipping ones do.
+
+        None if it has not, or if that set can't be had fast.
+        """
         status = self.now.status
         basis = StuckSet.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
         if basis is None:
@@ -175,24 +189,24 @@ class PathStep:
         growth = -status[basis.normal] * shear - self.system.friction * normal
         if np.count_nonzero(growth[slipping] > 0.0) > np.count_nonzero(slipping) // 2:
             return None
-        status[basis.normal] = STICK
         return basis
 
     def _begin(self, basis: StuckSet | FactoredSet) -> None:
         self._queue.counts[tableau.UPDATES] = 0
-        self._columns = Columns(self.system, basis, self._contact, self.rate)
+        self._columns = Columns(self.system, basis, self._contact, self.rate, self._memory)
 
-    def _rebuild(self, fallback: np.ndarray | None = None) -> None:
-        """Tableau of the present statuses from the matrices; `fallback` are statuses to go back to if it can't be."""
+    def _rebuild(self, wholesale: bool = False) -> None:
+        """Tableau of the present statuses from the matrices; after a `wholesale` change that can be taken back."""
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS:
             raise StepLostError(tableau.CYCLING, self.fraction)
-        basis = solvable_set(self.system, self.now.status)
-        if basis is None and fallback is not None and not np.array_equal(fallback, self.now.status):
+        basis, queue = solvable_set(self.system, self.now.status), self._queue
+        if basis is None and wholesale:
             # Changing all at once left nothing that holds the pin: change one by one instead.
-            self.now.status[:] = fallback
+            changed = slice(0, queue.counts[tableau.QUEUED])
+            self.now.status[queue.node[changed]] = queue.status[changed]
             self._wholesale = 2 * self.now.status.size
-            self._queue.counts[tableau.NEXT] = self._queue.counts[tableau.QUEUED] = 0
+            queue.counts[tableau.NEXT] = queue.counts[tableau.QUEUED] = 0
             basis = solvable_set(self.system, self.now.status)
         if basis is None:
             raise StepLostError(tableau.NO_SUPPORT, self.fraction)
@@ -205,7 +219,7 @@ class PathStep:
         elastic = self._sampled @ np.r_[now.pressure, now.shear]
         true = elastic + system.motion[rows] @ now.motion + system.loads[rows] @ load
         true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
-        length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()))
+        length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
         return not np.abs(true - np.r_[now.gap, now.slip][rows]).max() <= MOST_DRIFT * length
 
     def _mend(self) -> None:
@@ -216,11 +230,34 @@ class PathStep:
             getattr(self.now, name)[:] = getattr(mended, name)
         self._rebuild()
 
-    def _corrected(self) -> Configuration:
-        """The present configuration, its tractions corrected until statuses, held slip and load hold to rounding."""
+    def _exceeds(self, solution: Solution) -> bool:
+        """Whether a corrected solution oversteps its statuses. If so it is taken, cut off where it does.
+
+        What rounding has made of a load that is almost gone may have kept a status too long: it then changes at once.
+        """
+        now, friction, status = self.now, self.system.friction, self.now.status
+        closed, stick = status != OPEN, status == STICK
+        pressure = np.where(closed, np.maximum(solution.pressure, 0.0), 0.0)
+        bound = friction * pressure
+        shear = np.where(
+            stick, np.clip(solution.shear, -bound, bound), -friction * np.where(closed, status, 0) * pressure
+        )
+        gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
+        traction, length = MOST_DRIFT * pressure.max(), MOST_DRIFT * gap.max(initial=0.0)
+        over = np.abs(pressure - solution.pressure)[closed].max() > traction
+        over |= np.abs(shear - solution.shear)[stick].max(initial=0.0) > traction
+        over |= np.abs(gap - solution.gap)[~closed].max(initial=0.0) > length
+        if over:
+            now.pressure[:], now.shear[:], now.gap[:] = pressure, shear, gap
+            now.slip[~stick], now.motion[:] = solution.slip[~stick], solution.motion
+        return bool(over)
+
+    def _corrected(self) -> Solution:
+        """The present tractions and motion, corrected until statuses, held slip and load hold to rounding."""
         system, now, n = self.system, self.now, self.system.grid.size
         pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
         closed, stick = now.closed, now.status == STICK
+        pressure[~closed] = shear[~closed] = 0.0
         slipping = closed & ~stick
         updates, last = int(self._queue.counts[tableau.UPDATES]), np.inf
         while True:
@@ -230,8 +267,10 @@ class PathStep:
             true[:n] += now.rest_gap
             balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
-            length = max(float(np.abs(elastic).max()), float(np.abs(motion).max()), 1e-300)
-            error = float(np.abs(missing).max()) / length
+            # of the elastic part and of the force at work, however little is left of them in an unloading
+            length = max(float(np.abs(elastic).max()), 1e-300)
+            force = max(float((np.abs(system.equilibrium) @ np.abs(tractions)).max()), 1e-300)
+            error = max(float(np.abs(missing[: 2 * n]).max()) / length, float(np.abs(balance).max()) / force)
             if error <= ROUNDING or not error < 0.5 * last:
                 break
             last = error
@@ -242,9 +281,11 @@ class PathStep:
             shear[slipping] = -system.friction * now.status[slipping] * pressure[slipping]
             motion += change[2 * n :]
         if not error <= MOST_ERROR:
-            self.rebuilds += 1
-            return resolved(system, now)
-        return _settled(system, now, Solution(pressure, shear, true[:n], true[n:], motion))
+            exact = system.solve(now.status, now.slip, now.load, now.rest_gap)
+            if exact is not None:
+                self.rebuilds += 1
+                return exact
+        return Solution(pressure, shear, true[:n], true[n:], motion)
 
 
 def resolved(system: System, configuration: Configuration) -> Configuration:
@@ -258,14 +299,14 @@ def _settled(system: System, configuration: Configuration, solution: Solution) -
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
     tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)
-    new.pressure = np.where(closed & (np.abs(solution.pressure) > tiny), solution.pressure, 0.0)
+    new.pressure = np.where(closed & (solution.pressure > tiny), solution.pressure, 0.0)
     bound = system.friction * new.pressure
     new.shear = np.where(closed, solution.shear, 0.0)
     near = stick & (np.abs(new.shear) > bound - tiny)
     new.shear = np.where(near, np.copysign(bound, new.shear), new.shear)
     new.shear = np.where(closed & (new.pressure == 0.0), 0.0, new.shear)
     shortest = 1e-12 * max(float(np.abs(solution.gap).max()), 1e-300)
-    new.gap = np.where(closed | (np.abs(solution.gap) <= shortest), 0.0, solution.gap)
+    new.gap = np.where(closed | (solution.gap <= shortest), 0.0, solution.gap)
     new.slip = np.where(stick, new.slip, solution.slip)
     new.motion = solution.motion
     return new

@@ -1,4 +1,4 @@
-"""Matrix products in two threads, with the same bits on every machine: the two halves are always the same.
+"""Matrix products in two threads, with the same bits for any number of cores: the two halves are always the same.
 
 BLAS runs on one thread each. Its own threads wait in loops that cost more than they give as soon as another process
 wants a core, and the bits of their results may depend on how many there are.
@@ -25,6 +25,8 @@ _second: ThreadPoolExecutor | None = None
 def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
     """out (m, n) += left (m, k) @ right (k, n), in place; all of them stored column by column, parts of arrays too."""
     m, n = out.shape
+    if left.shape[0] != m or right.shape != (left.shape[1], n):
+        raise ValueError(f"shapes do not fit: {out.shape} += {left.shape} @ {right.shape}")
     if m * n * left.shape[1] < WORTHWHILE:
         _add(out, left, right)
         return
@@ -32,7 +34,12 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
     if _second is None:
         _second = ThreadPoolExecutor(1, thread_name_prefix="fastpin")
     half = m // 2
-    other = _second.submit(_add, out[half:], left[half:], right)
+    try:
+        other = _second.submit(_add, out[half:], left[half:], right)
+    except RuntimeError:  # the interpreter is about to end
+        _add(out[half:], left[half:], right)
+        _add(out[:half], left[:half], right)
+        return
     try:
         _add(out[:half], left[:half], right)
     finally:
@@ -63,4 +70,5 @@ def _forget_threads() -> None:
     _second = None
 
 
-os.register_at_fork(after_in_child=_forget_threads)  # threads do not survive in a forked process
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_threads)  # threads do not survive in a forked process

@@ -16,11 +16,14 @@ from fastpin.collocation import Configuration, Scales
 from fastpin.state import State
 
 SAME = 5e-14
-"""Differences of gap, slip and motion below this part of the largest one are rounding: ten times what is left between
-the cycles of a contact that has settled."""
+"""Differences below this part of the largest gap, or of the largest slip or motion, are rounding: ten times what is
+left between the cycles of a contact that has settled."""
 
-MOST_NODES = 1_000_000
-"""Nodes of all configurations that are remembered together (some 100 MB); with more, all are forgotten."""
+LATEST = 50
+"""Steps between the same loads that are looked at, the latest first."""
+
+MOST_NODES = 2_000_000
+"""Nodes of all configurations and states that are remembered (some 100 MB); with more, all are forgotten."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,8 @@ class Step:
                 step=number,
                 dissipation=state.dissipation + dissipation * scales.energy,
                 work=state.work + work * scales.energy,
+                load=dict(state.load),
+                residuals=dict(state.residuals),
             )
             for state in self.states
         ]
@@ -65,7 +70,7 @@ class Repeats:
 
     def find(self, key: Hashable, now: Configuration) -> Step | None:
         """The latest step with this `key` (its loads, and how it was followed) from the configuration `now`."""
-        for step in reversed(self._steps.get(key, [])):
+        for step in reversed(self._steps.get(key, [])[-LATEST:]):
             if _same(step.before, now):
                 return step
         return None
@@ -76,16 +81,19 @@ class Repeats:
             self._steps.clear()
             self._nodes = 0
         self._steps.setdefault(key, []).append(step)
-        self._nodes += step.after.status.size
+        self._nodes += step.after.status.size * (1 + len(step.states))
 
 
 def _same(one: Configuration, two: Configuration) -> bool:
     """Whether two configurations under the same load differ by rounding only."""
-    length = max(float(np.abs(two.gap).max()), float(np.abs(two.slip).max()), float(np.abs(two.motion).max()))
-    tolerance = SAME * length
-    names = ("motion", "slip", "gap", "rest", "rest_gap", "rest_slip")
+    moved = max(float(np.abs(two.motion).max()), float(np.abs(two.slip).max()))
+    apart = float(np.abs(two.gap).max())
+    scales = {"motion": moved, "slip": moved, "rest_slip": moved, "gap": apart, "rest_gap": apart, "rest": apart}
     return (
-        all(bool(np.all(np.abs(getattr(one, name) - getattr(two, name)) <= tolerance)) for name in names)
+        all(
+            bool(np.all(np.abs(getattr(one, name) - getattr(two, name)) <= SAME * scale))
+            for name, scale in scales.items()
+        )
         and np.array_equal(one.status, two.status)
         and np.array_equal(one.origin, two.origin, equal_nan=True)
     )

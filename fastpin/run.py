@@ -10,6 +10,7 @@ import numpy as np
 
 from fastpin import tableau
 from fastpin.collocation import MAX_RESIDUAL, Configuration, M, P, Q, System
+from fastpin.columns import Memory
 from fastpin.contact import first_contact, released, unloaded
 from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
@@ -134,6 +135,7 @@ class Run:
         self.fresh = 0.0  # part of the way to a stop at which the contact was found
         self.releases = 0
         self.path: PathStep | None = None
+        self.memory: Memory | None = None
         self.path_begin = 0.0
         self.repeats = Repeats() if repeats is None else repeats
         self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0, "repeated": 0.0}
@@ -223,7 +225,9 @@ class Run:
         try:
             if self.path is None:
                 self.path_begin = self.reached
-                self.path = PathStep(self.system, self.now, piece.after)
+                if self.memory is None:
+                    self.memory = Memory(self.system.grid.size)
+                self.path = PathStep(self.system, self.now, piece.after, self.memory)
             length = piece.end - self.path_begin
             self.now = self.path.follow(1.0 if stop == piece.end else (stop - self.path_begin) / length, report)
             self.now.load = load
@@ -330,31 +334,32 @@ class Run:
         system, now, scales = self.system, self.now, self.system.scales
         frictionless = system.problem.frictionless
         residuals = system.residuals(now)
-        if not max(residuals.values()) <= MAX_RESIDUAL:
+        if not np.max(list(residuals.values())) <= MAX_RESIDUAL:
             worst = max(residuals, key=lambda name: residuals[name])
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
         moved = np.nan_to_num(now.rest - now.origin) + now.motion[:2]
-        self.states.append(
-            State(
-                step=step,
-                fraction=fraction,
-                load=named_load(now.load * scales.loads),
-                theta=system.grid.theta,
-                pressure=now.pressure * scales.traction,
-                shear=now.shear * scales.traction,
-                gap=now.gap * scales.displacement,
-                slip=(now.slip - now.rest_slip) * scales.displacement,
-                status=np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8) if frictionless else now.status.copy(),
-                dx=float(moved[0]) * scales.displacement,
-                dy=float(moved[1]) * scales.displacement,
-                rotation=float(now.motion[2]) * scales.rotation,
-                dissipation=now.dissipation * scales.energy,
-                work=now.work * scales.energy,
-                energy=system.energy(now) * scales.energy,
-                residuals=residuals,
-                problem=system.problem,
-                grid=system.grid,
-            )
+        state = State(
+            step=step,
+            fraction=fraction,
+            load=named_load(now.load * scales.loads),
+            theta=system.grid.theta,
+            pressure=now.pressure * scales.traction,
+            shear=now.shear * scales.traction,
+            gap=now.gap * scales.displacement,
+            slip=(now.slip - now.rest_slip) * scales.displacement,
+            status=np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8) if frictionless else now.status.copy(),
+            dx=float(moved[0]) * scales.displacement,
+            dy=float(moved[1]) * scales.displacement,
+            rotation=float(now.motion[2]) * scales.rotation,
+            dissipation=now.dissipation * scales.energy,
+            work=now.work * scales.energy,
+            energy=system.energy(now) * scales.energy,
+            residuals=residuals,
+            problem=system.problem,
+            grid=system.grid,
         )
+        for array in (state.pressure, state.shear, state.gap, state.slip, state.status):
+            array.setflags(write=False)  # repeated steps share them
+        self.states.append(state)

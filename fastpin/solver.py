@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import time
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from fastpin.arc import grids_to_try
 from fastpin.checks import finite, one_of, whole_number
@@ -96,8 +97,8 @@ def solve(
     if start is not None and start.restart is None:
         raise InputError("start", "this result can't be gone on from: it was read from a file")
     began = time.perf_counter()
-    # One thread: results don't depend on the machine, and below a thousand nodes it is the fastest way.
-    with threadpool_limits(limits=1, user_api="blas"):
+    # One thread for BLAS: results don't depend on the number of cores. Large products have two of our own (products.py).
+    with _threads().limit(limits=1, user_api="blas"):
         if start is not None and start.restart is not None:
             last = start.restart
             system = System.build(problem, start.grid, last.force)
@@ -114,6 +115,12 @@ def solve(
                 if arc is not None or grid is not None:
                     raise
     raise AssertionError("the whole circle has no ends")
+
+
+@functools.cache
+def _threads() -> ThreadpoolController:
+    """The BLAS libraries of this process; to look for them takes longer than a small step."""
+    return ThreadpoolController()
 
 
 def _checked_arc(arc: tuple[float, float]) -> tuple[float, float]:

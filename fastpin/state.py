@@ -175,8 +175,8 @@ class Result(Sequence[State]):
     method : str
         "path" or "increment".
     statistics : dict of str to float
-        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (of the tableau, by a factorisation),
-        "increments", "repeated" (steps that were known from before, because the contact has settled) and "seconds".
+        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (tableaus built anew, and states that a
+        factorisation computed), "increments", "repeated" (steps that were known from before) and "seconds".
     complete : bool
         Whether the whole history was followed; False in the result that an error carries.
     restart : Restart

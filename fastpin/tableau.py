@@ -42,8 +42,8 @@ CHUNK = 64
 # What `follow` returns.
 REACHED = 0  # the requested point of the step
 STALE = 1  # a column is needed whose block is not up to date: counts[ASKED]
-REBUILD = 2  # statuses were changed wholesale or a pivot was small: rebuild the tableau and call again
-FULL = 3  # no room for more updates: rebuild the tableau and call again
+REBUILD = 2  # a pivot was small, or there is no room for more updates: rebuild the tableau and call again
+WHOLESALE = 3  # all statuses of the queue were changed at once; it has the old ones: rebuild and call again
 NO_SUPPORT = 4  # nothing holds the pin any more
 CYCLING = 5  # the statuses did not settle
 ARC_END = 6  # the contact reaches an end node
@@ -57,7 +57,7 @@ RATE_TOLERANCE = 1e-11  # rates below this part of the largest one are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
 PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, for mirrored nodes to open together
 SMALL_PIVOT = 1e-9  # pivots below this part of a typical one belong to a mechanism
-UNUSUAL_PIVOT = 1e-6  # pivots that differ by more than this from a typical one ask for a new tableau
+UNUSUAL_PIVOT = 1e-6  # stiffnesses so far below a typical one, and compliances so far above, ask for a new tableau
 TOGETHER_ROUNDS = 12  # rounds in which all violators change at once; afterwards one at a time
 MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, a node that takes over included
 
@@ -112,7 +112,7 @@ class Queue(NamedTuple):
 
 @inner
 def _column(tableau, updates, p, out):
-    """Column p after so many updates."""
+    """Column p after so many updates. Its block must have been computed."""
     matrix, left = tableau.matrix, tableau.left
     for i in range(out.size):
         out[i] = matrix[i, p]
@@ -409,7 +409,7 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
             return ARC_END
         updates = counts[UPDATES]
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
-            return FULL
+            return REBUILD
         new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
         counts[ASKED] = _asked(tableau, updates, node, old, new, np.int64(contact.tie[node]))
         if counts[ASKED] >= 0:
@@ -444,22 +444,22 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
 
 @inner
 def _change_wholesale(contact, queue, queued, closed_grid):
-    """Give all queued nodes their new statuses at once, for a new tableau."""
+    """Give all queued nodes their new statuses at once, for a new tableau; the queue keeps the old ones."""
     n = contact.status.size
     for k in range(queued):
         node, new = queue.node[k], queue.status[k]
         if contact.status[node] == OPEN and not closed_grid and (node == 0 or node == n - 1):
             return ARC_END
-        contact.status[node] = new
+        contact.status[node], queue.status[k] = new, contact.status[node]
         contact.touched[node] = contact.touched[node] or new != OPEN
     queue.counts[NEXT] = queue.counts[QUEUED]
     queue.counts[EXCHANGES] += queued
-    return REBUILD
+    return WHOLESALE
 
 
 @compiled
 def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, wholesale):
-    """Follow the load from sums[TIME] to `stop`, status change by status change (design of the path solver).
+    """Follow the load from sums[TIME] to `stop`, status change by status change.
 
     Parameters
     ----------
@@ -474,12 +474,12 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     most_events : int
         More events than this mean that the statuses cycle.
     wholesale : int
-        More changes than this at once are made in one go, without exchanges, and REBUILD is returned.
+        More changes than this at once are made in one go, without exchanges, and WHOLESALE is returned.
 
     Returns
     -------
     int
-        One of the codes above. After STALE, FULL and REBUILD the caller calls again.
+        One of the codes above. After STALE, REBUILD and WHOLESALE the caller calls again.
     """
     counts, sums, rates = queue.counts, queue.sums, tableau.rates
     settled = False

@@ -63,3 +63,9 @@ def test_nowhere_when_nothing_can_be_written(installed: Path) -> None:
     nowhere = Path(os.devnull) / "home"
     assert kept(read_only(installed), nowhere) == ("None", 0)
     assert kept(installed, nowhere, NUMBA_CACHE_DIR=str(nowhere)) == ("None", 0)
+
+
+def test_modules_come_when_they_are_asked_for():
+    code = "import fastpin; print(fastpin.loading.LOADS[0], hasattr(fastpin, 'nothing'))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["P", "False"]

@@ -38,12 +38,30 @@ def test_parts_of_arrays_are_changed_in_place():
 @pytest.mark.parametrize("wrong", ["rows", "type", "strides"])
 def test_arrays_of_another_layout_are_refused(wrong):
     out, left, right = arrays(6, 5, 4)
-    left = {"rows": np.ascontiguousarray(left), "type": left.astype(np.float32), "strides": np.tile(left, 2)[::2]}[
-        wrong
-    ]
-    out = out[: left.shape[0]]
+    every_second = np.asfortranarray(np.repeat(left, 2, axis=0))[::2]
+    left = {"rows": np.ascontiguousarray(left), "type": left.astype(np.float32), "strides": every_second}[wrong]
     with pytest.raises(ValueError, match="column by column"):
         add_product(out, left, right)
+
+
+def test_shapes_that_do_not_fit_are_refused():
+    out, left, right = arrays(6, 5, 4)
+    for wrong in ((out[1:], left, right), (out, left[:, 1:], right), (out[:, 1:], left, right)):
+        with pytest.raises(ValueError, match="shapes"):
+            add_product(*wrong)
+
+
+def test_a_thread_that_outlives_the_interpreter_s_end_still_multiplies(monkeypatch):
+    class Ended:
+        def submit(self, *_):
+            raise RuntimeError("cannot schedule new futures after interpreter shutdown")
+
+    out, left, right = arrays(1203, 120, 64)
+    expected = out.copy(order="F")
+    add_product(expected, left, right)
+    monkeypatch.setattr(products, "_second", Ended())
+    add_product(out, left, right)
+    assert np.array_equal(out, expected)
 
 
 def test_the_second_thread_changes_no_bit(monkeypatch):

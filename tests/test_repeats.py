@@ -125,3 +125,21 @@ def test_the_place_of_an_error_after_repeats(similar):
     assert caught.value.result is not None
     assert len(caught.value.result) == 21
     assert caught.value.result.statistics["repeated"] > 0
+
+
+def test_shared_arrays_can_not_be_changed(held):
+    result = solve(held, [{"P": 1.0}, *CYCLE * 4], nodes=61)
+    assert result.statistics["repeated"] > 0
+    assert result[-1].pressure is result[-3].pressure
+    with pytest.raises(ValueError, match="read-only"):
+        result[-1].pressure[0] = 1.0
+    result[-1].load["P"] = 0.0
+    assert result[-3].load["P"] == 1.0
+
+
+def test_loads_that_repeat_many_times_without_settling_stay_cheap(held, monkeypatch):
+    looked = []
+    monkeypatch.setattr(repeats, "_same", lambda *_: looked.append(1) is not None)
+    monkeypatch.setattr(repeats, "LATEST", 3)
+    solve(held, [{"P": 1.0}, *CYCLE * 12], nodes=61, arc=(-3.0, -0.1))
+    assert len(looked) <= 3 * 24

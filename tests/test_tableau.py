@@ -11,11 +11,11 @@ import numba
 import numpy as np
 import pytest
 
-from fastpin import OPEN, STICK, Grid, Problem, solve
+from fastpin import OPEN, STICK, Grid, Problem, basis, solve
 from fastpin import tableau as tableau_module
 from fastpin.basis import FactoredSet, solvable_set
 from fastpin.collocation import System
-from fastpin.columns import Columns
+from fastpin.columns import Columns, Memory
 from fastpin.contact import first_contact, unloaded
 from fastpin.path import PathStep
 from fastpin.tableau import CHUNK, WIDTH, Contact, Tableau
@@ -153,7 +153,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
         contact = at_rest_on(system, zones())
-        columns = Columns(system, solvable_set(system, contact.status), contact, rate)
+        columns = Columns(system, solvable_set(system, contact.status), contact, rate, Memory(41))
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
         matrix, tableau = whole(columns), columns.tableau
@@ -161,7 +161,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
-        expected = Columns(system, solvable_set(system, other.status), other, rate)
+        expected = Columns(system, solvable_set(system, other.status), other, rate, Memory(41))
         found = untied(dense(matrix, tableau, updates), contact, 0.4)
         wanted = untied(whole(expected), other, 0.4)
         assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
@@ -174,13 +174,14 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
 
 
 @pytest.mark.parametrize("sets", ["stuck", "zones"])
-def test_columns_by_chunks_are_those_one_by_one(system, sets):
+def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
     """Hundreds of updates: products by chunks, single columns, the naive way, and products with the whole tableau."""
+    monkeypatch.setattr(basis, "LEAST_NEIGHBOURS", 2)
     status = zones()
     if sets == "stuck":
         status[status != OPEN] = STICK
     contact = at_rest_on(system, status)
-    columns = Columns(system, solvable_set(system, status), contact, loads(P=1.0, Q=0.3))
+    columns = Columns(system, solvable_set(system, status), contact, loads(P=1.0, Q=0.3), Memory(41))
     matrix, tableau, updates = whole(columns), columns.tableau, 0
     change, fetch = compiled_kernel("_change_status"), compiled_kernel("_column")
     rng = np.random.default_rng(3)

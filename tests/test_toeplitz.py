@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, solve, toeplitz
+from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, basis, solve, toeplitz
 from fastpin.basis import FactoredSet, StuckSet
 from fastpin.collocation import System
 
@@ -47,6 +47,12 @@ def test_a_singular_leading_block_is_not_hidden():
     assert not np.all(np.isfinite(found))
 
 
+@pytest.fixture
+def small_sets(monkeypatch):
+    """Small sets too are inverted in the fast way."""
+    monkeypatch.setattr(basis, "LEAST_NEIGHBOURS", 2)
+
+
 def stuck(size, low, high):
     status = np.full(size, OPEN, dtype=np.int8)
     status[low:high] = STICK
@@ -81,7 +87,7 @@ def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes
 )
 @pytest.mark.parametrize("pair", ["titanium", "rigid"])
 @pytest.mark.parametrize("ends", [(20, 97), (50, 70)], ids=["wide", "narrow"])
-def test_set_of_sticking_neighbours(titanium_in_aluminium, grid, pin_load, rotation, hub, pair, ends):
+def test_set_of_sticking_neighbours(small_sets, titanium_in_aluminium, grid, pin_load, rotation, hub, pair, ends):
     pair = titanium_in_aluminium if pair == "titanium" else RIGID_PIN
     problem = Problem.from_load_parameter(pair, 0.1, 0.4, pin_load, rotation, hub_radius=hub)
     system = System.build(problem, grid, 1.0)
@@ -103,11 +109,12 @@ def close(one, two):
     assert np.abs(one - two).max() < 1e-11 * np.abs(two).max()
 
 
-def test_what_it_is_not_for(titanium_in_aluminium):
+def test_what_it_is_not_for(small_sets, titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     system = System.build(problem, Grid.circle(60), 1.0)
     split, across, slipping = stuck(60, 20, 40), stuck(60, 50, 60), stuck(60, 20, 40)
     split[30], across[:5], slipping[25] = OPEN, STICK, 1
+    assert StuckSet.of(system, stuck(60, 20, 40)) is not None
     for status in (split, across, slipping, stuck(60, 0, 0), stuck(60, 20, 21)):
         assert StuckSet.of(system, status) is None
     theta = BOTTOM + np.linspace(-1.2, 1.2, 60) ** 3
@@ -118,7 +125,7 @@ def test_what_it_is_not_for(titanium_in_aluminium):
 
 
 @pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "fixed")])
-def test_histories_are_those_of_factorisations(titanium_in_aluminium, monkeypatch, pin_load, rotation):
+def test_histories_are_those_of_factorisations(small_sets, titanium_in_aluminium, monkeypatch, pin_load, rotation):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, pin_load, rotation)
     grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)
     corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.4, "sxx": 0.1}, {"P": 1.2}]
