@@ -97,7 +97,7 @@ def solve(
     if start is not None and start.restart is None:
         raise InputError("start", "this result can't be gone on from: it was read from a file")
     began = time.perf_counter()
-    # One thread for BLAS: results don't depend on the number of cores. Large products have two of our own (products.py).
+    # One thread for BLAS: results don't depend on the number of cores. Large products have two (products.py).
     with _threads().limit(limits=1, user_api="blas"):
         if start is not None and start.restart is not None:
             last = start.restart
