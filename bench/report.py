@@ -232,14 +232,13 @@ def draw(stored: Stored) -> Any:
 
     figure, axes = plot.panels(1, 2, height=3.4)
     rows = []
-    for panel, lines, label, first in (
-        (axes[0, 0], curves(stored), "seconds", 0),
-        (axes[0, 1], counts(stored), "number", 4),
+    for panel, lines, label, styles in (
+        (axes[0, 0], curves(stored), "seconds", [plot.line(index, index) for index in range(5)]),
+        (axes[0, 1], counts(stored), "number", [plot.line(5, 0), plot.line(5, 1)]),
     ):
         entries = []
-        for index, (name, series) in enumerate(lines, start=first):
+        for (name, series), style in zip(lines, styles, strict=True):
             if series:
-                style = plot.line(index, index)
                 panel.loglog(list(series), list(series.values()), marker="o", markersize=3.0, **style)
                 entries.append((f"{name}: $n^{{{slope(series):.2f}}}$", style))
         panel.set_xlabel("nodes n")
