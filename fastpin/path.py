@@ -135,7 +135,7 @@ class PathStep:
             If the load can't be followed any further.
         """
         system, counts = self.system, self._queue.counts
-        n, checked, reached = system.grid.size, 0, 0
+        n, checked, settlings = system.grid.size, 0, 0
         while True:
             code = tableau.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
@@ -161,11 +161,11 @@ class PathStep:
                 if code != tableau.REACHED:
                     raise StepLostError(code, self.fraction)
                 solution = self._corrected()
-                if not self._exceeds(solution):
+                if not self._oversteps(solution):
                     return _settled(system, self.now, solution)
-                if reached == MOST_SETTLINGS:
+                if settlings == MOST_SETTLINGS:
                     raise StepLostError(tableau.CYCLING, self.fraction)
-                reached += 1
+                settlings += 1  # from the values that were cut off
 
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
@@ -230,8 +230,8 @@ class PathStep:
             getattr(self.now, name)[:] = getattr(mended, name)
         self._rebuild()
 
-    def _exceeds(self, solution: Solution) -> bool:
-        """Whether a corrected solution oversteps its statuses. If so it is taken, cut off where it does.
+    def _oversteps(self, solution: Solution) -> bool:
+        """Whether a corrected solution oversteps the limits of its statuses. If so it is taken, cut off at the limits.
 
         What rounding has made of a load that is almost gone may have kept a status too long: it then changes at once.
         """
@@ -244,7 +244,7 @@ class PathStep:
         )
         gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
         traction, length = MOST_DRIFT * pressure.max(), MOST_DRIFT * gap.max(initial=0.0)
-        over = np.abs(pressure - solution.pressure)[closed].max() > traction
+        over = np.abs(pressure - solution.pressure)[closed].max(initial=0.0) > traction
         over |= np.abs(shear - solution.shear)[stick].max(initial=0.0) > traction
         over |= np.abs(gap - solution.gap)[~closed].max(initial=0.0) > length
         if over:

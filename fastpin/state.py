@@ -23,7 +23,7 @@ Interval = zones.Interval
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """The contact at one load.
+    """The contact at one load. Its arrays can't be written to: steps that repeat share them.
 
     Attributes
     ----------
