@@ -192,7 +192,13 @@ class System:
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
     ) -> np.ndarray:
         """Gap and slip (2n,) of given tractions, motion and load, straight from the matrices."""
-        result = self.operator @ tractions + self.motion @ motion + self.loads @ load
+        return self.moved(self.operator @ tractions, motion, load, rest_gap)
+
+    def moved(
+        self, elastic: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
+    ) -> np.ndarray:
+        """Gap and slip (2n,) from what the tractions make of them, ``operator @ tractions``."""
+        result = elastic + self.motion @ motion + self.loads @ load
         result[: self.grid.size] += rest_gap
         return result
 
@@ -226,7 +232,8 @@ class System:
         n, mu = self.grid.size, self.friction
         pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
         tractions = np.r_[pressure, shear]
-        true = self.displacement(tractions, configuration.motion, configuration.load, configuration.rest_gap)
+        elastic = self.operator @ tractions
+        true = self.moved(elastic, configuration.motion, configuration.load, configuration.rest_gap)
         closed, stick = status != OPEN, status == STICK
         slipping = closed & ~stick
         gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
@@ -235,8 +242,7 @@ class System:
         cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
         balance = self.equilibrium @ tractions + self.motion_rows @ configuration.motion
         balance_error = np.abs(balance - self.forces @ configuration.load)
-        elastic = np.abs(self.operator @ tractions)
-        length = max(float(elastic.max()), float(np.abs(configuration.motion).max()), 1e-300)
+        length = max(float(np.abs(elastic).max()), float(np.abs(configuration.motion).max()), 1e-300)
         if not closed.any():
             length = max(length, abs(self.gap0))
         traction = max(float(pressure.max()), 1e-300)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
+from numba.extending import get_cython_function_address
 
 CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
@@ -35,3 +36,8 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     kernel. Called from Python all the same, it takes the interpreter down.
     """
     return compiled(function, no_cpython_wrapper=True)
+
+
+def blas_address(name: str) -> int:
+    """Where a routine of SciPy's own BLAS begins, for calls that leave the interpreter free."""
+    return int(get_cython_function_address("scipy.linalg.cython_blas", name))

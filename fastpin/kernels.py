@@ -308,12 +308,20 @@ def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, oper
 
     Parameters
     ----------
-    theta, left, right, uniform, closed, ratio
-        As in :func:`fill_log`.
+    theta, left, right : ndarray, shape (n,)
+        Nodes and the outer knots of their hats, rad; a half hat has its outer knot at the node.
+    uniform : bool
+        Nodes are equally spaced: two columns are integrated, the others are copies, and mirrored entries have the
+        same bits.
+    closed : bool
+        The nodes go round the whole circle.
+    ratio : float
+        alpha*/beta*.
     uniform_part : float
         Expansion of the pin, taken off `direct` in the gap of a pressure.
     operator : ndarray, shape (2n, 2n), Fortran order, output
-        [[direct - uniform_part, cross], [-cross, direct]] / (4 pi), integrated over every hat, columns.
+        [[direct - uniform_part, cross], [-cross, direct]] / (4 pi), where direct[i, j] is the integral over hat j of
+        ratio S A - C L at theta_i - xi, and cross likewise that of ratio C A + S L.
     """
     n = theta.size
     blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
@@ -327,34 +335,10 @@ def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, oper
         _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
 
 
-def fill_log(theta, left, right, uniform, closed, ratio, direct, cross):
-    """Integrals of direct and cross over every hat, seen from every node.
-
-    Parameters
-    ----------
-    theta, left, right : ndarray, shape (n,)
-        Nodes and the outer knots of their hats, rad; a half hat has its outer knot at the node.
-    uniform : bool
-        Nodes are equally spaced: two columns are integrated, the others are copies, and mirrored entries have the
-        same bits.
-    closed : bool
-        The nodes go round the whole circle.
-    ratio : float
-        alpha*/beta*.
-    direct, cross : ndarray, shape (n, n), output
-        direct[i, j] = int hat_j(xi) (ratio S A - C L)(theta_i - xi) dxi, cross likewise with ratio C A + S L.
-    """
-    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
-    log_columns(seen, nodes, h_left, h_right, ratio, 1.0, direct[:, : nodes.size], cross[:, : nodes.size])
-    if uniform:
-        _copy_columns(direct, np.array(1.0), closed)
-        _copy_columns(cross, np.array(-1.0), closed)
-
-
 def fill_cauchy(theta, left, right, uniform, closed, out):
     """Principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
 
-    Parameters as in :func:`fill_log`. The half hats of an arc have no principal value at their own nodes:
+    Parameters as in :func:`fill_operator`. The half hats of an arc have no principal value at their own nodes:
     out[0, 0] and out[n-1, n-1] are NaN (tractions vanish at the ends of an arc: leave those columns out).
     """
     seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)

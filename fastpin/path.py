@@ -263,8 +263,7 @@ class PathStep:
         while True:
             tractions = np.r_[pressure, shear]
             elastic = system.operator @ tractions
-            true = elastic + system.motion @ motion + system.loads @ now.load
-            true[:n] += now.rest_gap
+            true = system.moved(elastic, motion, now.load, now.rest_gap)
             balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
             # of the elastic part and of the force at work, however little is left of them in an unloading

@@ -11,14 +11,15 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from numba.extending import get_cython_function_address
+
+from fastpin.jit import blas_address
 
 WORTHWHILE = 4_000_000
 """Multiplications from which on a product is made in two threads."""
 
 _POINTER = ctypes.c_void_p
-# SciPy's own BLAS. Called in this way it leaves the interpreter free, and works on parts of arrays in place.
-_dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
+# Called in this way it leaves the interpreter free, and works on parts of arrays in place.
+_dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
 
 

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from integrals import log_integrals
 
 from fastpin import analytic, kernels
 from fastpin.errors import InputError
@@ -35,10 +36,8 @@ def graded(start, stop, n):
 
 def displacements(problem, grid, N, T):
     """v_r - u_r and v_theta - u_theta over R, from (30), (31) with the logarithmic kernels."""
-    pair, n = problem.pair, grid.size
-    left, right = grid.knots()
-    direct, cross = np.empty((2, n, n))
-    kernels.fill_log(grid.theta, left, right, False, grid.closed, pair.alpha_star / pair.beta_star, direct, cross)
+    pair = problem.pair
+    direct, cross = log_integrals(grid, False, pair.alpha_star / pair.beta_star)
     cosine, sine = grid.trig_moments()
     c, s = np.cos(grid.theta), np.sin(grid.theta)
     C, S = np.outer(c, cosine) + np.outer(s, sine), np.outer(s, cosine) - np.outer(c, sine)

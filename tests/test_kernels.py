@@ -9,6 +9,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from integrals import log_integrals
 
 from fastpin import kernels
 from fastpin.grid import Grid
@@ -104,10 +105,7 @@ def graded_nodes(n: int, start: float, stop: float) -> np.ndarray:
 
 
 def matrices(grid: Grid, uniform: bool) -> tuple[np.ndarray, np.ndarray]:
-    left, right = grid.knots()
-    direct, cross = np.empty((2, grid.size, grid.size))
-    kernels.fill_log(grid.theta, left, right, uniform, grid.closed, RATIO, direct, cross)
-    return direct, cross
+    return log_integrals(grid, uniform, RATIO)
 
 
 def operator(grid: Grid, uniform: bool, uniform_part: float) -> np.ndarray:

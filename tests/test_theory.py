@@ -7,6 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from integrals import log_integrals
 from test_green import (
     KOLOSOV,
     RADIUS,
@@ -108,9 +109,7 @@ def sliding_error(pair, w, sign, nodes, mu=0.6):
     N = np.maximum(1.0 - x * x, 0.0) ** 4 * (1.0 + 0.4 * x)
     slope = np.gradient(N, theta, edge_order=2)
     T = sign * mu * N
-    left, right = grid.knots()
-    direct, cross = np.empty((2, nodes, nodes))
-    kernels.fill_log(theta, left, right, True, False, alpha, direct, cross)
+    direct, cross = log_integrals(grid, True, alpha)
     cos, sin = np.cos(theta), np.sin(theta)
     cosine, sine = grid.trig_moments()
     N_total, P, Q = grid.weights @ N, cosine @ T - sine @ N, sine @ T + cosine @ N  # equilibrium (T18)
@@ -209,9 +208,7 @@ def test_total_pressure_of_the_frictionless_contact(half_angle):
 def test_interference_pressure(pair):
     # a uniform pressure N R/F = 1 closes the gap -(1 + alpha_D - 2 beta_D)/4 in F beta*, all from (T9)
     grid = Grid.circle(720)
-    left, right = grid.knots()
-    direct, cross = np.empty((2, grid.size, grid.size))
-    kernels.fill_log(grid.theta, left, right, True, True, pair.alpha_star / pair.beta_star, direct, cross)
+    direct, cross = log_integrals(grid, True, pair.alpha_star / pair.beta_star)
     alpha, beta = pair.dundurs()
     radial = (direct.sum(axis=1) - 0.5 * (1.0 - alpha) * 2.0 * PI) / (4.0 * PI)
     np.testing.assert_allclose(radial, 0.25 * (1.0 + alpha - 2.0 * beta), atol=1e-12)
