@@ -13,7 +13,7 @@ import numpy as np
 
 import fastpin
 
-HISTORY = fastpin.LoadHistory([{"P": 1.0}, *(2 * [{"Q": cases.AMPLITUDE}, {"Q": -cases.AMPLITUDE}])[:3]])
+HISTORY = fastpin.LoadHistory([{"P": 1.0}, *({"Q": sign * cases.AMPLITUDE} for sign in (1.0, -1.0, 1.0))])
 SIZES = (51, 101, 201, 401, 801)
 ROUNDS = 3
 

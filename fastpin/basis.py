@@ -68,6 +68,19 @@ class Unknowns:
         tractions[self._coupling.size + slipping] = self._coupling[slipping] * tractions[slipping]
         return tractions
 
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Unknown tractions and motion, (count+3,), for given right-hand sides."""
+        raise NotImplementedError
+
+    def rates(self, load_rate: np.ndarray) -> np.ndarray:
+        """Rates (count+3,) of the unknowns while the load changes and the statuses do not."""
+        system = self._system
+        return self.solve(np.r_[-(system.loads @ load_rate)[self.rows], system.forces @ load_rate])
+
+    def displacement(self, unknowns: np.ndarray) -> np.ndarray:
+        """Gap and slip (2n,) that the unknowns (count+3,) make."""
+        return self._system.operator @ self.expand(unknowns) + self._system.motion @ unknowns[-3:]
+
     def at_others(self, unknowns: np.ndarray, acting: np.ndarray) -> np.ndarray:
         """Displacement of the others from the unknowns (count+3, k), added to `acting` (2n-count, k)."""
         others = np.asfortranarray(acting)
@@ -232,10 +245,8 @@ class StuckSet(Unknowns):
         """Residual of one solve, from the matrices."""
         wanted, system = np.cos(np.arange(self.count + 3.0)), self._system
         found = self.solve(wanted)
-        tractions = self.expand(found)
-        displacement = system.operator @ tractions + system.motion @ found[-3:]
-        balance = system.equilibrium @ tractions + system.motion_rows @ found[-3:]
-        return float(np.abs(np.r_[displacement[self.rows], balance] - wanted).max())
+        balance = system.equilibrium @ self.expand(found) + system.motion_rows @ found[-3:]
+        return float(np.abs(np.r_[self.displacement(found)[self.rows], balance] - wanted).max())
 
 
 def solvable_set(system: System, status: np.ndarray) -> StuckSet | FactoredSet | None:

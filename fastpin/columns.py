@@ -54,8 +54,8 @@ class Columns:
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._system, self._basis = system, basis
-        self._free = np.r_[basis.rows, 2 * n + np.arange(3)]
-        self._order = np.argsort(np.r_[self._free, basis.others])
+        # of the unknowns and, below them, the others: where they stand among (N or h), (T or s) and the motion
+        self._order = np.argsort(np.r_[basis.rows, 2 * n + np.arange(3), basis.others])
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
         self._rows: list[np.ndarray] = []
@@ -72,12 +72,9 @@ class Columns:
 
     def _rates(self, load_rate: np.ndarray) -> np.ndarray:
         system, basis = self._system, self._basis
-        change, rates = system.loads @ load_rate, np.empty(2 * system.grid.size + 3)
-        unknowns = basis.solve(np.r_[-change[basis.rows], system.forces @ load_rate])
-        change += system.operator @ basis.expand(unknowns) + system.motion @ unknowns[-3:]
-        rates[self._free] = unknowns
-        rates[basis.others] = change[basis.others]
-        return rates
+        unknowns = basis.rates(load_rate)
+        displaced = system.loads @ load_rate + basis.displacement(unknowns)
+        return np.r_[unknowns, displaced[basis.others]][self._order]
 
     def _tie(self, contact: Contact) -> None:
         """Tie the shear of every node as it will be when it slips; where that turns out wrong it costs an update."""
@@ -114,7 +111,7 @@ class Columns:
         acting = system.operator @ tractions
         balance = given[2 * n :] - system.equilibrium @ tractions
         unknowns = basis.solve(np.r_[given[basis.rows] - acting[basis.rows], balance])
-        acting += system.operator @ basis.expand(unknowns) + system.motion @ unknowns[-3:]
+        acting += basis.displacement(unknowns)
         values = np.empty((2 * n + 3, 1), order="F")
         self._spread(np.r_[unknowns, acting[basis.others]][:, None], values)
         self._update(values, given[self.tableau.slot[:updates], None], 0, updates)

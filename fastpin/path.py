@@ -161,11 +161,14 @@ class PathStep:
                 if code != tableau.REACHED:
                     raise StepLostError(code, self.fraction)
                 solution = self._corrected()
-                if not self._oversteps(solution):
-                    return _settled(system, self.now, solution)
+                settled = _settled(system, self.now, solution)
+                if not _cut_off(settled, solution):
+                    return settled
                 if settlings == MOST_SETTLINGS:
                     raise StepLostError(tableau.CYCLING, self.fraction)
-                settlings += 1  # from the values that were cut off
+                # Rounding, when a load is almost gone, has kept a status too long: from its limit it changes at once.
+                self._take(settled)
+                settlings += 1
 
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
@@ -182,8 +185,7 @@ class PathStep:
         basis = StuckSet.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
         if basis is None:
             return None
-        change = self.system.loads @ self.rate
-        rates = basis.solve(np.r_[-change[basis.rows], self.system.forces @ self.rate])
+        rates = basis.rates(self.rate)
         normal, shear = rates[: basis.normal.size], rates[basis.normal.size : -3]
         slipping = np.abs(status[basis.normal]) == 1
         growth = -status[basis.normal] * shear - self.system.friction * normal
@@ -225,32 +227,13 @@ class PathStep:
     def _mend(self) -> None:
         """Compute the present configuration anew, by a factorisation, and the tableau."""
         self._book()
-        mended = resolved(self.system, self.now)
-        for name in ("pressure", "shear", "gap", "slip", "motion"):
-            getattr(self.now, name)[:] = getattr(mended, name)
+        self._take(resolved(self.system, self.now))
         self._rebuild()
 
-    def _oversteps(self, solution: Solution) -> bool:
-        """Whether a corrected solution oversteps the limits of its statuses. If so it is taken, cut off at the limits.
-
-        What rounding has made of a load that is almost gone may have kept a status too long: it then changes at once.
-        """
-        now, friction, status = self.now, self.system.friction, self.now.status
-        closed, stick = status != OPEN, status == STICK
-        pressure = np.where(closed, np.maximum(solution.pressure, 0.0), 0.0)
-        bound = friction * pressure
-        shear = np.where(
-            stick, np.clip(solution.shear, -bound, bound), -friction * np.where(closed, status, 0) * pressure
-        )
-        gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
-        traction, length = MOST_DRIFT * pressure.max(), MOST_DRIFT * gap.max(initial=0.0)
-        over = np.abs(pressure - solution.pressure)[closed].max(initial=0.0) > traction
-        over |= np.abs(shear - solution.shear)[stick].max(initial=0.0) > traction
-        over |= np.abs(gap - solution.gap)[~closed].max(initial=0.0) > length
-        if over:
-            now.pressure[:], now.shear[:], now.gap[:] = pressure, shear, gap
-            now.slip[~stick], now.motion[:] = solution.slip[~stick], solution.motion
-        return bool(over)
+    def _take(self, better: Configuration) -> None:
+        """Go on from better values of the present configuration."""
+        for name in ("pressure", "shear", "gap", "slip", "motion"):
+            getattr(self.now, name)[:] = getattr(better, name)
 
     def _corrected(self) -> Solution:
         """The present tractions and motion, corrected until statuses, held slip and load hold to rounding."""
@@ -294,7 +277,7 @@ def resolved(system: System, configuration: Configuration) -> Configuration:
 
 
 def _settled(system: System, configuration: Configuration, solution: Solution) -> Configuration:
-    """The configuration with the solution of its statuses; what is at a bound but for rounding is put there."""
+    """The configuration with the solution of its statuses; what is at a bound but for rounding, or beyond, is put there."""
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
     tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)
@@ -309,3 +292,14 @@ def _settled(system: System, configuration: Configuration, solution: Solution) -
     new.slip = np.where(stick, new.slip, solution.slip)
     new.motion = solution.motion
     return new
+
+
+def _cut_off(settled: Configuration, solution: Solution) -> bool:
+    """Whether a solution was beyond the bounds of its statuses by more than rounding."""
+    stick, gaping = settled.status == STICK, ~settled.closed
+    traction, length = MOST_DRIFT * settled.pressure.max(), MOST_DRIFT * settled.gap.max()
+    return bool(
+        np.abs(settled.pressure - solution.pressure).max() > traction
+        or np.abs(settled.shear - solution.shear)[stick].max(initial=0.0) > traction
+        or np.abs(settled.gap - solution.gap)[gaping].max(initial=0.0) > length
+    )

@@ -135,7 +135,7 @@ class Run:
         self.fresh = 0.0  # part of the way to a stop at which the contact was found
         self.releases = 0
         self.path: PathStep | None = None
-        self.memory: Memory | None = None
+        self.memory = Memory(system.grid.size)
         self.path_begin = 0.0
         self.repeats = Repeats() if repeats is None else repeats
         self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0, "repeated": 0.0}
@@ -225,8 +225,6 @@ class Run:
         try:
             if self.path is None:
                 self.path_begin = self.reached
-                if self.memory is None:
-                    self.memory = Memory(self.system.grid.size)
                 self.path = PathStep(self.system, self.now, piece.after, self.memory)
             length = piece.end - self.path_begin
             self.now = self.path.follow(1.0 if stop == piece.end else (stop - self.path_begin) / length, report)

@@ -111,15 +111,15 @@ class Beside:
     With the nodes of the set 0 to m-1, b_j the block column of T that a node j beside it makes in the rows of the set
     and T_ij the block of two nodes, these are, for all nodes beside,
 
-        x_j = T^-1 b_j,        Y_ij = T_ij - b_i' x_j.
+        x_j = T^-1 b_j,        Y_ij = T_ij - b_i^T x_j.
 
-    b_j+1 is b_j moved on by one. So, with C and C' the first and the last block column of the inverse,
+    b_j+1 is b_j moved on by one. So, with A and Z the first and the last block column of the inverse,
 
-        x_j+1[i] = x_j[i-1] + x_m[i] x_j[m-1] + C[i] Y_-1,j,
-        Y_i+1,j+1 = Y_ij + Y_i+1,m x_j[m-1] - x_i+1[0]' Y_-1,j,
+        x_j+1[i] = x_j[i-1] + x_m[i] x_j[m-1] + A[i] Y_-1,j,
+        Y_i+1,j+1 = Y_ij + Y_i+1,m x_j[m-1] - x_i+1[0]^T Y_-1,j,
 
     and the same from the other end. What stands on the right is known for all j from products with few columns:
-    x_j[0] = C' b_j, x_j[m-1] = C'' b_j, Y_-1,j and Y_mj.
+    x_j[0] = A^T b_j, x_j[m-1] = Z^T b_j, Y_-1,j and Y_mj.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ class Beside:
         return np.column_stack([np.r_[first, -cross], np.r_[cross, second]])
 
     def _products(self, vectors: np.ndarray) -> np.ndarray:
-        """b_j' times vectors (2m, k) on the set, for all nodes beside, shape (2(n-m), k)."""
+        """b_j^T times vectors (2m, k) on the set, for all nodes beside, shape (2(n-m), k)."""
         n, m, low = self._entries.shape[1] - 1, self._m, self._low
         one, two = np.zeros((2, n, vectors.shape[1]))
         one[low : low + m], two[low : low + m] = vectors[:m], vectors[m:]
