@@ -277,7 +277,7 @@ def resolved(system: System, configuration: Configuration) -> Configuration:
 
 
 def _settled(system: System, configuration: Configuration, solution: Solution) -> Configuration:
-    """The configuration with the solution of its statuses; what is at a bound but for rounding, or beyond, is put there."""
+    """The configuration with the solution of its statuses; what is beyond a bound, or almost at it, is put there."""
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
     tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)
