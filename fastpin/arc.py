@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -10,11 +11,17 @@ import numpy as np
 from fastpin.collocation import System
 from fastpin.errors import ArcError, SolveError
 from fastpin.grid import Grid
+from fastpin.loading import LoadHistory
 from fastpin.problem import Problem
 from fastpin.run import Progress, Run
 
 COARSE_NODES = 121
 WHOLE = 5.6  # an arc wider than this, rad, becomes the whole circle
+MOST_CORNERS = 200
+"""Corners that the coarse run follows; of more it takes the extreme ones."""
+
+DIRECTIONS = 16
+
 CORNERS_ONLY = np.array([1.0])
 
 
@@ -43,14 +50,14 @@ def _touched_arc(
 
     `progress` sees every coarse run as a run of its own, before the one that counts.
     """
-    arc = _estimated_arc(problem, values)
+    arc, history = _estimated_arc(problem, values), LoadHistory.from_array(_outline(values))
     for _ in range(12):
         if arc is not None and arc[1] - arc[0] >= WHOLE:
             arc = None
         grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress)
-            run.follow(values)
+            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress=progress)
+            run.follow(history)
             margin = 4
         except ArcError:
             assert arc is not None
@@ -86,6 +93,23 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
+
+
+def _outline(values: np.ndarray) -> np.ndarray:
+    """The corners of a long history that lie outermost, in their order: between them is everything that acts."""
+    if len(values) <= MOST_CORNERS:
+        return values
+    largest = np.abs(values).max(axis=0)
+    scaled = values[:, largest > 0.0] / largest[largest > 0.0]
+    chosen = {0}
+    for turn in np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False):
+        for first, second in itertools.combinations_with_replacement(range(scaled.shape[1]), 2):
+            chosen.add(int(np.argmax(math.cos(turn) * scaled[:, first] + math.sin(turn) * scaled[:, second])))
+    pushed = np.flatnonzero(values[:, :2].any(axis=1))
+    if pushed.size:
+        directions = np.unwrap(np.arctan2(-values[pushed, 0], values[pushed, 1]))
+        chosen |= {int(pushed[np.argmin(directions)]), int(pushed[np.argmax(directions)])}
+    return values[sorted(chosen)]
 
 
 def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:

@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.caselines import CaseText, Section, choice, closest, number, shown, string, whole
-from fastpin.caseloads import check_loads, read_history
+from fastpin.caseloads import HARMONIC, check_loads, read_history
 from fastpin.errors import CaseFileError, InputError
+from fastpin.keep import Keep
 from fastpin.loading import LOADS, LoadHistory
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
@@ -42,9 +43,9 @@ _KEYS: dict[str, tuple[str, ...]] = {
         "rotation",
         "hub_radius",
     ),
-    "load": (*LOADS, "repeat"),
+    "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
-    "solve": ("nodes", "method", "increments", "arc", "between"),
+    "solve": ("nodes", "method", "increments", "arc", "between", "keep", "shortcut"),
 }
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # where a pair is wrong, to check the rest
 
@@ -60,6 +61,8 @@ class SolveOptions:
     increments: int = 80
     arc: tuple[float, float] | None = None
     between: int | tuple[float, ...] = 0
+    keep: str = "all"
+    shortcut: bool = True
 
     def __post_init__(self) -> None:
         whole("nodes", self.nodes, 5, MAX_NODES)
@@ -68,6 +71,8 @@ class SolveOptions:
         if self.arc is not None:
             object.__setattr__(self, "arc", _checked_arc(self.arc))
         object.__setattr__(self, "between", checked_between(self.between))
+        object.__setattr__(self, "keep", str(Keep.of(self.keep)))
+        _true_or_false("shortcut", self.shortcut)
 
     def keywords(self) -> dict[str, Any]:
         """The options as keyword arguments of :func:`fastpin.solve`."""

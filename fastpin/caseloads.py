@@ -2,37 +2,42 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import numpy as np
 
 from fastpin import loading
-from fastpin.caselines import CaseText, Section, number, string, whole
-from fastpin.errors import InputError
+from fastpin.caselines import CaseText, Section, number, shown, string, whole
+from fastpin.errors import CaseFileError, InputError
 from fastpin.loading import LOADS, LoadHistory
 from fastpin.problem import Problem
 
-MAX_CORNERS = 1_000_000
+MAX_CORNERS = 100_000_000
+MAX_ROWS = 10_000_000  # of corners that are held in memory
+HARMONIC = ("mean", "amplitude", "phase", "points")
 
 
 def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     """The load history; None when it can't be used, which is reported. A CSV file is looked for from `folder` on."""
-    if "load" in source.root and "history" in source.root:
-        source.report("[history]: give either [history] or [[load]] blocks", "history")
+    section = source.section("history")
+    if "load" in source.root and "csv" in section:
+        source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
         return None
-    if "history" in source.root:
-        return _from_csv(source.section("history"), folder)
     if "load" in source.root:
-        return _from_blocks(source)
-    source.report("no loads: [[load]] blocks or a section [history] are missing", "load")
-    return None
+        history = _from_blocks(source, folder)
+    elif section.present:
+        section.require("csv")
+        history = _from_csv(section, folder)
+    else:
+        source.report("no loads: [[load]] blocks or a section [history] are missing", "load")
+        return None
+    return _repeated(section, history)
 
 
 def check_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
     """Report every load that does not go with the problem."""
     # What a corner leaves out is taken from the one before; what was never given stays away.
-    columns = history.values(initial=np.full(len(LOADS), np.nan)).T
+    columns = history.distinct(initial=np.full(len(LOADS), np.nan)).T
     for name, column in zip(LOADS, columns, strict=True):
         values = np.unique(column[~np.isnan(column)])
         if len(values):
@@ -52,7 +57,7 @@ def _report_load(source: CaseText, name: str, message: str) -> None:
         source.report(message, "history", "csv")
 
 
-def _from_blocks(source: CaseText) -> LoadHistory | None:
+def _from_blocks(source: CaseText, folder: Path) -> LoadHistory | None:
     given = source.root.value("load")
     blocks = source.blocks("load")
     if given is None:
@@ -60,21 +65,77 @@ def _from_blocks(source: CaseText) -> LoadHistory | None:
     if not isinstance(given, list) or not given or len(blocks) < len(given):
         source.report("loads are [[load]] blocks, with double brackets", "load")
         return None
-    corners: list[dict[str, float]] = []
-    for block in blocks:
-        rows = _corners(block)
-        repeat = block.checked("repeat", whole, 1) or 1
-        if len(corners) + len(rows) * repeat > MAX_CORNERS:
-            key = "repeat" if "repeat" in block else "load"
-            block.report(f"{key}: the history has more than {MAX_CORNERS} corners", key)
-            return None
-        corners.extend(rows * repeat)
-    return LoadHistory(corners) if corners else None
+    histories = [_from_block(block, folder) for block in blocks]
+    whole = [block for history in histories if history is not None for block in history.blocks]
+    return LoadHistory.of_blocks(whole) if whole else None
+
+
+def _from_block(block: Section, folder: Path) -> LoadHistory | None:
+    """The history of one block: its corners, those of a file, or harmonic cycles."""
+    if "csv" in block:
+        for name in (*LOADS, *HARMONIC):
+            if name in block:
+                block.report(f"{name}: can't be given together with csv", name)
+        return _repeated(block, _from_csv(block, folder))
+    if "amplitude" in block:
+        for name in LOADS:
+            if name in block:
+                block.report(f"{name}: can't be given together with amplitude; write mean = {{{name} = ...}}", name)
+        return _harmonic(block)
+    for name in HARMONIC:
+        if name in block:
+            block.report(f"{name}: needs an amplitude, such as amplitude = {{Q = 1e5}}", name)
+    rows = _corners(block)
+    return _repeated(block, LoadHistory(rows)) if rows else None
+
+
+def _repeated(section: Section, history: LoadHistory | None) -> LoadHistory | None:
+    """A history, as often as the key ``repeat`` of its section says; each time is a cycle."""
+    count = section.checked("repeat", whole, 1)
+    if count is None or history is None:
+        return history
+    rows = sum(block.corners for block in history.blocks)
+    if len(history) * count > MAX_CORNERS or rows > MAX_ROWS:
+        section.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
+        return None
+    return history.repeated(count)
+
+
+def _harmonic(block: Section) -> LoadHistory | None:
+    tables = {name: _loads(block, name) for name in ("mean", "amplitude", "phase")}
+    points = block.checked("points", whole, 2)
+    count = block.checked("repeat", whole, 1) or 1
+    try:
+        history = LoadHistory.harmonic(**tables, count=count, points=points)
+    except InputError as error:
+        block.report(str(error), error.field)
+        return None
+    if len(history) > MAX_CORNERS:
+        block.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
+        return None
+    return history
+
+
+def _loads(block: Section, name: str) -> dict[str, float]:
+    """A table of loads, such as ``mean = {P = 1e6, Q = 0}``."""
+    table = block.value(name)
+    if table is None:
+        return {}
+    if not isinstance(table, dict):
+        block.report(f"{name}: must be a table of loads, such as {name} = {{Q = 1e5}}, not {shown(table)}", name)
+        return {}
+    loads = {}
+    for load, value in table.items():
+        try:
+            loads[load] = number(f"{name}.{load}", value)
+        except InputError as error:
+            block.report(str(error), name)
+    return loads
 
 
 def _corners(block: Section) -> list[dict[str, float]]:
     """The corners of one block."""
-    if not set(block.table) - {"repeat"}:
+    if not set(block.table) & set(LOADS):
         block.report(f"[[load]]: gives no load; the loads are {', '.join(LOADS)}")
     columns = {name: column for name in LOADS if (column := _numbers(block, name)) is not None}
     lengths = {name: len(column) for name, column in columns.items() if isinstance(column, list)}
@@ -107,22 +168,12 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
 
 
 def _from_csv(section: Section, folder: Path) -> LoadHistory | None:
-    if not section.present:
-        return None
-    repeat = section.checked("repeat", whole, 1) or 1
-    section.require("csv")
     name = section.checked("csv", string)
     if name is None:
         return None
     try:
-        history = LoadHistory.from_csv(folder / name)
-    except InputError as error:
-        section.report(f"csv: {error.reason}", "csv")
+        return LoadHistory.from_csv(folder / name)
+    except CaseFileError as error:
+        for line, text in error.problems:
+            section.report(f"csv: {name}{f', line {line}' if line else ''}: {text}", "csv")
         return None
-    except (csv.Error, ValueError) as error:
-        section.report(f"csv: can't read {name!r}: {error}", "csv")
-        return None
-    if len(history) * repeat > MAX_CORNERS:
-        section.report(f"repeat: the history has more than {MAX_CORNERS} corners", "repeat")
-        return None
-    return history.repeated(repeat)

@@ -70,6 +70,14 @@ class SolveError(FastpinError):
         self.result = result
 
 
+class Interrupted(KeyboardInterrupt):  # noqa: N818
+    """Ctrl-C during a solution, which stopped where it can be gone on from; ``result`` is what was solved before."""
+
+    def __init__(self, result: Result | None = None) -> None:
+        super().__init__("interrupted")
+        self.result = result
+
+
 class NoEquilibriumError(SolveError):
     """No state of the pin carries the load: the pin spins, slides away or loses contact."""
 

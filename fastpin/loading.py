@@ -1,16 +1,25 @@
-"""Load histories: corner points of the loads, linear in between, starting from no load."""
+"""Load histories: corner points of the loads, linear in between, starting from no load.
+
+A history is a sequence of blocks, each of which is a table of corners and how often it is run through: a million cycles
+take the memory of one, a table of a million corners is held once.
+"""
 
 from __future__ import annotations
 
+import bisect
 import csv
 import difflib
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
 from fastpin.checks import finite, whole_number
-from fastpin.errors import InputError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.problem import Problem
 
 LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
@@ -23,7 +32,64 @@ LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
 * ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed.
 """
 
+POINTS = 24
+"""Corners a cycle of loads that are out of phase, unless said otherwise."""
+
+MOST_FAULTS = 20
+"""Faulty lines of a CSV file that are reported."""
+
 Corner = Mapping[str, float]
+
+CycleKey = tuple[int, int]
+"""A cycle of a history: its block, and which of the cycles inside, counted from 1, or 0 for the block itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Corners that are run through once or more.
+
+    Attributes
+    ----------
+    given : ndarray, shape (corners, loads)
+        The loads as they were given; NaN keeps the last value.
+    ends : ndarray of int, shape (corners,)
+        Which of the cycles inside ends at a corner, counted from 1; 0 where none does.
+    lengths : tuple of int
+        Corners of each of the cycles inside.
+    count : int
+        How often the block is run through.
+    cycle : bool
+        Whether each time through is a cycle.
+    """
+
+    given: np.ndarray
+    ends: np.ndarray
+    lengths: tuple[int, ...] = ()
+    count: int = 1
+    cycle: bool = False
+
+    @property
+    def corners(self) -> int:
+        """Number of corners, all times through."""
+        return len(self.given) * self.count
+
+    def cut(self, start: int, stop: int) -> Iterator[Block]:
+        """The corners from `start` to `stop`, as few blocks."""
+        size = len(self.given)
+        first, last = -(-start // size), stop // size  # whole times through
+        if first > last:
+            yield self._part(start % size, stop - (last * size))
+            return
+        if start < first * size:
+            yield self._part(start % size, size)
+        if first < last:
+            yield replace(self, count=last - first)
+        if last * size < stop:
+            yield self._part(0, stop - last * size)
+
+    def _part(self, start: int, stop: int) -> Block:
+        whole = self.cycle and stop == len(self.given)
+        return replace(self, given=self.given[start:stop], ends=self.ends[start:stop], count=1, cycle=whole)
 
 
 class LoadHistory:
@@ -45,6 +111,9 @@ class LoadHistory:
     array([[1000000.,       0.],
            [1000000.,  200000.],
            [1000000., -200000.]])
+    >>> program = LoadHistory([{"P": 1e6}]) + LoadHistory([{"Q": 2e5}, {"Q": -2e5}]).repeated(1000)
+    >>> len(program)
+    2001
     """
 
     def __init__(self, corners: Iterable[Corner]) -> None:
@@ -56,12 +125,23 @@ class LoadHistory:
             for name, value in corner.items():
                 row[_load_index(name, f"corner {index + 1}")] = finite(f"{name} of corner {index + 1}", value)
             rows.append(row)
-        self._given = _checked(np.array(rows).reshape(-1, len(LOADS)))
+        self._set([_plain(np.array(rows).reshape(-1, len(LOADS)))])
+
+    def _set(self, blocks: Iterable[Block]) -> None:
+        self._blocks = tuple(block for block in blocks if block.corners)
+        if not self._blocks:
+            raise InputError("history", "must have at least one load corner")
+        for block in self._blocks:
+            block.given.setflags(write=False)
+        self._begins = [0]
+        for block in self._blocks:
+            self._begins.append(self._begins[-1] + block.corners)
 
     @classmethod
-    def _from_given(cls, given: np.ndarray) -> LoadHistory:
+    def of_blocks(cls, blocks: Iterable[Block]) -> LoadHistory:
+        """A history of given blocks."""
         history = cls.__new__(cls)
-        history._given = _checked(given)
+        history._set(blocks)
         return history
 
     @classmethod
@@ -90,104 +170,228 @@ class LoadHistory:
         whole_number("count", count, 1)
         if start not in (1, -1):
             raise InputError("start", f"must be 1 or -1, not {start!r}")
-        for field, loads in (("mean", mean), ("amplitude", amplitude)):
-            for name, value in loads.items():
-                _load_index(name, field)
-                finite(f"{name} of {field}", value)
+        _check_corner("mean", mean)
+        _check_corner("amplitude", amplitude)
         plus = {k: mean.get(k, 0.0) + start * v for k, v in amplitude.items()}
         minus = {k: mean.get(k, 0.0) - start * v for k, v in amplitude.items()}
-        corners: list[Corner] = [mean, plus, *[minus, plus] * count]
+        history = cls([mean, plus]) + cls([minus, plus]).repeated(count)
         if return_to_mean:
-            corners.append({k: mean.get(k, 0.0) for k in amplitude})
-        return cls(corners)
+            history += cls([{k: mean.get(k, 0.0) for k in amplitude}])
+        return history
+
+    @classmethod
+    def harmonic(
+        cls, mean: Corner, amplitude: Corner, phase: Corner | None = None, count: int = 1, points: int | None = None
+    ) -> LoadHistory:
+        """`count` cycles of the loads mean + amplitude cos(2 pi t + phase), from t = 0 on.
+
+        Parameters
+        ----------
+        mean, amplitude : mapping
+            Loads; one that is left out of one of them is 0 there.
+        phase : mapping, optional
+            By how much loads of `amplitude` run ahead, degrees.
+        count : int
+            Number of cycles. The first corner is the point t = 0, every cycle ends there.
+        points : int, optional
+            Corners a cycle, at least 2. By default 2 (the extremes, between which all loads are proportional) where all
+            phases are 0 or 180 degrees, else :data:`POINTS`: the path is a polygon inscribed in the ellipse.
+        """
+        whole_number("count", count, 1)
+        phase = {} if phase is None else phase
+        for field, loads in (("mean", mean), ("amplitude", amplitude), ("phase", phase)):
+            _check_corner(field, loads)
+        if not amplitude:
+            raise InputError("amplitude", "must give at least one load")
+        for name in phase:
+            if name not in amplitude:
+                raise InputError("phase", f"{name} has a phase but no amplitude")
+        if points is None:
+            points = 2 if all(angle % 180.0 == 0.0 for angle in phase.values()) else POINTS
+        whole_number("points", points, 2)
+
+        def corner(turn: float) -> dict[str, float]:
+            return {
+                name: mean.get(name, 0.0) + amplitude.get(name, 0.0) * _cos_degrees(360.0 * turn + phase.get(name, 0.0))
+                for name in LOADS
+                if name in mean or name in amplitude
+            }
+
+        cycle = cls(corner(k / points) for k in [*range(1, points), 0])
+        return cls([corner(0.0)]) + cycle.repeated(count)
+
+    @classmethod
+    def from_array(cls, corners: np.ndarray, loads: Sequence[str] = LOADS) -> LoadHistory:
+        """Corners in the rows of an array, whose columns are `loads`; NaN keeps the last value.
+
+        Raises
+        ------
+        InputError
+            If a load is unknown or named twice, the shape does not fit or a value is infinite.
+        """
+        columns = [_load_index(name, "loads") for name in loads]
+        array = np.asarray(corners, dtype=float)
+        if len(set(columns)) < len(columns):
+            raise InputError("loads", "a load is named twice")
+        if array.ndim != 2 or array.shape[1] != len(columns):
+            raise InputError("corners", f"must have the shape (corners, {len(columns)}), not {array.shape}")
+        if np.isinf(array).any():
+            raise InputError("corners", "must be finite numbers, or NaN to keep the last value")
+        given = np.full((len(array), len(LOADS)), np.nan)
+        given[:, columns] = array
+        return cls.of_blocks([_plain(given)])
 
     @classmethod
     def from_csv(cls, path: str | Path) -> LoadHistory:
         """Read corners from a CSV file: a header of load names, one corner a line.
 
-        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped.
+        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Spectra and
+        sequences of reversals of other programs are read in this way.
 
         Raises
         ------
-        InputError
-            If the file can't be read, a column is unknown, or a cell is not a finite number (with its line).
+        CaseFileError
+            If the file can't be read, a column is unknown, or cells are not finite numbers: all faulty lines, the first
+            :data:`MOST_FAULTS` of them.
         """
         path = Path(path)
         try:
-            text = path.read_text(encoding="utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError("csv", f"can't read {path}: {getattr(error, 'strerror', None) or error}") from None
-        header: list[int] = []
-        rows: list[np.ndarray] = []
-        for number, line in enumerate(text.splitlines(), start=1):
-            if not line.strip() or line.lstrip().startswith("#"):
-                continue
-            cells = [cell.strip() for cell in next(csv.reader([line]))]
-            where = f"{path}, line {number}"
-            if not header:
-                header = [_load_index(cell, where) for cell in cells]
-                if len(set(header)) < len(header):
-                    raise InputError("csv", f"{where}: a load is named twice")
-                continue
-            if len(cells) != len(header):
-                raise InputError("csv", f"{where}: {len(cells)} cells where the header has {len(header)}")
-            row = np.full(len(LOADS), np.nan)
-            for index, cell in zip(header, cells, strict=True):
-                if cell:
-                    try:
-                        row[index] = finite(LOADS[index], float(cell))
-                    except ValueError:
-                        raise InputError(
-                            LOADS[index], f"{where}: {LOADS[index]} must be a finite number, not {cell!r}"
-                        ) from None
-            rows.append(row)
-        if not rows:
-            raise InputError("csv", f"{path} holds no load corners")
-        return cls._from_given(np.array(rows))
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                return cls.of_blocks([_plain(_read_csv(file, str(path)))])
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
 
     def repeated(self, count: int) -> LoadHistory:
-        """The same corners `count` times in a row."""
+        """This history `count` times in a row; each time is a cycle."""
         whole_number("count", count, 1)
-        return LoadHistory._from_given(np.tile(self._given, (count, 1)))
+        given = np.vstack([_times(block, block.count) for block in self._blocks])
+        ends: list[np.ndarray] = []
+        lengths: tuple[int, ...] = ()
+        for block in self._blocks:
+            once = np.where(block.ends > 0, block.ends + len(lengths), 0)
+            lengths += block.lengths
+            if block.cycle:
+                lengths += (len(once),)
+                once[-1] = once[-1] or len(lengths)
+            ends.append(np.tile(once, block.count))
+        return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
 
     def __add__(self, other: LoadHistory) -> LoadHistory:
         """This history followed by `other`."""
         if not isinstance(other, LoadHistory):
             return NotImplemented
-        return LoadHistory._from_given(np.vstack([self._given, other._given]))
+        return LoadHistory.of_blocks([*self._blocks, *other._blocks])
 
     def __len__(self) -> int:
-        return len(self._given)
+        return self._begins[-1]
 
     def __getitem__(self, item: slice) -> LoadHistory:
-        """A part of the history (a slice); what a part leaves out keeps the value before it."""
-        return LoadHistory._from_given(self._given[item])
+        """A part of the history (a slice without a step); what a part leaves out keeps the value before it."""
+        start, stop, step = item.indices(len(self))
+        if step != 1:
+            raise InputError("history", "parts are slices without a step")
+        parts = []
+        for block, begin in zip(self._blocks, self._begins, strict=False):
+            first, last = max(start - begin, 0), min(stop - begin, block.corners)
+            if first < last:
+                parts += list(block.cut(first, last))
+        return LoadHistory.of_blocks(parts)
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """The blocks, in order."""
+        return self._blocks
+
+    @property
+    def longest_cycle(self) -> int:
+        """Corners of the longest cycle; 0 if there is none."""
+        own = [len(block.given) for block in self._blocks if block.cycle]
+        return max([0, *own, *(length for block in self._blocks for length in block.lengths)])
+
+    def corner(self, index: int) -> tuple[np.ndarray, list[CycleKey]]:
+        """The loads given at a corner (NaN keeps the last value), and the cycles that end there."""
+        number, place = self._locate(index)
+        block = self._blocks[number]
+        row = place % len(block.given)
+        ended = [(number, inner)] if (inner := int(block.ends[row])) else []
+        if block.cycle and row == len(block.given) - 1:
+            ended.append((number, 0))
+        return block.given[row], ended
+
+    def cycle_length(self, cycle: CycleKey) -> int:
+        """Corners of a cycle."""
+        block = self._blocks[cycle[0]]
+        return block.lengths[cycle[1] - 1] if cycle[1] else len(block.given)
+
+    def cycles_after(self, index: int) -> list[CycleKey]:
+        """The cycles that begin after a corner (-1: with the first one)."""
+        if index + 1 >= len(self):
+            return []
+        number, place = self._locate(index + 1)
+        block = self._blocks[number]
+        row = place % len(block.given)
+        begun = [(number, 0)] if block.cycle and row == 0 else []
+        for inner, length in enumerate(block.lengths, start=1):
+            if row + length <= len(block.given) and block.ends[row + length - 1] == inner:
+                begun.append((number, inner))
+        return begun
+
+    def same_ahead(self, index: int, period: int) -> int:
+        """How many corners from `index` on are given as those `period` corners before, as far as is easily told."""
+        if index >= len(self):
+            return 0
+        number, place = self._locate(index)
+        block = self._blocks[number]
+        size = len(block.given)
+        if place < period:
+            return 0
+        if period % size == 0:
+            return block.corners - place
+        row = place % size
+        stop = size - 1 if block.cycle else size  # where a cycle ends that did not end a period before
+        length = 64
+        while period <= row < stop:
+            last = min(row + length, stop)
+            given, before = block.given[row:last], block.given[row - period : last - period]
+            same = np.all((given == before) | (np.isnan(given) & np.isnan(before)), axis=1)
+            same &= block.ends[row:last] == block.ends[row - period : last - period]
+            if not same.all():
+                row += int(np.argmin(same))
+                break
+            row, length = last, 8 * length
+        return row - place % size
+
+    def _locate(self, index: int) -> tuple[int, int]:
+        """The block in which a corner lies, and its place there."""
+        number = bisect.bisect_right(self._begins, index) - 1
+        return number, index - self._begins[number]
 
     def values(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
         """All loads at all corners, shape (corners, loads) in the order of :data:`LOADS`.
 
         `initial` is the load before the first corner (none by default).
         """
-        first = np.zeros(len(LOADS)) if initial is None else np.asarray(initial, dtype=float)
-        filled = np.vstack([first, self._given])
-        rows = np.where(np.isnan(filled), 0, np.arange(len(filled))[:, None])
-        latest = np.maximum.accumulate(rows, axis=0)
-        return np.take_along_axis(filled, latest, axis=0)[1:]
+        return _filled([_times(block, block.count) for block in self._blocks], initial)
+
+    def distinct(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
+        """Loads at the corners, shape (corners, loads), with every block at most twice: all loads that ever act."""
+        return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
 
 
 def check_loads(problem: Problem, history: LoadHistory) -> None:
     """Raise :class:`InputError` if a load of `history` can't act in `problem`."""
-    given = history._given
-    moment, rotation = given[:, LOADS.index("M")], given[:, LOADS.index("rotation")]
-    if problem.pin_load == "body" and np.any(np.nan_to_num(moment) != 0.0):
+    moments = [block.given[:, LOADS.index("M")] for block in history.blocks]
+    rotations = [block.given[:, LOADS.index("rotation")] for block in history.blocks]
+    if problem.pin_load == "body" and any(np.any(np.nan_to_num(moment) != 0.0) for moment in moments):
         raise InputError(
             "M",
             "a body-loaded pin can't carry a moment: uniform body forces leave the moment's singularity at the centre "
             '(section 4 of the paper); use pin_load = "centre"',
         )
-    if problem.rotation == "fixed" and not np.all(np.isnan(moment)):
+    if problem.rotation == "fixed" and not all(np.all(np.isnan(moment)) for moment in moments):
         raise InputError("M", 'the moment is a reaction where rotation = "fixed"; leave it out or let the pin rotate')
-    if problem.rotation == "free" and not np.all(np.isnan(rotation)):
+    if problem.rotation == "free" and not all(np.all(np.isnan(rotation)) for rotation in rotations):
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed"')
 
 
@@ -196,11 +400,76 @@ def named_load(vector: np.ndarray) -> dict[str, float]:
     return {name: float(value) for name, value in zip(LOADS, vector, strict=True)}
 
 
-def _checked(given: np.ndarray) -> np.ndarray:
-    if len(given) == 0:
-        raise InputError("history", "must have at least one load corner")
-    given.setflags(write=False)
-    return given
+def filled(given: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """The loads at a corner where `given` acts, and `last` where it says nothing."""
+    return np.where(np.isnan(given), last, given)
+
+
+def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:
+    first = np.zeros(len(LOADS)) if initial is None else np.asarray(initial, dtype=float)
+    values = np.vstack([first, *parts])
+    for column in values.T:
+        rows = np.where(np.isnan(column), 0, np.arange(len(column)))
+        column[:] = column[np.maximum.accumulate(rows)]
+    return values[1:]
+
+
+def _times(block: Block, count: int) -> np.ndarray:
+    return block.given if count == 1 else np.tile(block.given, (count, 1))
+
+
+def _plain(given: np.ndarray) -> Block:
+    return Block(given, np.zeros(len(given), dtype=np.int64))
+
+
+def _cos_degrees(angle: float) -> float:
+    """The cosine, exact where it is 0 or 1."""
+    quarters = angle / 90.0
+    return (1.0, 0.0, -1.0, 0.0)[int(quarters) % 4] if quarters.is_integer() else math.cos(math.radians(angle))
+
+
+def _read_csv(file: TextIO, name: str) -> np.ndarray:
+    """The corners of a CSV file, shape (corners, loads). All its faults are raised together."""
+    faults: list[tuple[int, str]] = []
+    header: list[int] | None = None
+    numbers = array("d")  # grows in place, and becomes the table without a copy
+    nothing = array("d", [math.nan] * len(LOADS))
+    for number, line in enumerate(file, start=1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        cells = next(csv.reader([line], skipinitialspace=True))
+        if header is None:
+            try:
+                header = [_load_index(cell.strip(), f"column {k}") for k, cell in enumerate(cells, start=1)]
+            except InputError as error:
+                raise CaseFileError(name, [(number, error.reason)]) from None
+            if len(set(header)) < len(header):
+                raise CaseFileError(name, [(number, "a load is named twice")])
+            continue
+        if len(cells) != len(header):
+            faults.append((number, f"{len(cells)} cells where the header has {len(header)}"))
+        else:
+            numbers.extend(nothing)
+            for index, cell in zip(header, cells, strict=True):
+                if cell and not cell.isspace():
+                    try:
+                        numbers[index - len(LOADS)] = finite(LOADS[index], float(cell))
+                    except ValueError:
+                        faults.append((number, f"{LOADS[index]} must be a finite number, not {cell.strip()!r}"))
+        if len(faults) >= MOST_FAULTS:
+            faults.append((number, "that is enough; what follows was not read"))
+            break
+    if faults:
+        raise CaseFileError(name, faults)
+    if not numbers:
+        raise CaseFileError(name, [(0, "holds no load corners")])
+    return np.frombuffer(numbers).reshape(-1, len(LOADS))
+
+
+def _check_corner(field: str, loads: Corner) -> None:
+    for name, value in loads.items():
+        _load_index(name, field)
+        finite(f"{name} of {field}", value)
 
 
 def _load_index(name: object, where: str) -> int:

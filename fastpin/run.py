@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter, deque
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -14,10 +16,11 @@ from fastpin.columns import Memory
 from fastpin.contact import first_contact, released, unloaded
 from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
 from fastpin.increment import implicit_step
-from fastpin.loading import LoadHistory, named_load
+from fastpin.keep import EVERYTHING, Keep
+from fastpin.loading import CycleKey, LoadHistory, filled, named_load
 from fastpin.path import PathStep, StepLostError
-from fastpin.repeats import Repeats, Step
-from fastpin.state import OPEN, SLIP_POSITIVE, Restart, Result, State
+from fastpin.repeats import Repeats
+from fastpin.state import OPEN, SLIP_POSITIVE, Cycle, State
 
 Method = Literal["path", "increment"]
 Progress = Callable[[float, int], None]
@@ -29,6 +32,9 @@ FEW_NODES = 8
 
 NEGLIGIBLE = 1e-3
 """Part of a step's force below which a contact narrower than the grid is given up and looked for again."""
+
+MOST_LOGGED = 1024
+"""Corners that are looked back on, or those of the longest cycle."""
 
 MOST_RELEASES = 20
 """Times that this may happen in one step."""
@@ -85,6 +91,100 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
     return ConvergenceError("the stick and slip zones did not settle")
 
 
+class Recorder(Protocol):
+    """Where a run leaves what it finds."""
+
+    def begin(self, run: Run) -> None:
+        """Forget all; from here on everything comes from `run`."""
+
+    def add(self, state: State) -> None:
+        """Keep a state."""
+
+    def add_cycle(self, cycle: Cycle) -> None:
+        """Keep what a cycle has changed."""
+
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        """Keep the latest states once more, as states of other steps with other energies, shape (states,)."""
+
+    def corner_reached(self) -> None:
+        """The run stands at a corner, from which it can be gone on."""
+
+
+@dataclass(eq=False)
+class Mark:
+    """The end of a cycle, or the corner with which the first one begins, and the energy dissipated since."""
+
+    corner: int
+    number: int
+    configuration: Configuration
+    dissipation: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Restart:
+    """What is needed to go on from a corner, to the same bits.
+
+    Attributes
+    ----------
+    corner : int
+        Corners of the history that were followed.
+    load : ndarray, shape (loads,)
+        The load there, SI.
+    force : float
+        The reference force, N/m.
+    configuration : Configuration
+        Its dissipation and work are 0.
+    dissipation, work : float
+        Until there (dimensionless).
+    repeats : Repeats
+    marks : dict
+        The latest end of each cycle.
+    statistics : dict of str to float
+    """
+
+    corner: int
+    load: np.ndarray
+    force: float
+    configuration: Configuration
+    dissipation: float
+    work: float
+    repeats: Repeats
+    marks: dict[CycleKey, Mark]
+    statistics: dict[str, float]
+
+    def elsewhere(self) -> Restart:
+        """The same for another history, which begins here."""
+        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={})
+
+
+@dataclass(eq=False)
+class _Logged:
+    """A corner of the past: what happened on the way to it, and what was kept of it."""
+
+    dissipation: float
+    work: float
+    kept: list[tuple[float, float]]  # dissipation and work, from the corner before, of every state
+    cycles: list[tuple[CycleKey, Cycle]]
+
+
+def _copies(marks: dict[CycleKey, Mark]) -> dict[CycleKey, Mark]:
+    return {key: replace(mark) for key, mark in marks.items()}
+
+
+def _counts(logged: list[_Logged], begin: int) -> dict[CycleKey, int]:
+    """By how much the numbers of the cycles grow in a period that begins at the corner `begin`.
+
+    Those of cycles that begin anew in every period do not.
+    """
+    cycles = [pair for entry in logged for pair in entry.cycles]
+    ended = {key for key, _ in logged[-1].cycles}
+    counts = Counter(key for key, _ in cycles)
+    for key, cycle in cycles:
+        if cycle.number == 1 and (cycle.corner - cycle.length > begin or key not in ended):
+            counts[key] = 0
+    return counts
+
+
 class Run:
     """One history on one grid.
 
@@ -95,19 +195,23 @@ class Run:
     increments : int
         Increments a step, for the increment solver.
     fractions : ndarray
-        Fractions of every step at which a state is kept; the last one is 1.
+        Fractions of every step at which it stops; the last one is 1.
+    recorder : Recorder, optional
+        Who wants the states.
+    keep : Keep
+        Which states.
     progress : callable, optional
-    configuration : Configuration, optional
+    start : Restart, optional
         Where to start from; without load if not given.
-    repeats : Repeats, optional
-        Steps that were followed before.
+    shortcut : bool
+        Whether what repeats exactly is taken from the record instead of being solved again.
 
     Attributes
     ----------
     now : Configuration
-        The last configuration that was reached.
-    states : list of State
-        The states kept so far.
+        The last configuration that was reached. Its dissipation and work are those since the last corner.
+    corner : int
+        Corners that were reached.
     touched : ndarray of bool
         Nodes that have ever been in contact.
     """
@@ -118,17 +222,30 @@ class Run:
         method: Method,
         increments: int,
         fractions: np.ndarray,
+        recorder: Recorder | None = None,
+        keep: Keep = EVERYTHING,
         progress: Progress | None = None,
-        configuration: Configuration | None = None,
-        repeats: Repeats | None = None,
+        start: Restart | None = None,
+        shortcut: bool = True,
     ) -> None:
         self.system = system
         self.method = method
         self.increments = increments
-        self.fractions = fractions
+        self.fractions = fractions if keep.inside else fractions[-1:]
+        self.recorder = recorder
+        self.keep = keep
         self.progress = progress
-        self.now = unloaded(system) if configuration is None else configuration
-        self.states: list[State] = []
+        self.shortcut = shortcut
+        if start is None:
+            first, load = unloaded(system), np.zeros(system.loads.shape[1])
+            now = replace(first, dissipation=0.0, work=0.0)
+            start = Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})
+        self.now = start.configuration
+        self.load = start.load
+        self.dissipation, self.work = start.dissipation, start.work
+        self.repeats, self.marks = start.repeats, _copies(start.marks)
+        self.corner = start.corner
+        self.settled = start.configuration  # at the last corner
         self.touched = self.now.closed.copy()
         self.complete = False
         self.reached = 0.0  # fraction of the present step
@@ -137,49 +254,165 @@ class Run:
         self.path: PathStep | None = None
         self.memory = Memory(system.grid.size)
         self.path_begin = 0.0
-        self.repeats = Repeats() if repeats is None else repeats
-        self.statistics = {"events": 0.0, "exchanges": 0.0, "rebuilds": 0.0, "increments": 0.0, "repeated": 0.0}
+        self.log: deque[_Logged] = deque()
+        counted = ("events", "exchanges", "rebuilds", "increments", "repeated")
+        self.statistics = {**dict.fromkeys(counted, 0.0), **start.statistics}
 
-    def follow(self, values: np.ndarray) -> None:
-        """Follow all steps to the corners `values`, shape (corners, loads), SI units."""
-        for step, target in enumerate(values / self.system.scales.loads):
-            before, self.reached = self.now.load, 0.0
+    def follow(self, history: LoadHistory) -> None:
+        """Follow the history from the corner where the run stands to its end."""
+        scales, corners = self.system.scales, len(history)
+        self.log = deque(maxlen=max(MOST_LOGGED, history.longest_cycle))
+        self._begin_cycles(history)
+        while self.corner < corners:
+            step = self.corner
+            given, ended = history.corner(step)
+            load = filled(given, self.load)
+            target, before, self.reached = load / scales.loads, self.now.load, 0.0
+            self.log.append(_Logged(0.0, 0.0, [], []))
             try:
-                self._follow_step(target, step, len(values))
+                for piece in _pieces(before, target):
+                    self._follow_piece(piece, step, corners)
+                met = self.repeats.meet(self.now, bool(ended), step)
+                if met is not None:
+                    dissipation, work = self.now.dissipation, self.now.work
+                    self.now = replace(met.configuration, dissipation=dissipation, work=work)
+                if self.recorder is not None and self.keep.corner(step, corners, bool(ended)):
+                    self._keep(step, 1.0)
             except SolveError as error:
                 self._leave_path()
-                load = (before + self.reached * (target - before)) * self.system.scales.loads
-                error.step, error.fraction, error.load = step, self.reached, named_load(load)
+                reached = (before + self.reached * (target - before)) * scales.loads
+                error.step, error.fraction, error.load = step, self.reached, named_load(reached)
                 place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
                 where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
                 error.args = (f"{where}: {error}",)
                 raise
+            self._close_step(load)
+            periods = self._end_cycles(history, ended)
+            self.corner += 1
+            if met is not None and self.shortcut:
+                for period, since in [*periods, (met.period, met.since)]:
+                    self._repeat(history, period, since)
+            self._begin_cycles(history)
+            if self.recorder is not None:
+                self.recorder.corner_reached()
+            if self.progress is not None:
+                self.progress(float(self.corner), corners)
         self.complete = True
 
-    def result(self, history: LoadHistory, seconds: float) -> Result:
-        """What has been solved so far."""
-        system = self.system
-        restart = Restart(self.now.load * system.scales.loads, system.scales.force, self.now, self.repeats)
-        statistics = {**self.statistics, "seconds": seconds}
-        return Result(
-            self.states, system.problem, history, system.grid, self.method, statistics, self.complete, restart
-        )
+    def restart(self) -> Restart:
+        """To go on from the last corner that was reached."""
+        return Restart(
+            self.corner, self.load, self.system.scales.force, self.settled, self.dissipation, self.work,
+            self.repeats.copy(same_history=True), _copies(self.marks), dict(self.statistics),
+        )  # fmt: skip
 
-    def _follow_step(self, target: np.ndarray, step: int, steps: int) -> None:
-        """The step to the load `target`, or what it was the last time it was followed from here."""
-        begin, kept = self.now, len(self.states)
-        key = (begin.load.tobytes(), target.tobytes(), self.fractions.tobytes(), self.method, self.increments)
-        known = self.repeats.find(key, begin)
-        if known is None:
-            for piece in _pieces(begin.load, target):
-                self._follow_piece(piece, step, steps)
-            self.repeats.add(key, Step(begin, self.now, self.states[kept:]))
+    def _close_step(self, load: np.ndarray) -> None:
+        """Book the energies of the step that has come to its corner, under `load`."""
+        logged = self.log[-1]
+        logged.dissipation, logged.work = self.now.dissipation, self.now.work
+        self.dissipation += logged.dissipation
+        self.work += logged.work
+        for mark in self.marks.values():
+            mark.dissipation += logged.dissipation
+        self.now = self.settled = replace(self.now, dissipation=0.0, work=0.0)
+        self.load = load
+
+    def _begin_cycles(self, history: LoadHistory) -> None:
+        """Mark this corner as the beginning of the cycles that begin here."""
+        for key in history.cycles_after(self.corner - 1):
+            if key not in self.marks or self.marks[key].corner != self.corner - 1:
+                self.marks[key] = Mark(self.corner - 1, 0, self.now)
+
+    def _end_cycles(self, history: LoadHistory, ended: list[CycleKey]) -> list[tuple[int, int]]:
+        """Record what the cycles that end at the present corner have changed.
+
+        Returns
+        -------
+        list of (int, int)
+            Length and beginning of those that led back to the very configuration with which they began.
+        """
+        corner, now, scales = self.corner, self.now, self.system.scales
+        periods = []
+        for key in ended:
+            mark, length = self.marks.get(key), history.cycle_length(key)
+            number, changes = 1, [math.nan] * 4
+            if mark is not None and mark.corner == corner - length:
+                number, then = mark.number + 1, mark.configuration
+                peak = max(float(now.pressure.max()), float(then.pressure.max()), 1e-300)
+                changes = [
+                    float(np.abs(now.pressure - then.pressure).max()) / peak,
+                    float(np.abs(now.shear - then.shear).max()) / peak,
+                    mark.dissipation * scales.energy,
+                    float(now.motion[2] - then.motion[2]) * scales.rotation,
+                ]
+                if now.slip is then.slip:
+                    periods.append((length, mark.corner))
+            self.marks[key] = Mark(corner, number, now)
+            cycle = Cycle(corner, length, number, *changes, solved=True)
+            self.log[-1].cycles.append((key, cycle))
+            if self.recorder is not None:
+                self.recorder.add_cycle(cycle)
+        for key in [key for key, mark in self.marks.items() if mark.corner < corner - history.cycle_length(key)]:
+            del self.marks[key]
+        return periods
+
+    def _repeat(self, history: LoadHistory, period: int, since: int) -> None:
+        """Where the loads ahead are those of the period that ends here, take the record for them.
+
+        The present configuration is that of every so many corners before, back to the corner `since`.
+        """
+        now = self.corner - 1
+        length = math.lcm(period, self.keep.every)  # so that the same corners are kept
+        if period == 0 or len(self.log) < length or now - since < length:
             return
-        self.now, states = known.again(begin, self.system.scales, step)
-        self.states += states
-        self.statistics["repeated"] += 1
-        if self.progress is not None:
-            self.progress(step + 1.0, steps)
+        ahead = history.same_ahead(self.corner, length)
+        if self.keep.every > 1 or self.keep.which == "cycles":
+            ahead = min(ahead, len(history) - 1 - self.corner)  # the last corner is always kept
+        times = ahead // length
+        if times < 1:
+            return
+        logged = [self.log[k - length] for k in range(length)]
+        if any(cycle.corner - cycle.length < now - length for entry in logged for _, cycle in entry.cycles):
+            return  # a cycle that began before: what it changed will not be repeated
+        latest = [other for other in self.repeats if other.last > now - length]
+        counts = _counts(logged, now - length)
+        for k in range(times):
+            self._book_again(logged, k + 1, counts)
+            for other in latest:
+                other.last += length
+            for key, mark in self.marks.items():
+                if mark.corner >= self.corner - length:
+                    mark.corner += length
+                    mark.number += counts.get(key, 0) if mark.number else 0
+            self.corner += length
+            self.statistics["repeated"] += length
+            if self.recorder is not None:
+                self.recorder.corner_reached()
+            if self.progress is not None:
+                self.progress(float(self.corner), len(history))
+
+    def _book_again(self, logged: list[_Logged], time: int, counts: dict[CycleKey, int]) -> None:
+        """The next corners as those that were `logged`, for the `time`-th time; `counts` are the cycles among them."""
+        energy, rows = self.system.scales.energy, []
+        for k, entry in enumerate(logged):
+            for dissipation, work in entry.kept:
+                rows.append((self.corner + k, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
+            cycles = [
+                (key, cycle._replace(corner=cycle.corner + time * len(logged), number=cycle.number + time * counts[key]))
+                for key, cycle in entry.cycles
+            ]
+            self.log.append(replace(entry, cycles=cycles))
+            if self.recorder is not None:
+                for _, cycle in cycles:
+                    self.recorder.add_cycle(cycle._replace(solved=False))
+            self.dissipation += entry.dissipation
+            self.work += entry.work
+            for mark in self.marks.values():
+                if mark.corner < self.corner - len(logged):
+                    mark.dissipation += entry.dissipation
+        if self.recorder is not None and rows:
+            steps, dissipations, works = zip(*rows, strict=True)
+            self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works))
 
     def _follow_piece(self, piece: _Piece, step: int, steps: int) -> None:
         """One straight piece of the history, from stop to stop."""
@@ -187,7 +420,7 @@ class Run:
         kept = self.fractions[(self.fractions > piece.begin) & (self.fractions <= piece.end)]
         for stop in np.unique(np.r_[kept, piece.end]):
             self._go(piece, float(stop), step, steps)
-            if stop in kept:
+            if stop in kept and stop < 1.0 and self.recorder is not None:
                 self._keep(step, float(stop))
             if self.progress is not None:
                 self.progress(step + float(stop), steps)
@@ -328,7 +561,7 @@ class Run:
             self.now = released(self.system, self.now, load)
 
     def _keep(self, step: int, fraction: float) -> None:
-        """Check the present configuration and keep it as a state."""
+        """Check the present configuration and hand it to the recorder as a state."""
         system, now, scales = self.system, self.now, self.system.scales
         frictionless = system.problem.frictionless
         residuals = system.residuals(now)
@@ -351,8 +584,8 @@ class Run:
             dx=float(moved[0]) * scales.displacement,
             dy=float(moved[1]) * scales.displacement,
             rotation=float(now.motion[2]) * scales.rotation,
-            dissipation=now.dissipation * scales.energy,
-            work=now.work * scales.energy,
+            dissipation=(self.dissipation + now.dissipation) * scales.energy,
+            work=(self.work + now.work) * scales.energy,
             energy=system.energy(now) * scales.energy,
             residuals=residuals,
             problem=system.problem,
@@ -360,4 +593,6 @@ class Run:
         )
         for array in (state.pressure, state.shear, state.gap, state.slip, state.status):
             array.setflags(write=False)  # repeated steps share them
-        self.states.append(state)
+        self.log[-1].kept.append((now.dissipation, now.work))
+        assert self.recorder is not None
+        self.recorder.add(state)

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import functools
+import logging
 import math
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -13,12 +17,16 @@ from threadpoolctl import ThreadpoolController
 from fastpin.arc import grids_to_try
 from fastpin.checks import finite, one_of, whole_number
 from fastpin.collocation import System
-from fastpin.errors import ArcError, InputError, SolveError
+from fastpin.errors import ArcError, InputError, Interrupted, SolveError
 from fastpin.grid import Grid
+from fastpin.interrupt import Asked, held_back
+from fastpin.keep import Keep
 from fastpin.loading import LoadHistory, check_loads
 from fastpin.problem import Problem
-from fastpin.run import Method, Progress, Run
-from fastpin.state import Result
+from fastpin.run import Method, Progress, Recorder, Restart, Run
+from fastpin.state import Cycle, Result, State
+
+log = logging.getLogger(__name__)
 
 
 def solve(
@@ -32,6 +40,8 @@ def solve(
     between: int | Sequence[float] = 0,
     start: Result | None = None,
     progress: Progress | None = None,
+    keep: str | Keep = "all",
+    shortcut: bool = True,
 ) -> Result:
     """Follow a load history and return the contact's states at its corners.
 
@@ -59,6 +69,12 @@ def solve(
         bit for bit. If the contact will reach further than before, give the first part an `arc` wide enough.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
+    keep : str
+        Which states are kept: "all", "corners", "cycles" (where a cycle of the history ends) or "every N" (corners). The
+        last one is always kept.
+    shortcut : bool
+        Where the contact has become periodic under loads that repeat, take the states from the period before instead of
+        solving them again. They are the same to the last bit.
 
     Returns
     -------
@@ -75,46 +91,189 @@ def solve(
         If no state that meets the conditions was found; it holds the result so far.
     ArcError
         If the contact reaches an end of a given arc.
-    """
-    if not isinstance(problem, Problem):
-        raise InputError("problem", f"must be a Problem, not {problem!r}")
-    if not isinstance(history, LoadHistory):
-        if not isinstance(history, Sequence):
-            raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {history!r}")
-        history = LoadHistory(history)
-    if grid is not None and not isinstance(grid, Grid):
-        raise InputError("grid", f"must be a Grid, not {grid!r}")
-    if start is not None and not isinstance(start, Result):
-        raise InputError("start", f"must be a Result, not {start!r}")
-    one_of("method", method, ("path", "increment"))
-    increments = whole_number("increments", increments, 1)
-    check_loads(problem, history)
-    fractions = _fractions(between)
-    if arc is not None:
-        arc = _checked_arc(arc)
-    if start is not None and start.problem != problem:
-        raise InputError("start", "the result to go on from belongs to another problem")
-    if start is not None and start.restart is None:
-        raise InputError("start", "this result can't be gone on from: it was read from a file")
-    began = time.perf_counter()
-    # One thread for BLAS: results don't depend on the number of cores. Large products have two (products.py).
-    with _threads().limit(limits=1, user_api="blas"):
-        if start is not None and start.restart is not None:
-            last = start.restart
-            system = System.build(problem, start.grid, last.force)
-            run = Run(system, method, increments, fractions, progress, last.configuration.copy(), last.repeats.copy())
-            return _finished(run, history, history.values(initial=last.load), began)
 
-        values = history.values()
-        force = reference_force(problem, values)
-        for chosen in _grids(problem, values, force, nodes, arc, grid, progress):
-            run = Run(System.build(problem, chosen, force), method, increments, fractions, progress)
-            try:
-                return _finished(run, history, values, began)
-            except ArcError:
-                if arc is not None or grid is not None:
-                    raise
-    raise AssertionError("the whole circle has no ends")
+    A KeyboardInterrupt leaves with the result so far in its ``result``, as these errors do.
+    """
+    if start is not None:
+        check_start(problem, start)
+    task = Task.checked(
+        problem, history, nodes, method, increments, arc, grid, between, Keep.of(keep), shortcut, progress
+    )
+    kept = Kept()
+    began = time.perf_counter()
+    try:
+        if start is not None and start.restart is not None:
+            task.go_on(kept, start.restart.elsewhere(), start.grid)
+        else:
+            task.follow(kept)
+    except SolveError as error:
+        error.result = kept.result(task, time.perf_counter() - began)
+        raise
+    except Interrupted as stopped:
+        stopped.result = kept.result(task, time.perf_counter() - began)
+        raise
+    return kept.result(task, time.perf_counter() - began)
+
+
+class Kept:
+    """The states and cycles of a run, kept in memory."""
+
+    def __init__(self) -> None:
+        self.run: Run | None = None
+        self.states: list[State] = []
+        self.cycles: list[Cycle] = []
+
+    def begin(self, run: Run) -> None:
+        self.run, self.states, self.cycles = run, [], []
+
+    def add(self, state: State) -> None:
+        self.states.append(state)
+
+    def add_cycle(self, cycle: Cycle) -> None:
+        self.cycles.append(cycle)
+
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        latest = self.states[len(self.states) - len(steps) :]
+        for state, step, lost, done in zip(latest, steps.tolist(), dissipation.tolist(), work.tolist(), strict=True):
+            load, residuals = dict(state.load), dict(state.residuals)
+            self.states.append(
+                replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals)
+            )
+
+    def corner_reached(self) -> None:
+        pass
+
+    def result(self, task: Task, seconds: float) -> Result | None:
+        """What was solved; None if not even a grid was found."""
+        if self.run is None:
+            return None
+        run, statistics = self.run, {**self.run.statistics, "seconds": seconds}
+        return Result(
+            self.states, task.problem, task.history, run.system.grid, run.method, statistics, run.complete,
+            run.restart(), self.cycles,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A history to follow and how; see :func:`solve`, whose arguments these are, checked."""
+
+    problem: Problem
+    history: LoadHistory
+    nodes: int
+    method: Method
+    increments: int
+    arc: tuple[float, float] | None
+    grid: Grid | None
+    fractions: np.ndarray
+    keep: Keep
+    shortcut: bool
+    progress: Progress | None
+
+    @classmethod
+    def checked(
+        cls,
+        problem: Problem,
+        history: LoadHistory | Sequence[dict[str, float]],
+        nodes: int,
+        method: Method,
+        increments: int,
+        arc: tuple[float, float] | None,
+        grid: Grid | None,
+        between: int | Sequence[float],
+        keep: str | Keep,
+        shortcut: bool,
+        progress: Progress | None,
+    ) -> Task:
+        """Check the arguments of :func:`solve`, or raise :class:`InputError`."""
+        if not isinstance(problem, Problem):
+            raise InputError("problem", f"must be a Problem, not {problem!r}")
+        if not isinstance(history, LoadHistory):
+            if not isinstance(history, Sequence):
+                raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {history!r}")
+            history = LoadHistory(history)
+        if grid is not None and not isinstance(grid, Grid):
+            raise InputError("grid", f"must be a Grid, not {grid!r}")
+        one_of("method", method, ("path", "increment"))
+        increments = whole_number("increments", increments, 1)
+        check_loads(problem, history)
+        fractions = _fractions(between)
+        if arc is not None:
+            arc = _checked_arc(arc)
+        return cls(
+            problem, history, nodes, method, increments, arc, grid, fractions, Keep.of(keep), bool(shortcut), progress
+        )
+
+    def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
+        """Follow the history from no load, on the first grid that is wide enough, of those `beyond` one that is not."""
+        values = self.history.distinct()
+        force = reference_force(self.problem, values)
+        with held_back() as asked, _one_thread():
+            progress = self._progress(asked)
+            given = None if beyond is not None else self.grid
+            for chosen in _grids(self.problem, values, force, self.nodes, self.arc, given, progress):
+                if beyond is not None:
+                    if np.array_equal(chosen.theta, beyond.theta):
+                        beyond = None
+                    continue
+                log.info("%d nodes from %.5g to %.5g rad", chosen.size, chosen.theta[0], chosen.theta[-1])
+                try:
+                    self._run(System.build(self.problem, chosen, force), recorder, None, progress)
+                    return
+                except ArcError:
+                    if self.arc is not None or given is not None:
+                        raise
+                    log.info("the contact reaches an end of the arc: once more on a wider one")
+        raise AssertionError("the whole circle has no ends")
+
+    def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+        """Follow the history from a corner where another run stood, on its grid."""
+        with held_back() as asked, _one_thread():
+            system = System.build(self.problem, grid, start.force)
+            self._run(system, recorder, start, self._progress(asked))
+
+    def reach(self, start: Restart, grid: Grid) -> Restart:
+        """Follow the history from a corner to its end, and keep nothing but what is needed to go on from there."""
+        with held_back() as asked, _one_thread():
+            run = Run(
+                System.build(self.problem, grid, start.force), self.method, self.increments, self.fractions, None,
+                self.keep, self._progress(asked), start, self.shortcut,
+            )  # fmt: skip
+            run.follow(self.history)
+            return run.restart()
+
+    def _run(self, system: System, recorder: Recorder, start: Restart | None, progress: Progress) -> None:
+        run = Run(
+            system, self.method, self.increments, self.fractions, recorder, self.keep, progress, start, self.shortcut
+        )
+        recorder.begin(run)
+        run.follow(self.history)
+
+    def _progress(self, asked: Asked) -> Progress:
+        """What a run reports to: stops it where somebody asked for it."""
+
+        def progress(done: float, total: int) -> None:
+            if asked.stop:
+                raise Interrupted
+            if self.progress is not None:
+                self.progress(done, total)
+
+        return progress
+
+
+def check_start(problem: Problem, start: Result) -> None:
+    """Raise :class:`InputError` if a result of `problem` can't be gone on from."""
+    if not isinstance(start, Result):
+        raise InputError("start", f"must be a Result, not {start!r}")
+    if start.problem != problem:
+        raise InputError("start", "the result to go on from belongs to another problem")
+    if start.restart is None:
+        raise InputError("start", "this result can't be gone on from: its file holds states only")
+
+
+def _one_thread() -> AbstractContextManager[Any]:
+    """One thread for BLAS: results don't depend on the number of cores. Large products have two (products.py)."""
+    return _threads().limit(limits=1, user_api="blas")
 
 
 @functools.cache
@@ -127,16 +286,6 @@ def _checked_arc(arc: tuple[float, float]) -> tuple[float, float]:
     if not isinstance(arc, Sequence) or isinstance(arc, str) or len(arc) != 2:
         raise InputError("arc", f"must be two angles, start and end in rad, not {arc!r}")
     return finite("arc start", arc[0]), finite("arc stop", arc[1])
-
-
-def _finished(run: Run, history: LoadHistory, values: np.ndarray, began: float) -> Result:
-    """Follow the history; an error leaves with what was solved before."""
-    try:
-        run.follow(values)
-    except SolveError as error:
-        error.result = run.result(history, time.perf_counter() - began)
-        raise
-    return run.result(history, time.perf_counter() - began)
 
 
 def _grids(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from fastpin import zones
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory
 from fastpin.problem import Problem
+
+if TYPE_CHECKING:
+    from fastpin.run import Restart
 
 SLIP_NEGATIVE, STICK, SLIP_POSITIVE, OPEN = -1, 0, 1, 2
 """Status of a node: slipping clockwise, sticking, slipping counter-clockwise (pin over plate), open."""
@@ -153,15 +156,36 @@ class State:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class Restart:
-    """What a solution needs to go on: the last load (SI), the reference force (N/m), the configuration, and the steps
-    that it may repeat."""
+class Cycle(NamedTuple):
+    """What a cycle of a load history has changed, from its beginning to its end.
 
-    load: np.ndarray
-    force: float
-    configuration: Any
-    repeats: Any
+    Attributes
+    ----------
+    corner : int
+        Index of the corner at which the cycle ends.
+    length : int
+        Corners of the cycle.
+    number : int
+        How many times its block has been run through: 1 for the first cycle.
+    pressure_change, shear_change : float
+        Largest difference of the tractions at a node, relative to the largest pressure; 0 where the contact is periodic.
+        NaN where it is not known, because the cycle began before the history.
+    dissipation : float
+        Energy dissipated by friction in this cycle, J/m.
+    rotation_change : float
+        By how much the pin has turned (ratcheting), rad, counter-clockwise.
+    solved : bool
+        False where the cycle was known from before and not solved again.
+    """
+
+    corner: int
+    length: int
+    number: int
+    pressure_change: float
+    shear_change: float
+    dissipation: float
+    rotation_change: float
+    solved: bool
 
 
 class Result(Sequence[State]):
@@ -179,6 +203,8 @@ class Result(Sequence[State]):
         factorisation computed), "increments", "repeated" (steps that were known from before) and "seconds".
     complete : bool
         Whether the whole history was followed; False in the result that an error carries.
+    cycles : tuple of Cycle
+        What each cycle of the history has changed, in order; empty where the history has no blocks that are repeated.
     restart : Restart
         For ``solve(..., start=result)``.
     """
@@ -192,7 +218,8 @@ class Result(Sequence[State]):
         method: str,
         statistics: dict[str, float],
         complete: bool,
-        restart: Restart | None,
+        restart: Restart | None = None,
+        cycles: Sequence[Cycle] = (),
     ) -> None:
         self._states = list(states)
         self.problem = problem
@@ -202,6 +229,21 @@ class Result(Sequence[State]):
         self.statistics = statistics
         self.complete = complete
         self.restart = restart
+        self.cycles = tuple(cycles)
+
+    @property
+    def periodic_from(self) -> Cycle | None:
+        """The first cycle from which on all cycles of its block left the tractions the same to rounding.
+
+        Of the last block of the history; None if they did not, or there are no cycles.
+        """
+        first = None
+        for cycle in reversed(self.cycles):
+            same = cycle.pressure_change == 0.0 and cycle.shear_change == 0.0
+            if not same or (first is not None and (cycle.length, cycle.number + 1) != (first.length, first.number)):
+                break
+            first = cycle
+        return first
 
     @overload
     def __getitem__(self, index: int) -> State: ...

@@ -1,62 +1,51 @@
-"""Results in HDF5 files: all states with problem, history, grid, versions and units.
+"""Results in HDF5 files: all states with problem, history, grid, versions and units. See layout.py for what is where.
 
-The layout is flat, so that other programs read it as well: ``/states`` holds one array for each quantity,
-with one row a state; every array says its unit. A result that was read holds all that a solution returned
-but the solver's inner state: ``solve(..., start=...)`` can't go on from it.
+:func:`fastpin.record.record` writes such files while a history is followed; here are results that are in memory.
 """
 
 from __future__ import annotations
 
-import platform
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
-from fastpin import __version__
 from fastpin.errors import InputError
 from fastpin.files import check_writable, replacing
 from fastpin.grid import Grid
-from fastpin.loading import LOADS, LoadHistory, named_load
-from fastpin.materials import Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.report import LOAD_KIND, units
-from fastpin.state import Result, State
-
-FORMAT = "fastpin result"
-FORMAT_VERSION = 1
-
-# Kind of quantity (a key of report.units, or "" for a plain number) of every field of a state that is stored
-# as an array. The rest of State is treated one by one below; a test sees to it that nothing is forgotten.
-NODE_FIELDS = {
-    "pressure": "traction",
-    "shear": "traction",
-    "gap": "displacement",
-    "slip": "displacement",
-    "status": "",
-}
-NUMBER_FIELDS = {
-    "step": "",
-    "fraction": "",
-    "dx": "displacement",
-    "dy": "displacement",
-    "rotation": "rotation",
-    "dissipation": "energy",
-    "work": "energy",
-    "energy": "energy",
-}
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid")
-
-_PROBLEM_FIELDS = (
-    "hole_radius",
-    "clearance",
-    "friction",
-    "pin_load",
-    "rotation",
-    "hub_radius",
-    "dimensionless",
+from fastpin.journal import open_h5, settled
+from fastpin.keep import Keep
+from fastpin.layout import (
+    FORMAT,
+    append,
+    check_format,
+    count,
+    cycle_rows,
+    plain,
+    read_cycles,
+    read_grid,
+    read_history,
+    read_problem,
+    read_states,
+    read_statistics,
+    rows_of,
+    write_head,
+    write_statistics,
 )
+from fastpin.loading import LoadHistory
+from fastpin.problem import Problem
+from fastpin.restart import read_restart, write_restart
+from fastpin.run import Restart
+from fastpin.solver import Task
+from fastpin.state import Result
+
+if TYPE_CHECKING:
+    import xarray
+
+ALL = slice(None)
 
 
 def save(result: Result, path: str | Path, error: str | None = None) -> None:
@@ -76,175 +65,149 @@ def save(result: Result, path: str | Path, error: str | None = None) -> None:
         If `path` can't be written.
     """
     check_writable(path)
+    if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
+        raise InputError("result", "all states must be on the grid of the result")
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
-        file.attrs["format"] = FORMAT
-        file.attrs["format_version"] = FORMAT_VERSION
+        write_head(file, result.problem, result.history, result.grid, {"method": result.method})
         file.attrs["complete"] = result.complete
         if error is not None:
             file.attrs["error"] = error
-        for name, value in _versions().items():
-            file.attrs[f"version_{name}"] = value
-        _save_problem(file.create_group("problem"), result.problem)
-        _save_history(file, result)
-        theta = file.create_dataset("grid/theta", data=result.grid.theta)
-        theta.attrs["unit"] = "rad"
-        file["grid"].attrs["closed"] = result.grid.closed
-        solver = file.create_group("solver")
-        solver.attrs["method"] = result.method
-        solver.create_group("statistics").attrs.update(result.statistics)
-        _save_states(file.create_group("states"), result)
+        write_statistics(file, result.statistics)
+        append(file["states"], rows_of(list(result)))
+        append(file["cycles"], cycle_rows(result.cycles))
+        if result.restart is not None:
+            write_restart(file.create_group("restart/latest"), result.restart)
 
 
-def load(path: str | Path) -> Result:
-    """Read a result that :func:`save` wrote.
+def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | None = None) -> Result:
+    """Read a result, also of a run that is still being written or was killed.
+
+    Parameters
+    ----------
+    path : path
+    states : slice or sequence of int
+        Which states to read, by their place in the file; all unless given.
+    after : int, optional
+        Only what was found up to this corner, counted from 1, to go on from there: ``solve(..., start=result)``. If it is
+        not one of those that were saved, what lies between is solved again, which gives the same bits.
+
+    Returns
+    -------
+    Result
+        The states that were asked for. A finished result can be gone on from.
 
     Raises
     ------
     InputError
-        If the file can't be read, was cut short, or is no result of fastpin.
+        If the file can't be read, was cut short, or is no result of fastpin; or has no such corner.
     """
     path = Path(path)
+    with _opened(path) as file:
+        problem, grid, history = read_problem(file), read_grid(file), read_history(file)
+        complete, restart = bool(file.attrs["complete"]), None
+        restarts = file.get("restart", {})
+        if after is not None:
+            restart = _restart_after(path, file, problem, grid, history, after)
+            history, complete = history[:after], True
+            found = range(int(np.searchsorted(file["states/step"][()], after)))
+            states = found[states] if isinstance(states, slice) else states
+        elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
+            restart = read_restart(restarts["latest"])
+        cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
+        return Result(
+            states=read_states(file, problem, grid, states),
+            problem=problem,
+            history=history,
+            grid=grid,
+            method=str(file["solver"].attrs["method"]),
+            statistics=read_statistics(file),
+            complete=complete,
+            restart=restart,
+            cycles=cycles,
+        )
+
+
+def size(path: str | Path) -> int:
+    """Number of states in a file.
+
+    Raises
+    ------
+    InputError
+        See :func:`load`.
+    """
+    with _opened(Path(path)) as file:
+        return count(file["states"])
+
+
+def to_xarray(path: str | Path) -> xarray.Dataset:
+    """All states as an xarray.Dataset with the dimensions "state" and "theta", and units as attributes.
+
+    A finished file can also be read piece by piece, without fastpin: ``xarray.open_dataset(path, group="states")``.
+
+    Raises
+    ------
+    InputError
+        See :func:`load`; also if xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
+    with _opened(Path(path)) as file:
+        group, variables = file["states"], {}
+        for name, dataset in group.items():
+            scales = [dimension.values() for dimension in dataset.dims]
+            dimensions = [scale[0].name.rpartition("/")[2] if scale else name for scale in scales]
+            values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
+            unit = dataset.attrs.get("unit", "")
+            units = {"units": unit if isinstance(unit, str) else ", ".join(unit)}
+            variables[name] = (dimensions, values, units)
+        attributes = {name: plain(value) for name, value in file.attrs.items()}
+    return xarray.Dataset(variables, attrs=attributes).set_coords([name for name in variables if name in _COORDINATES])
+
+
+_COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fraction")
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """A result open for reading, as its last transaction left it; what is wrong with it is raised as InputError."""
     if not path.is_file():
         raise InputError(str(path), "there is no such file")
-    try:
-        file = h5py.File(path, "r")
-    except OSError:
-        raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
-    with file:
-        if file.attrs.get("format") != FORMAT:
-            raise InputError(str(path), "is an HDF5 file, but not a result of fastpin")
-        made_by = file.attrs.get("version_fastpin", "unknown")
-        if file.attrs.get("format_version") != FORMAT_VERSION:
-            raise InputError(str(path), f"was written by fastpin {made_by} in a format that this version can't read")
-        try:
-            return _load_result(file)
-        except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
-            raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
+    with settled(path):
+        with open_h5(path) as file:
+            check_format(file, str(path))
+            try:
+                yield file
+            except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
+                if isinstance(error, InputError):
+                    raise
+                raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
 
 
-def _versions() -> dict[str, str]:
-    libraries = {"numpy": np.__version__, "h5py": h5py.__version__}
-    return {"fastpin": __version__, "python": platform.python_version(), **libraries}
+def _restart_after(
+    path: Path, file: h5py.File, problem: Problem, grid: Grid, history: LoadHistory, after: int
+) -> Restart:
+    """The restart after a corner; from the latest one that is stored before it, if need be."""
+    reached = 0
+    if count(file["states"]):
+        reached = int(file["states/step"][-1]) + (1 if file["states/fraction"][-1] == 1.0 else 0)
+    if not 1 <= after <= reached:
+        raise InputError("after", f"must be a corner from 1 to {reached}, not {after}: {path} has no others")
+    stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
+    if not stored:
+        raise InputError("after", f"{path} was not written by a run: only its end can be gone on from")
+    start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
+    options = {name: plain(value) for name, value in file["solver"].attrs.items()}
+    task = Task(
+        problem, history[:after], grid.size, options["method"], options["increments"], None, grid,
+        options["fractions"], Keep.of(options["keep"]), True, None,
+    )  # fmt: skip
+    return task.reach(start, grid)
 
 
 def _first_line(error: Exception) -> str:
     return (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]
 
 
-# -- writing -------------------------------------------------------------------------------------------------
-
-
-def _save_problem(group: h5py.Group, problem: Problem) -> None:
-    for name in _PROBLEM_FIELDS:
-        value = getattr(problem, name)
-        if value is not None:
-            group.attrs[name] = value
-    group.attrs["plane"] = problem.pair.plane
-    for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
-        group.create_group(name).attrs.update(E=material.E, nu=material.nu, name=material.name)
-    unit = units(problem)
-    group.attrs["units"] = [f"{kind}: {name}" for kind, name in unit.items()]
-
-
-def _save_history(file: h5py.File, result: Result) -> None:
-    unit = units(result.problem)
-    # What a corner leaves out and was never given before stays nan: "never given" is not "zero".
-    values = result.history.values(initial=np.full(len(LOADS), np.nan))
-    corners = file.create_dataset("history/corners", data=values)
-    corners.attrs["columns"] = list(LOADS)
-    corners.attrs["unit"] = [unit[LOAD_KIND[name]] for name in LOADS]
-
-
-def _save_states(group: h5py.Group, result: Result) -> None:
-    unit = units(result.problem)
-    states = list(result)
-    if any(not np.array_equal(state.theta, result.grid.theta) for state in states):
-        raise InputError("result", "all states must be on the grid of the result")
-
-    def keep(name: str, data: Any, label: str | list[str], columns: list[str] | None = None) -> None:
-        array = np.asarray(data)
-        packing = {"compression": "gzip", "shuffle": True} if array.size > 100 else {}
-        dataset = group.create_dataset(name, data=array, **packing)
-        dataset.attrs["unit"] = label
-        if columns is not None:
-            dataset.attrs["columns"] = columns
-
-    count, size = len(states), result.grid.size
-    for name, kind in NODE_FIELDS.items():
-        kept = np.array([getattr(state, name) for state in states]).reshape(count, size)
-        keep(name, kept.astype(np.int8) if name == "status" else kept, unit.get(kind, ""))
-    for name, kind in NUMBER_FIELDS.items():
-        dtype = int if name == "step" else float
-        keep(name, np.array([getattr(state, name) for state in states], dtype=dtype), unit.get(kind, ""))
-    loads = np.array([[state.load[name] for name in LOADS] for state in states]).reshape(count, len(LOADS))
-    keep("load", loads, [unit[LOAD_KIND[name]] for name in LOADS], list(LOADS))
-    names = sorted({name for state in states for name in state.residuals})
-    residuals = [[state.residuals.get(name, np.nan) for name in names] for state in states]
-    keep("residuals", np.array(residuals, dtype=float).reshape(count, len(names)), "", names)
-
-
-# -- reading -------------------------------------------------------------------------------------------------
-
-
-def _load_result(file: h5py.File) -> Result:
-    problem = _load_problem(file["problem"])
-    rows = file["history/corners"][()]
-    names = list(file["history/corners"].attrs["columns"])
-    given = [dict(zip(names, map(float, row), strict=True)) for row in rows]
-    history = LoadHistory([{k: v for k, v in corner.items() if not np.isnan(v)} for corner in given])
-    grid = Grid(file["grid/theta"][()], bool(file["grid"].attrs["closed"]))
-    statistics = {str(name): _number(value) for name, value in file["solver/statistics"].attrs.items()}
-    return Result(
-        states=_load_states(file["states"], problem, grid),
-        problem=problem,
-        history=history,
-        grid=grid,
-        method=str(file["solver"].attrs["method"]),
-        statistics=statistics,
-        complete=bool(file.attrs["complete"]),
-        restart=None,
-    )
-
-
-def _load_problem(group: h5py.Group) -> Problem:
-    bodies = {}
-    for name in ("pin", "plate"):
-        attributes = group[name].attrs
-        bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]))
-    given = {name: group.attrs[name] for name in _PROBLEM_FIELDS if name in group.attrs}
-    plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in given.items()}
-    return Problem(MaterialPair(bodies["pin"], bodies["plate"], group.attrs["plane"]), **plain)
-
-
-def _load_states(group: h5py.Group, problem: Problem, grid: Grid) -> list[State]:
-    nodes = {name: group[name][()] for name in NODE_FIELDS}
-    numbers = {name: group[name][()] for name in NUMBER_FIELDS}
-    loads, residuals = group["load"][()], group["residuals"][()]
-    names = [str(name) for name in group["residuals"].attrs["columns"]]
-    count = len(loads)
-    shapes = dict.fromkeys(nodes, (count, grid.size)) | dict.fromkeys(numbers, (count,))
-    for name, shape in shapes.items():
-        if group[name].shape != shape:
-            raise ValueError(f"states/{name} has shape {group[name].shape}, not {shape}")
-    states = []
-    for k in range(count):
-        per_node = {name: array[k] for name, array in nodes.items()}
-        for array in per_node.values():
-            array.setflags(write=False)
-        kept = {name: float(value) for name, value in zip(names, residuals[k], strict=True) if not np.isnan(value)}
-        states.append(
-            State(
-                **per_node,
-                **{name: array[k].item() for name, array in numbers.items()},
-                load=named_load(loads[k]),
-                theta=grid.theta,
-                residuals=kept,
-                problem=problem,
-                grid=grid,
-            )
-        )
-    return states
-
-
-def _number(value: Any) -> float:
-    return value.item() if isinstance(value, np.generic) else value
+__all__ = ["FORMAT", "load", "save", "size", "to_xarray"]

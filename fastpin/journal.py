@@ -1,0 +1,242 @@
+"""A file that changes in transactions: whatever happens to the process, it is as it was after the last one.
+
+HDF5 changes its indices in place. A process that is killed in between leaves a file that can't be read any more, with
+all that was ever written to it. So before a part of the file is overwritten, what stood there goes to a journal beside
+it; the next one who opens the file puts it back. A transaction ends when the journal is emptied, which happens at once
+or not at all.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+
+from fastpin.errors import InputError
+
+try:
+    import fcntl
+except ImportError:  # no such locks on this system: nobody else may write to the file
+    fcntl = None  # type: ignore[assignment]
+
+_RECORD = struct.Struct("<QII")  # place in the file, length, checksum of what follows
+
+
+def journal_of(path: Path) -> Path:
+    """Where the journal of a file is."""
+    return path.with_name(path.name + ".journal")
+
+
+class JournaledFile:
+    """A file for h5py, whose changes are undone if they are not committed.
+
+    Parameters
+    ----------
+    path : Path
+    new : bool
+        Begin with an empty file, whatever is there.
+
+    Raises
+    ------
+    InputError
+        If another process is writing to the file, or it can't be written.
+    """
+
+    def __init__(self, path: Path, new: bool) -> None:
+        self._path = path
+        self._place = 0
+        self._open_transaction = False
+        self._abandoned = False
+        try:
+            self._file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
+        except OSError as error:
+            raise InputError(str(path), f"can't be written: {error.strerror}") from None
+        if not _locked(self._file):
+            os.close(self._file)
+            raise InputError(str(path), "another run is writing to it")
+        self._journal = os.open(journal_of(path), os.O_RDWR | os.O_CREAT, 0o666)
+        _wait_for(self._journal, alone=True)
+        if new:
+            os.ftruncate(self._journal, 0)
+            os.ftruncate(self._file, 0)
+        else:
+            _roll_back(self._file, self._journal)
+        _wait_for(self._journal, alone=None)
+        self._size = os.fstat(self._file).st_size
+        self._written = 0  # bytes of the journal
+
+    def begin(self) -> None:
+        """Begin a transaction; readers are kept waiting until it ends."""
+        if self._open_transaction:
+            return
+        _wait_for(self._journal, alone=True)
+        self._written = 0
+        self._note(self._size, b"")
+        self._open_transaction = True
+
+    def commit(self) -> None:
+        """End the transaction: what was written since it began is part of the file."""
+        os.ftruncate(self._journal, 0)
+        self._size = os.fstat(self._file).st_size
+        self._open_transaction = False
+        _wait_for(self._journal, alone=None)
+
+    def abandon(self) -> None:
+        """Undo the transaction, and ignore all that is still written."""
+        self._abandoned = True
+        _roll_back(self._file, self._journal)
+
+    def release(self) -> None:
+        """Leave the file to others. The journal goes."""
+        journal_of(self._path).unlink(missing_ok=True)
+        os.close(self._journal)
+        os.close(self._file)
+
+    def _note(self, place: int, old: bytes) -> None:
+        record = _RECORD.pack(place, len(old), zlib.crc32(old, place & 0xFFFFFFFF)) + old
+        _write_all(self._journal, record, self._written)
+        self._written += len(record)
+
+    # -- what h5py calls ---------------------------------------------------------------------------------------
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: os.fstat(self._file).st_size}[whence]
+        self._place = base + offset
+        return self._place
+
+    def tell(self) -> int:
+        return self._place
+
+    def readinto(self, buffer: memoryview) -> int:
+        data = os.pread(self._file, len(buffer), self._place)
+        buffer[: len(data)] = data
+        self._place += len(data)
+        return len(data)
+
+    def read(self, size: int = -1) -> bytes:
+        data = os.pread(self._file, size if size >= 0 else os.fstat(self._file).st_size - self._place, self._place)
+        self._place += len(data)
+        return data
+
+    def write(self, data: memoryview) -> int:
+        size = len(data)
+        if not self._abandoned:
+            self.begin()
+            old = min(size, self._size - self._place)
+            if old > 0:
+                self._note(self._place, os.pread(self._file, old, self._place))
+            _write_all(self._file, bytes(data), self._place)
+        self._place += size
+        return size
+
+    def truncate(self, size: int | None = None) -> int:
+        size = self._place if size is None else size
+        if not self._abandoned:
+            self.begin()
+            if size < self._size:
+                self._note(size, os.pread(self._file, self._size - size, size))
+            os.ftruncate(self._file, size)
+        return size
+
+    def flush(self) -> None:
+        pass
+
+
+@contextmanager
+def settled(path: Path) -> Iterator[None]:
+    """Keep a file as its last transaction left it, while it is being read.
+
+    Raises
+    ------
+    InputError
+        If a process was killed while it wrote, and the file can't be put right because it can't be written.
+    """
+    journal = journal_of(path)
+    if not journal.is_file():
+        yield
+        return
+    with journal.open("rb") as opened:
+        _wait_for(opened.fileno(), alone=False)
+        if os.fstat(opened.fileno()).st_size:  # nobody is writing, and somebody was
+            _wait_for(opened.fileno(), alone=True)
+            try:
+                with path.open("r+b") as file, journal.open("r+b") as left:
+                    _roll_back(file.fileno(), left.fileno())
+            except OSError as error:
+                message = f"was being written when its run was killed, and can't be put right: {error.strerror}"
+                raise InputError(str(path), message) from None
+            _wait_for(opened.fileno(), alone=False)
+        yield
+
+
+def open_h5(path: Path) -> h5py.File:
+    """Open an HDF5 file for reading, also while a run is writing to it; see :func:`settled`.
+
+    Raises
+    ------
+    InputError
+        If it is no whole HDF5 file.
+    """
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError:
+        pass
+    try:
+        return h5py.File(path, "r")  # opened already in this process, with locks
+    except OSError:
+        raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
+
+
+def _wait_for(journal: int, alone: bool | None) -> None:
+    """Wait for the lock under which the file is written (`alone`) or read; None gives it back."""
+    if fcntl is not None:
+        kind = {True: fcntl.LOCK_EX, False: fcntl.LOCK_SH, None: fcntl.LOCK_UN}[alone]
+        fcntl.flock(journal, kind)
+
+
+def _roll_back(file: int, journal: int) -> None:
+    """Put back what an unfinished transaction has overwritten, the latest first."""
+    records = list(_records(os.pread(journal, os.fstat(journal).st_size, 0)))
+    for place, old in reversed(records[1:]):
+        _write_all(file, old, place)
+    if records:
+        os.ftruncate(file, records[0][0])
+    os.ftruncate(journal, 0)
+
+
+def _records(data: bytes) -> Iterator[tuple[int, bytes]]:
+    """The whole records of a journal; the last one may have been cut short, before what it describes was done."""
+    at = 0
+    while at + _RECORD.size <= len(data):
+        place, length, checksum = _RECORD.unpack_from(data, at)
+        old = data[at + _RECORD.size : at + _RECORD.size + length]
+        if len(old) < length or zlib.crc32(old, place & 0xFFFFFFFF) != checksum:
+            return
+        yield place, old
+        at += _RECORD.size + length
+
+
+def _write_all(file: int, data: bytes, place: int) -> None:
+    view = memoryview(data)
+    while view:
+        done = os.pwrite(file, view, place)
+        view, place = view[done:], place + done
+
+
+def _locked(file: int) -> bool:
+    """Take the lock of the only writer, unless somebody has it."""
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
