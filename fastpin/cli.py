@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``, ``fastpin paper``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``paper``.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -7,26 +7,17 @@ the solver.
 from __future__ import annotations
 
 import argparse
-import dataclasses
-import json
+import logging
 import os
+import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from fastpin import __version__
-from fastpin.errors import CaseFileError, FastpinError, InputError, SolveError
-from fastpin.files import check_writable, replacing
-
-if TYPE_CHECKING:
-    from fastpin.casefile import Case
-    from fastpin.state import Result
-
-EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
-LARGE_STRAIN = 0.05
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
+from fastpin.errors import CaseFileError, FastpinError, InputError
+from fastpin.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_OK, EXIT_PIPE, bar, fail
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -40,6 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     try:
         options = _parser().parse_args(arguments)
+        _log(getattr(options, "verbose", 0))
+        signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # batch systems ask in this way
         code = int(options.command(options))
         sys.stdout.flush()
         return code
@@ -47,23 +40,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)  # a line for each fault, with the file's name
         return EXIT_INPUT
     except InputError as error:
-        return _fail(str(error), EXIT_INPUT)
+        return fail(str(error), EXIT_INPUT)
     except FastpinError as error:
-        return _fail(str(error), EXIT_FAILED)
+        return fail(str(error), EXIT_FAILED)
     except KeyboardInterrupt:
-        return _fail("interrupted; nothing was written", EXIT_INTERRUPTED)
+        return fail("interrupted", EXIT_INTERRUPTED)
     except MemoryError:
-        return _fail("not enough memory: use fewer nodes or store fewer states", EXIT_FAILED)
+        return fail("not enough memory: use fewer nodes or store fewer states", EXIT_FAILED)
     except BrokenPipeError:  # the reader of our output has gone (fastpin run | head)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_PIPE
     except OSError as error:
-        return _fail(str(error), EXIT_FAILED)
-
-
-def _fail(message: str, code: int) -> int:
-    print(f"fastpin: {message}", file=sys.stderr)
-    return code
+        return fail(str(error), EXIT_FAILED)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -85,22 +73,10 @@ def _parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="solve a case and print its states", allow_abbrev=False)
     run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
-    run.add_argument(
-        "--json",
-        metavar="FILE",
-        nargs="?",
-        const="-",
-        help="write a summary as JSON; without FILE, or with -, to standard output instead of the table",
-    )
-    run.add_argument(
-        "--plot",
-        metavar="FILE",
-        nargs="?",
-        const=Path("tractions.png"),
-        type=Path,
-        help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
-    )
-    run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write everything to an HDF5 file")
+    _add_outputs(run)
+    run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write all states to an HDF5 file as they come")
+    run.add_argument("--overwrite", action="store_true", help="with -o: also a file that holds an unfinished run")
+    run.add_argument("--keep", metavar="WHICH", help='all, corners, cycles or "every N": states to keep (default all)')
     run.add_argument("--nodes", type=int, help="number of nodes")
     run.add_argument("--method", help="path or increment")
     run.add_argument("--increments", type=int, help="increments a corner (method increment)")
@@ -109,7 +85,20 @@ def _parser() -> argparse.ArgumentParser:
         metavar="N",
         help="more states inside every step: how many, or fractions such as 0.25,0.5",
     )
+    run.add_argument(
+        "--no-shortcut", dest="shortcut", action="store_false", default=None, help="solve cycles that repeat again"
+    )
+    run.add_argument("--start", metavar="FILE", type=Path, help="go on from the end of this result, with these loads")
+    run.add_argument("--after", metavar="N", type=int, help="with --start: from its corner N instead")
+    run.add_argument(
+        "--save-after", metavar="N,N", help="with -o: corners from which other runs will start, to have them at hand"
+    )
     run.set_defaults(command=_run)
+
+    resume = commands.add_parser("resume", help="go on with a run that has ended early", allow_abbrev=False)
+    resume.add_argument("output", metavar="FILE", type=Path, help="its HDF5 file (run -o FILE)")
+    _add_outputs(resume)
+    resume.set_defaults(command=_resume)
 
     figures = commands.add_parser("paper", help="compute and draw the figures of the paper", allow_abbrev=False)
     figures.add_argument(
@@ -125,6 +114,36 @@ def _parser() -> argparse.ArgumentParser:
     )
     figures.set_defaults(command=_paper)
     return parser
+
+
+def _add_outputs(command: argparse.ArgumentParser) -> None:
+    """Options of all commands that solve a case."""
+    command.add_argument(
+        "--json",
+        metavar="FILE",
+        nargs="?",
+        const="-",
+        help="write a summary as JSON; without FILE, or with -, to standard output instead of the table",
+    )
+    command.add_argument(
+        "--plot",
+        metavar="FILE",
+        nargs="?",
+        const=Path("tractions.png"),
+        type=Path,
+        help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
+    )
+    command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of what each cycle has changed")
+    command.add_argument("-v", "--verbose", action="count", default=0, help="say what is being done; -vv: more")
+
+
+def _log(verbose: int) -> None:
+    """Send the package's messages to standard error: warnings only, unless asked for more."""
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("fastpin: %(message)s"))
+    logger = logging.getLogger("fastpin")
+    logger.handlers = [handler]
+    logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbose, 2)])
 
 
 def _example(_: argparse.Namespace) -> int:
@@ -143,39 +162,15 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from fastpin.casefile import builtin_case, read_case
-    from fastpin.report import summary
+    from fastpin import cli_run
 
-    case = builtin_case() if options.case is None else read_case(options.case)
-    case = _overridden(case, options)
-    _check_outputs(options)
-    result, failure = _solve(case)
+    return cli_run.run(options)
 
-    if options.json != "-":
-        _print_states(case, result)
-    code = EXIT_OK
-    if failure is not None:
-        code = _fail(str(failure), EXIT_FAILED)
 
-    error = None if failure is None else str(failure)
-    writers: list[tuple[Any, Callable[[Path], None]]] = []
-    document = json.dumps(summary(case, result, error), indent=2, allow_nan=False) + "\n"
-    if options.json == "-":
-        sys.stdout.write(document)
-    elif options.json is not None:
-        writers.append((options.json, lambda path: _write_text(path, document)))
-    if result is not None and len(result):
-        reached = result
-        writers.append((options.plot, lambda path: _plot(reached, path, case.title)))
-        writers.append((options.output, lambda path: _store(reached, path, error)))
-    for path, write in writers:
-        if path is None:
-            continue
-        try:
-            write(Path(path))
-        except (OSError, InputError) as trouble:  # the other files are written all the same
-            code = _fail(f"can't write {path}: {trouble}", EXIT_FAILED)
-    return code
+def _resume(options: argparse.Namespace) -> int:
+    from fastpin import cli_run
+
+    return cli_run.resume(options)
 
 
 def _paper(options: argparse.Namespace) -> int:
@@ -190,123 +185,17 @@ def _paper(options: argparse.Namespace) -> int:
         raise InputError(option, error.reason) from None
     finished: list[str] = []
     try:
-        with _bar(len(names), "figure {desc}") as bar:
+        with bar(len(names), "figure {desc}") as shown:
             for name in names:
                 began = time.perf_counter()
-                bar.set_description_str(name, refresh=False)
-                files = paper.make(name, options.output, nodes, lambda part: bar.update(len(finished) + part - bar.n))
+                shown.set_description_str(name, refresh=False)
+                files = paper.make(
+                    name, options.output, nodes, lambda part: shown.update(len(finished) + part - shown.n)
+                )
                 finished.append(name)
                 seconds = time.perf_counter() - began
-                bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
+                shown.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
     except KeyboardInterrupt:
         written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
-        return _fail(f"interrupted; {written}", EXIT_INTERRUPTED)
+        return fail(f"interrupted; {written}", EXIT_INTERRUPTED)
     return EXIT_OK
-
-
-def _overridden(case: Case, options: argparse.Namespace) -> Case:
-    """The case with the solver options of the command line."""
-    given: dict[str, Any] = {}
-    for name in ("nodes", "method", "increments"):
-        if getattr(options, name) is not None:
-            given[name] = getattr(options, name)
-    if options.between is not None:
-        given["between"] = _between(options.between)
-    try:
-        return dataclasses.replace(case, options=dataclasses.replace(case.options, **given))
-    except InputError as error:
-        raise InputError(f"--{error.field}", error.reason) from None
-
-
-def _between(text: str) -> int | tuple[float, ...]:
-    from fastpin.casefile import checked_between
-
-    try:
-        value: object = int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
-    except ValueError:
-        value = text
-    try:
-        return checked_between(value)
-    except InputError as error:
-        raise InputError("--between", error.reason) from None
-
-
-def _check_outputs(options: argparse.Namespace) -> None:
-    """Find out before the work what could not be written after it."""
-    targets = {"--json": options.json, "--plot": options.plot, "--output": options.output}
-    chosen = {name: Path(path) for name, path in targets.items() if path is not None and path != "-"}
-    seen: dict[Path, str] = {}
-    for name, path in chosen.items():
-        # "fastpin run --json case.toml" takes the case file for the output.
-        if path.suffix == ".toml" or (options.case is not None and path.resolve() == options.case.resolve()):
-            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
-        if name == "--plot" and path.suffix.lower() not in FIGURE_FORMATS:
-            raise InputError(name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
-        check_writable(path)
-        other = seen.setdefault(path.resolve(), name)
-        if other != name:
-            raise InputError(name, f"writes the same file as {other}: {path}")
-
-
-def _solve(case: Case) -> tuple[Result | None, SolveError | None]:
-    from fastpin.solver import solve
-
-    with _bar(len(case.history), "load point {n:.2f} of {total}") as bar:
-
-        def progress(done: float, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
-
-        try:
-            return solve(case.problem, case.history, progress=progress, **case.options.keywords()), None
-        except SolveError as error:
-            return error.result, error
-
-
-def _bar(total: int, text: str) -> Any:
-    """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
-    from tqdm import tqdm
-
-    return tqdm(
-        total=total,
-        delay=2,
-        disable=None,
-        leave=False,
-        file=sys.stderr,
-        bar_format=f"{{percentage:3.0f}}% |{{bar}}| {text}, {{remaining}} left",
-    )
-
-
-def _print_states(case: Case, result: Result | None) -> None:
-    from fastpin.report import state_table
-
-    if case.title:
-        print(case.title)
-    if result is None or not len(result):
-        print("no state was reached")
-        return
-    print(state_table(case.problem, list(result)))
-    strain = case.problem.pair.beta_star * max(state.peak_pressure for state in result)
-    if strain > LARGE_STRAIN and not case.problem.dimensionless:
-        print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
-    statistics = result.statistics
-    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
-    known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
-    print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
-
-
-def _write_text(path: Path, text: str) -> None:
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-def _plot(result: Result, path: Path, title: str) -> None:
-    from fastpin.plot import plot_tractions
-
-    plot_tractions(result, path, title=title)
-
-
-def _store(result: Result, path: Path, error: str | None) -> None:
-    from fastpin.store import save
-
-    save(result, path, error=error)

@@ -70,7 +70,7 @@ class SolveError(FastpinError):
         self.result = result
 
 
-class Interrupted(KeyboardInterrupt):  # noqa: N818
+class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a solution, which stopped where it can be gone on from; ``result`` is what was solved before."""
 
     def __init__(self, result: Result | None = None) -> None:

@@ -22,7 +22,7 @@ class Asked:
 def held_back() -> Iterator[Asked]:
     """Note a first Ctrl-C instead of raising; a second one raises KeyboardInterrupt as ever.
 
-    So does a first one where this is not possible: outside the main thread, or where the program has handlers of its own.
+    So does a first one where this is not possible: outside the main thread, or where the program has its own handlers.
     SIGTERM is treated in the same way where the program has asked for it, by Python's handler of SIGINT.
     """
     asked = Asked()

@@ -40,7 +40,9 @@ class Keep:
             return cls(text)
         found = re.fullmatch(r"every[ =:-]?([1-9]\d{0,8})", text) if isinstance(text, str) else None
         if found is None:
-            raise InputError("keep", f'must be "all", "corners", "cycles" or "every N", such as "every 10", not {text!r}')
+            raise InputError(
+                "keep", f'must be "all", "corners", "cycles" or "every N", such as "every 10", not {text!r}'
+            )
         return cls("corners", int(found[1]))
 
     def __str__(self) -> str:

@@ -222,7 +222,7 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
 def rows_of(states: Sequence[State]) -> Rows:
     """States as rows."""
     names = [*NODE_FIELDS, *NUMBER_FIELDS]
-    rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
+    rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
     rows["load"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
     rows["residuals"] = np.array(
         [[state.residuals.get(name, np.nan) for name in RESIDUALS] for state in states], dtype=float
@@ -232,9 +232,7 @@ def rows_of(states: Sequence[State]) -> Rows:
 
 def cycle_rows(cycles: Sequence[Cycle]) -> Rows:
     """Cycles as rows."""
-    return {
-        name: np.array([getattr(cycle, name) for cycle in cycles], dtype=_dtype(name)) for name in CYCLE_FIELDS
-    }
+    return {name: np.array([getattr(cycle, name) for cycle in cycles], dtype=_dtype(name)) for name in CYCLE_FIELDS}
 
 
 def count(group: h5py.Group) -> int:

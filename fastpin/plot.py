@@ -23,7 +23,7 @@ from fastpin.errors import InputError
 from fastpin.files import check_writable, replacing
 from fastpin.loading import LOADS
 from fastpin.report import LOAD_KIND, acting_loads, load_point, scaled, units
-from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, State
+from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, Result, State, series
 
 # Okabe and Ito's colours, distinct for all kinds of colour vision, without the yellow: too light for a line.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
@@ -96,13 +96,93 @@ def plot_tractions(
     if not shown:
         raise InputError("states", "there is no state to plot")
     if len(shown) > MAX_LINES:
-        shown = [shown[k] for k in np.unique(np.linspace(0, len(shown) - 1, MAX_LINES).round().astype(int))]
+        shown = [shown[k] for k in spread(len(shown), MAX_LINES)]
     if path is not None:
         _check_format(Path(path))
     with mpl.rc_context(_STYLE):
         figure = _draw(shown, title, width)
         if path is not None:
             _save(figure, Path(path), dpi)
+    return figure
+
+
+def spread(count: int, most: int) -> list[int]:
+    """Places of at most so many of `count` things, evenly spread, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
+
+
+def plot_cycles(
+    result: Result, path: str | Path | None = None, width: float = 6.7, title: str = "", dpi: float = 200.0
+) -> Figure:
+    """What each cycle of a load history has changed, from its beginning to its end.
+
+    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure; what has
+    changed by rounding only, where the contact is periodic, has no place on its logarithmic scale.
+    Below are the energy dissipated in each cycle, and how far the cycles of a block have turned the pin (ratcheting).
+
+    Parameters
+    ----------
+    result : Result
+        With cycles: of a history with repeated blocks.
+    path, title, width, dpi
+        See :func:`plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If there are no cycles, or the figure's format is unknown.
+    """
+    if not result.cycles:
+        raise InputError("cycles", "the history has no repeated blocks")
+    if path is not None:
+        _check_format(Path(path))
+    with mpl.rc_context(_STYLE):
+        figure = _draw_cycles(result, title, width)
+        if path is not None:
+            _save(figure, Path(path), dpi)
+    return figure
+
+
+def _draw_cycles(result: Result, title: str, width: float) -> Figure:
+    figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(3, 1, sharex=True)
+    kind = units(result.problem)
+    lengths = sorted({cycle.length for cycle in result.cycles})[:MAX_NAMED]
+    shown = [one for one in series(result.cycles) if one[0].length in lengths]
+    energy, unit = scaled([cycle.dissipation for cycle in result.cycles], kind["energy"])
+    turns = [np.nancumsum([0.0, *(cycle.rotation_change for cycle in one)]) for one in shown]
+    angle, unit_of_angle = scaled(np.concatenate(turns).tolist(), kind["rotation"])
+    for one, turned in zip(shown, turns, strict=True):
+        colour = lengths.index(one[0].length)
+        corner = [cycle.corner + 1 for cycle in one]
+        marker: dict[str, Any] = {"marker": "o", "markersize": 2.2} if len(one) <= 60 else {}
+        for dashes, field in enumerate(("pressure_change", "shear_change")):
+            change = np.array([getattr(cycle, field) for cycle in one])
+            change[change == 0.0] = np.nan
+            panels[0].plot(corner, change, **line(colour, dashes), **marker)
+        dissipated = np.array([energy * cycle.dissipation for cycle in one])
+        dissipated[~(dissipated > 0.0)] = np.nan
+        panels[1].plot(corner, dissipated, **line(colour), **marker)
+        panels[2].plot([corner[0] - one[0].length, *corner], angle * turned, **line(colour), **marker)
+    for panel in panels[:2]:
+        panel.set_yscale("log")
+    panels[0].set_ylabel("largest change / peak N")
+    panels[1].set_ylabel(f"dissipated in a cycle  [{unit}]")
+    panels[2].set_ylabel(f"turned by the cycles  [{unit_of_angle}]")
+    panels[2].set_xlabel("corner of the load history at which the cycle ends")
+    handles: list[Artist] = [
+        Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **line(colour))
+        for colour, length in enumerate(lengths)
+    ]
+    for dashes, name in enumerate(("pressure", "shear")):
+        handles.append(Line2D([], [], label=name, **{**line(0, dashes), "color": "0.3"}))
+    _fitted_legend(figure, handles, min(len(handles), 4))
+    if len({cycle.corner for cycle in result.cycles}) > 1:
+        panels[2].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    figure.align_ylabels(panels)
+    if title:
+        figure.suptitle(title, fontsize=9.5)
     return figure
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from fastpin.casefile import Case, SolveOptions
 from fastpin.checks import whole_number
 from fastpin.errors import ArcError, InputError, Interrupted, SolveError
 from fastpin.files import check_writable, replacing
@@ -40,6 +41,7 @@ from fastpin.restart import read_restart, write_restart
 from fastpin.run import Method, Progress, Restart, Run
 from fastpin.solver import Task, check_start
 from fastpin.state import Cycle, Result, State
+from fastpin.store import opened
 
 log = logging.getLogger(__name__)
 
@@ -85,8 +87,8 @@ def record(
     """Follow a load history as :func:`fastpin.solve` does, into an HDF5 file instead of memory.
 
     States are in the file, for good, a tenth of a second after they were found, whatever happens to the process.
-    Memory does not grow with the history. :func:`resume` goes on where a run has ended early, with the same bits as if it
-    had not; :func:`fastpin.store.load` reads the file, also while it is being written.
+    Memory does not grow with the history. :func:`resume` goes on where a run has ended early, with the same bits as if
+    it had not; :func:`fastpin.store.load` reads the file, also while it is being written.
 
     Parameters
     ----------
@@ -157,6 +159,32 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
             if not writer.chosen_arc:
                 raise
             task.follow(writer, beyond=task.grid)
+
+
+def stored_case(path: str | Path) -> Case:
+    """What the run of a file was asked for.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.store.load`.
+    """
+    with opened(Path(path)) as file:
+        options = {name: plain(value) for name, value in file["solver"].attrs.items()}
+        return Case(
+            read_problem(file),
+            read_history(file),
+            SolveOptions(
+                nodes=options["nodes"],
+                method=options["method"],
+                increments=options["increments"],
+                arc=tuple(options["arc"].tolist()) if "arc" in options else None,
+                between=tuple(options["fractions"].tolist()[:-1]),
+                keep=options["keep"],
+                shortcut=bool(options["shortcut"]),
+            ),
+            options["title"],
+        )
 
 
 @contextmanager
@@ -343,6 +371,7 @@ class _Writer:
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
         self._states, self._cycles, self._pending = [], [], 0
         self._committed = time.monotonic()
+        log.debug("%d states in the file", self._stored[0])
 
     def _write_restart(self, group: h5py.Group) -> None:
         write_restart(group, self._run.restart())

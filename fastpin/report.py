@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fastpin import __version__
-from fastpin.loading import LOADS, named_load
+from fastpin.loading import LOADS, Block, LoadHistory, named_load
 from fastpin.materials import Material
 from fastpin.problem import Problem
+from fastpin.state import periodic_from, series
 
 if TYPE_CHECKING:
     from fastpin.casefile import Case
-    from fastpin.state import Result, State
+    from fastpin.state import Cycle, Result, State
 
 LOAD_KIND = {
     "P": "force",
@@ -116,7 +117,6 @@ def describe(case: Case) -> str:
             if problem.hub_radius is None
             else f" at radius {problem.hub_radius:g} {unit['length']}"
         )
-    loads = [named_load(row) for row in case.history.values()]
     if options.arc is None:
         where = "arc chosen by the solver"
     elif options.arc[1] - options.arc[0] >= 2.0 * math.pi:
@@ -131,23 +131,41 @@ def describe(case: Case) -> str:
         ("contact", f"{size}, friction {problem.friction:g}"),
         ("loading", f"{pin_load}, rotation {problem.rotation}{hub}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
-        ("loads", f"{len(loads)} corners, reached one after the other from no load"),
+        ("loads", f"{len(case.history):,} corners, reached one after the other from no load"),
     ]
+    if options.keep != "all":
+        rows.append(("states", f"kept: {options.keep}"))
     text = [case.title] if case.title else []
     text += [f"{name:8s} {value}" for name, value in rows]
-    return "\n".join([*text, "", _load_table(problem, loads)])
+    return "\n".join([*text, "", _load_table(problem, case.history)])
 
 
-def _load_table(problem: Problem, loads: list[dict[str, float]]) -> str:
-    columns = [("corner", "", [f"{number}" for number in range(1, len(loads) + 1)])]
+def _load_table(problem: Problem, history: LoadHistory) -> str:
+    """The corners of every block for the first time through."""
+    numbers, counts, loads = [], [], []
+    last = np.zeros(len(LOADS))
+    begin = 1
+    for block in history.blocks:
+        size = len(block.given)
+        shown = range(size) if size <= _MAX_ROWS else [*range(_MAX_ROWS // 2), *range(size - _MAX_ROWS // 2, size)]
+        values = LoadHistory.from_array(block.given).values(initial=last)
+        numbers += [f"{begin + k}" for k in shown]
+        counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in shown]
+        loads += [named_load(values[k]) for k in shown]
+        last, begin = values[-1], begin + block.corners
+    columns = [("corner", "", numbers)]
+    if any(counts):
+        columns.append(("times", "", counts))
     columns += _load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
     columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
-    return _table(columns)
+    return _table(
+        columns, len(history) - sum(block.corners - len(block.given) for block in history.blocks) - len(loads)
+    )
 
 
-def state_table(problem: Problem, states: Sequence[State]) -> str:
-    """The states as a table with one line each."""
+def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
+    """The states as a table with one line each; `hidden` is how many have been left out of their middle."""
     unit = units(problem)
 
     def column(
@@ -174,7 +192,34 @@ def state_table(problem: Problem, states: Sequence[State]) -> str:
         column("dissipated", "energy", [state.dissipation for state in states], 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
-    return _table(columns)
+    return _table(columns, hidden)
+
+
+def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
+    """What the cycles of each block have changed, a line each."""
+    lines = [_series_line(problem, one) for one in series(cycles)]
+    if len(lines) > _MAX_ROWS // 2:
+        lines[_MAX_ROWS // 4 : -_MAX_ROWS // 4] = [f"... {len(lines) - _MAX_ROWS // 2} more blocks of cycles ..."]
+    return lines
+
+
+def _series_line(problem: Problem, cycles: list[Cycle]) -> str:
+    first, last = cycles[0], cycles[-1]
+    steady = periodic_from(cycles)
+    kind = units(problem)
+    dissipation = [_quantity(cycle.dissipation, kind["energy"], 4) for cycle in (first, last)]
+    turned = [_quantity(cycle.rotation_change, kind["rotation"], 3) for cycle in (first, last)]
+    state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
+    corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
+    text = f"{last.number:,} cycle{'s' if last.number > 1 else ''} of {corners}: {state}"
+    if len(cycles) == 1:
+        return f"{text}; dissipated {dissipation[0]}, turned {turned[0]}"
+    change = max(last.pressure_change, last.shear_change)
+    return (
+        f"{text}; tractions changed by {max(first.pressure_change, first.shear_change):.2g} (first) and {change:.2g} "
+        f"(last) of the peak pressure, dissipated {dissipation[0]} and {dissipation[1]}, "
+        f"turned {turned[0]} and {turned[1]}"
+    )
 
 
 def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
@@ -189,8 +234,11 @@ def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> lis
     return columns
 
 
-def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
+def _table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
+    """Lines of text, no more than so many; `hidden` rows in the middle are not even in the columns."""
     count = len(columns[0][2])
+    middle = min(count, _MAX_ROWS) // 2
+    hidden += max(count - _MAX_ROWS, 0)
     if count > _MAX_ROWS:
         kept = [*range(_MAX_ROWS // 2), *range(count - _MAX_ROWS // 2, count)]
         columns = [(name, unit, [cells[k] for k in kept]) for name, unit, cells in columns]
@@ -198,8 +246,8 @@ def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
     lines = [[name for name, _, _ in columns], [unit for _, unit, _ in columns]]
     lines += [[cells[k] for _, _, cells in columns] for k in range(len(columns[0][2]))]
     text = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
-    if count > _MAX_ROWS:
-        text.insert(2 + _MAX_ROWS // 2, f"... {count - _MAX_ROWS} more ...")
+    if hidden:
+        text.insert(2 + middle, f"... {hidden:,} more ...")
     return "\n".join(text)
 
 
@@ -221,9 +269,9 @@ def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
     return ", ".join(parts)
 
 
-def _quantity(value: float, unit: str) -> str:
+def _quantity(value: float, unit: str, digits: int = 6) -> str:
     factor, label = scaled([value], unit)
-    return f"{value * factor:.6g} {label}"
+    return f"{value * factor:.{digits}g} {label}"
 
 
 def _material(material: Material, dimensionless: bool) -> str:
@@ -269,12 +317,18 @@ def summary(
             "hub_radius": problem.hub_radius,
             "dimensionless": problem.dimensionless,
         },
-        "history": {"loads": list(LOADS), "corners": case.history.values().tolist()},
+        "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
+        "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
     }
     return _plain(document)
+
+
+def _block_summary(block: Block) -> dict[str, Any]:
+    """A block of the history; what a corner does not give is None."""
+    return {"repeat": block.count, "corners": block.given.tolist()}
 
 
 def _material_summary(material: Material) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections import Counter, deque
 from collections.abc import Callable
@@ -21,6 +22,8 @@ from fastpin.loading import CycleKey, LoadHistory, filled, named_load
 from fastpin.path import PathStep, StepLostError
 from fastpin.repeats import Repeats
 from fastpin.state import OPEN, SLIP_POSITIVE, Cycle, State
+
+log = logging.getLogger(__name__)
 
 Method = Literal["path", "increment"]
 Progress = Callable[[float, int], None]
@@ -335,20 +338,20 @@ class Run:
         periods = []
         for key in ended:
             mark, length = self.marks.get(key), history.cycle_length(key)
-            number, changes = 1, [math.nan] * 4
+            number, changes = 1, (math.nan, math.nan, math.nan, math.nan)
             if mark is not None and mark.corner == corner - length:
                 number, then = mark.number + 1, mark.configuration
                 peak = max(float(now.pressure.max()), float(then.pressure.max()), 1e-300)
-                changes = [
+                changes = (
                     float(np.abs(now.pressure - then.pressure).max()) / peak,
                     float(np.abs(now.shear - then.shear).max()) / peak,
                     mark.dissipation * scales.energy,
                     float(now.motion[2] - then.motion[2]) * scales.rotation,
-                ]
+                )
                 if now.slip is then.slip:
                     periods.append((length, mark.corner))
             self.marks[key] = Mark(corner, number, now)
-            cycle = Cycle(corner, length, number, *changes, solved=True)
+            cycle = Cycle(corner, length, number, *changes, True)
             self.log[-1].cycles.append((key, cycle))
             if self.recorder is not None:
                 self.recorder.add_cycle(cycle)
@@ -374,6 +377,7 @@ class Run:
         logged = [self.log[k - length] for k in range(length)]
         if any(cycle.corner - cycle.length < now - length for entry in logged for _, cycle in entry.cycles):
             return  # a cycle that began before: what it changed will not be repeated
+        log.info("corner %d: the last %d corners repeat %d times and are not solved again", now + 1, length, times)
         latest = [other for other in self.repeats if other.last > now - length]
         counts = _counts(logged, now - length)
         for k in range(times):
@@ -398,7 +402,10 @@ class Run:
             for dissipation, work in entry.kept:
                 rows.append((self.corner + k, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
             cycles = [
-                (key, cycle._replace(corner=cycle.corner + time * len(logged), number=cycle.number + time * counts[key]))
+                (
+                    key,
+                    cycle._replace(corner=cycle.corner + time * len(logged), number=cycle.number + time * counts[key]),
+                )
                 for key, cycle in entry.cycles
             ]
             self.log.append(replace(entry, cycles=cycles))

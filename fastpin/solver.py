@@ -70,8 +70,8 @@ def solve(
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
     keep : str
-        Which states are kept: "all", "corners", "cycles" (where a cycle of the history ends) or "every N" (corners). The
-        last one is always kept.
+        Which states are kept: "all", "corners", "cycles" (where a cycle of the history ends) or "every N" (corners).
+        The last one is always kept.
     shortcut : bool
         Where the contact has become periodic under loads that repeat, take the states from the period before instead of
         solving them again. They are the same to the last bit.
@@ -106,11 +106,9 @@ def solve(
             task.go_on(kept, start.restart.elsewhere(), start.grid)
         else:
             task.follow(kept)
-    except SolveError as error:
-        error.result = kept.result(task, time.perf_counter() - began)
-        raise
-    except Interrupted as stopped:
-        stopped.result = kept.result(task, time.perf_counter() - began)
+    except (SolveError, Interrupted) as ended:
+        if kept.run is not None:  # else it ended before a grid was found
+            ended.result = kept.result(task, time.perf_counter() - began)
         raise
     return kept.result(task, time.perf_counter() - began)
 
@@ -136,17 +134,14 @@ class Kept:
         latest = self.states[len(self.states) - len(steps) :]
         for state, step, lost, done in zip(latest, steps.tolist(), dissipation.tolist(), work.tolist(), strict=True):
             load, residuals = dict(state.load), dict(state.residuals)
-            self.states.append(
-                replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals)
-            )
+            self.states.append(replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals))
 
     def corner_reached(self) -> None:
         pass
 
-    def result(self, task: Task, seconds: float) -> Result | None:
-        """What was solved; None if not even a grid was found."""
-        if self.run is None:
-            return None
+    def result(self, task: Task, seconds: float) -> Result:
+        """What was solved."""
+        assert self.run is not None
         run, statistics = self.run, {**self.run.statistics, "seconds": seconds}
         return Result(
             self.states, task.problem, task.history, run.system.grid, run.method, statistics, run.complete,

@@ -168,8 +168,8 @@ class Cycle(NamedTuple):
     number : int
         How many times its block has been run through: 1 for the first cycle.
     pressure_change, shear_change : float
-        Largest difference of the tractions at a node, relative to the largest pressure; 0 where the contact is periodic.
-        NaN where it is not known, because the cycle began before the history.
+        Largest difference of the tractions at a node, relative to the largest pressure; 0 where the contact is
+        periodic. NaN where it is not known, because the cycle began before the history.
     dissipation : float
         Energy dissipated by friction in this cycle, J/m.
     rotation_change : float
@@ -186,6 +186,26 @@ class Cycle(NamedTuple):
     dissipation: float
     rotation_change: float
     solved: bool
+
+
+def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
+    """The first of the cycles from which on all left the tractions the same, to rounding; None if there is none."""
+    same = [cycle.pressure_change == 0.0 and cycle.shear_change == 0.0 for cycle in cycles]
+    changing = max((k for k, steady in enumerate(same) if not steady), default=-1)
+    return cycles[changing + 1] if changing + 1 < len(cycles) else None
+
+
+def series(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
+    """Cycles that follow on one another, block by block."""
+    found: list[list[Cycle]] = []
+    latest: dict[int, list[Cycle]] = {}
+    for cycle in cycles:
+        before = latest.get(cycle.length)
+        if before is None or before[-1].number + 1 != cycle.number or before[-1].corner + cycle.length != cycle.corner:
+            before = latest[cycle.length] = []
+            found.append(before)
+        before.append(cycle)
+    return found
 
 
 class Result(Sequence[State]):
@@ -230,20 +250,6 @@ class Result(Sequence[State]):
         self.complete = complete
         self.restart = restart
         self.cycles = tuple(cycles)
-
-    @property
-    def periodic_from(self) -> Cycle | None:
-        """The first cycle from which on all cycles of its block left the tractions the same to rounding.
-
-        Of the last block of the history; None if they did not, or there are no cycles.
-        """
-        first = None
-        for cycle in reversed(self.cycles):
-            same = cycle.pressure_change == 0.0 and cycle.shear_change == 0.0
-            if not same or (first is not None and (cycle.length, cycle.number + 1) != (first.length, first.number)):
-                break
-            first = cycle
-        return first
 
     @overload
     def __getitem__(self, index: int) -> State: ...

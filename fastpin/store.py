@@ -19,7 +19,6 @@ from fastpin.grid import Grid
 from fastpin.journal import open_h5, settled
 from fastpin.keep import Keep
 from fastpin.layout import (
-    FORMAT,
     append,
     check_format,
     count,
@@ -88,8 +87,8 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     states : slice or sequence of int
         Which states to read, by their place in the file; all unless given.
     after : int, optional
-        Only what was found up to this corner, counted from 1, to go on from there: ``solve(..., start=result)``. If it is
-        not one of those that were saved, what lies between is solved again, which gives the same bits.
+        Only what was found up to this corner, counted from 1, to go on from there: ``solve(..., start=result)``. If it
+        is not one of those that were saved, what lies between is solved again, which gives the same bits.
 
     Returns
     -------
@@ -102,7 +101,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         If the file can't be read, was cut short, or is no result of fastpin; or has no such corner.
     """
     path = Path(path)
-    with _opened(path) as file:
+    with opened(path) as file:
         problem, grid, history = read_problem(file), read_grid(file), read_history(file)
         complete, restart = bool(file.attrs["complete"]), None
         restarts = file.get("restart", {})
@@ -135,7 +134,7 @@ def size(path: str | Path) -> int:
     InputError
         See :func:`load`.
     """
-    with _opened(Path(path)) as file:
+    with opened(Path(path)) as file:
         return count(file["states"])
 
 
@@ -153,7 +152,7 @@ def to_xarray(path: str | Path) -> xarray.Dataset:
         import xarray
     except ImportError:
         raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
-    with _opened(Path(path)) as file:
+    with opened(Path(path)) as file:
         group, variables = file["states"], {}
         for name, dataset in group.items():
             scales = [dimension.values() for dimension in dataset.dims]
@@ -170,19 +169,24 @@ _COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fractio
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[Any]:
-    """A result open for reading, as its last transaction left it; what is wrong with it is raised as InputError."""
+def opened(path: Path) -> Iterator[Any]:
+    """A result open for reading, as its last transaction left it.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, was cut short, or is no result of fastpin; also where its user found it damaged.
+    """
     if not path.is_file():
         raise InputError(str(path), "there is no such file")
-    with settled(path):
-        with open_h5(path) as file:
-            check_format(file, str(path))
-            try:
-                yield file
-            except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
-                if isinstance(error, InputError):
-                    raise
-                raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
+    with settled(path), open_h5(path) as file:
+        check_format(file, str(path))
+        try:
+            yield file
+        except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
 
 
 def _restart_after(
@@ -208,6 +212,3 @@ def _restart_after(
 
 def _first_line(error: Exception) -> str:
     return (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]
-
-
-__all__ = ["FORMAT", "load", "save", "size", "to_xarray"]

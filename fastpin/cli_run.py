@@ -1,0 +1,262 @@
+"""``fastpin run`` and ``fastpin resume``: solve, and hand out what was found as table, figures and files."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fastpin.errors import InputError, Interrupted, SolveError
+from fastpin.files import check_writable, replacing
+from fastpin.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, bar, fail
+
+if TYPE_CHECKING:
+    from fastpin.casefile import Case
+    from fastpin.run import Progress
+    from fastpin.state import Result
+
+LARGE_STRAIN = 0.05
+FIGURE_FORMATS = (".png", ".pdf", ".svg")
+SHOWN = 20
+"""States at the beginning and at the end of a long history that are printed."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Solve a case."""
+    from fastpin.casefile import builtin_case, read_case
+
+    case = builtin_case() if options.case is None else read_case(options.case)
+    case = _overridden(case, options)
+    _check_outputs(options)
+    start = _start(options)
+    keywords = {**case.options.keywords(), **({} if start is None else {"start": start})}
+    with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
+        progress = _progress(shown)
+        if options.output is not None:
+            from fastpin.record import record
+
+            saved = _whole_numbers(options.save_after) if options.save_after is not None else ()
+            ended = _ended(
+                lambda: record(
+                    case.problem, case.history, options.output, progress=progress, save_after=saved,
+                    overwrite=options.overwrite, title=case.title, **keywords,
+                )
+            )  # fmt: skip
+            return _hand_out_stored(case, options, ended)
+        from fastpin.solver import solve
+
+        found: list[Result] = []
+        ended = _ended(lambda: found.append(solve(case.problem, case.history, progress=progress, **keywords)))
+    result = found[0] if found else ended.result if isinstance(ended, (SolveError, Interrupted)) else None
+    return _hand_out(case, options, result, ended)
+
+
+def resume(options: argparse.Namespace) -> int:
+    """Go on with a run that has ended early."""
+    from fastpin.record import resume as go_on
+    from fastpin.record import stored_case
+
+    case = stored_case(options.output)
+    _check_outputs(options)
+    with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
+        ended = _ended(lambda: go_on(options.output, _progress(shown)))
+    return _hand_out_stored(case, options, ended)
+
+
+def _ended(work: Callable[[], object]) -> SolveError | Interrupted | None:
+    """Do it, and return how it ended early, if it did."""
+    try:
+        work()
+    except (SolveError, Interrupted) as ended:
+        return ended
+    return None
+
+
+def _progress(shown: Any) -> Progress:
+    def progress(done: float, total: int) -> None:
+        shown.total = total
+        shown.update(done - shown.n)
+
+    return progress
+
+
+# -- options -------------------------------------------------------------------------------------------------
+
+
+def _overridden(case: Case, options: argparse.Namespace) -> Case:
+    """The case with the solver options of the command line."""
+    given: dict[str, Any] = {}
+    for name in ("nodes", "method", "increments", "keep", "shortcut"):
+        if getattr(options, name) is not None:
+            given[name] = getattr(options, name)
+    if options.between is not None:
+        given["between"] = _between(options.between)
+    try:
+        return dataclasses.replace(case, options=dataclasses.replace(case.options, **given))
+    except InputError as error:
+        raise InputError(f"--{error.field}", error.reason) from None
+
+
+def _between(text: str) -> int | tuple[float, ...]:
+    from fastpin.casefile import checked_between
+
+    try:
+        value: object = int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
+    except ValueError:
+        value = text
+    try:
+        return checked_between(value)
+    except InputError as error:
+        raise InputError("--between", error.reason) from None
+
+
+def _whole_numbers(text: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError("--save-after", f"must be corners such as 4,10, not {text!r}") from None
+
+
+def _start(options: argparse.Namespace) -> Result | None:
+    """The result to go on from."""
+    if options.start is None:
+        if options.after is not None:
+            raise InputError("--after", "needs --start FILE")
+        return None
+    from fastpin.store import load
+
+    if options.output is not None and options.output.resolve() == options.start.resolve():
+        raise InputError("--output", "is the file to start from; a branch needs a file of its own")
+    try:
+        start = load(options.start, states=[], after=options.after)
+    except InputError as error:
+        raise InputError("--after" if error.field == "after" else error.field, error.reason) from None
+    if start.restart is None:
+        raise InputError(str(options.start), "holds an unfinished run: resume it, or say after which corner (--after)")
+    return start
+
+
+def _check_outputs(options: argparse.Namespace) -> None:
+    """Find out before the work what could not be written after it."""
+    names = {"--json": options.json, "--plot": options.plot, "--cycles": options.cycles, "--output": options.output}
+    chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
+    seen: dict[Path, str] = {}
+    for name, path in chosen.items():
+        # "fastpin run --json case.toml" takes the case file for the output.
+        case = getattr(options, "case", None)
+        if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
+            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
+        if name in ("--plot", "--cycles") and path.suffix.lower() not in FIGURE_FORMATS:
+            raise InputError(name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
+        check_writable(path)
+        other = seen.setdefault(path.resolve(), name)
+        if other != name:
+            raise InputError(name, f"writes the same file as {other}: {path}")
+
+
+# -- what was found ------------------------------------------------------------------------------------------
+
+
+def _hand_out_stored(case: Case, options: argparse.Namespace, ended: SolveError | Interrupted | None) -> int:
+    """Print and draw what is in the file of a run; of many states no more than that takes is read."""
+    from fastpin.plot import MAX_LINES, spread
+    from fastpin.store import load, size
+
+    if not options.output.is_file():
+        return _hand_out(case, options, None, ended)
+    count = size(options.output)
+    if options.json is not None:
+        return _hand_out(case, options, load(options.output), ended)
+    picked = set(range(min(SHOWN, count))) | set(range(max(count - SHOWN, 0), count))
+    if options.plot is not None:
+        picked |= set(spread(count, MAX_LINES))
+    result = load(options.output, states=sorted(picked))
+    return _hand_out(case, options, result, ended, hidden=count - len(picked))
+
+
+def _hand_out(
+    case: Case,
+    options: argparse.Namespace,
+    result: Result | None,
+    ended: SolveError | Interrupted | None,
+    hidden: int = 0,
+) -> int:
+    """Print the states and write the files that were asked for; `hidden` states in the middle are left out."""
+    from fastpin.report import summary
+
+    if options.json != "-":
+        _print_states(case, result, hidden)
+    code, error = EXIT_OK, None
+    if isinstance(ended, SolveError):
+        error = str(ended)
+        code = fail(error, EXIT_FAILED)
+    elif ended is not None:
+        error = "interrupted"
+        solved = "nothing was solved" if result is None else "what was solved is above"
+        more = f"; go on with: fastpin resume {options.output}" if options.output is not None and result else ""
+        code = fail(f"interrupted; {solved}{more}", EXIT_INTERRUPTED)
+
+    writers: list[tuple[Any, Callable[[Path], None]]] = []
+    if options.json is not None:
+        document = json.dumps(summary(case, result, error), indent=2, allow_nan=False) + "\n"
+        if options.json == "-":
+            sys.stdout.write(document)
+        else:
+            writers.append((options.json, lambda path: _write_text(path, document)))
+    if result is not None and len(result):
+        reached = result
+        writers.append((options.plot, lambda path: _plot(reached, path, case.title)))
+    if result is not None and result.cycles:
+        with_cycles = result
+        writers.append((options.cycles, lambda path: _plot_cycles(with_cycles, path, case.title)))
+    elif options.cycles is not None:
+        code = fail(f"can't write {options.cycles}: the history has no cycles", EXIT_FAILED)
+    for path, write in writers:
+        if path is None:
+            continue
+        try:
+            write(Path(path))
+        except (OSError, InputError) as trouble:  # the other files are written all the same
+            code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
+    return code
+
+
+def _print_states(case: Case, result: Result | None, hidden: int) -> None:
+    from fastpin.report import cycle_lines, state_table
+
+    if case.title:
+        print(case.title)
+    if result is None or not len(result):
+        print("no state was reached")
+        return
+    print(state_table(case.problem, list(result), hidden))
+    strain = case.problem.pair.beta_star * max(state.peak_pressure for state in result)
+    if strain > LARGE_STRAIN and not case.problem.dimensionless:
+        print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
+    for line in cycle_lines(case.problem, result.cycles):
+        print(line)
+    statistics = result.statistics
+    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
+    known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
+    print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
+
+
+def _write_text(path: Path, text: str) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _plot(states: Sequence[Any], path: Path, title: str) -> None:
+    from fastpin.plot import plot_tractions
+
+    plot_tractions(states, path, title=title)
+
+
+def _plot_cycles(result: Result, path: Path, title: str) -> None:
+    from fastpin.plot import plot_cycles
+
+    plot_cycles(result, path, title=title)
