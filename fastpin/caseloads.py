@@ -105,6 +105,8 @@ def _harmonic(block: Section) -> LoadHistory | None:
     tables = {name: _loads(block, name) for name in ("mean", "amplitude", "phase")}
     points = block.checked("points", whole, 2)
     count = block.checked("repeat", whole, 1) or 1
+    if None in tables.values():
+        return None
     try:
         history = LoadHistory.harmonic(**tables, count=count, points=points)
     except InputError as error:
@@ -116,21 +118,21 @@ def _harmonic(block: Section) -> LoadHistory | None:
     return history
 
 
-def _loads(block: Section, name: str) -> dict[str, float]:
-    """A table of loads, such as ``mean = {P = 1e6, Q = 0}``."""
+def _loads(block: Section, name: str) -> dict[str, float] | None:
+    """A table of loads, such as ``mean = {P = 1e6, Q = 0}``; None where it is wrong, which is reported."""
     table = block.value(name)
     if table is None:
         return {}
     if not isinstance(table, dict):
         block.report(f"{name}: must be a table of loads, such as {name} = {{Q = 1e5}}, not {shown(table)}", name)
-        return {}
+        return None
     loads = {}
     for load, value in table.items():
         try:
             loads[load] = number(f"{name}.{load}", value)
         except InputError as error:
             block.report(str(error), name)
-    return loads
+    return loads if len(loads) == len(table) else None
 
 
 def _corners(block: Section) -> list[dict[str, float]]:

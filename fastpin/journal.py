@@ -8,6 +8,7 @@ or not at all.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import struct
@@ -53,6 +54,7 @@ class JournaledFile:
         self._place = 0
         self._open_transaction = False
         self._abandoned = False
+        self._error: OSError | None = None
         try:
             self._file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
         except OSError as error:
@@ -81,7 +83,18 @@ class JournaledFile:
         self._open_transaction = True
 
     def commit(self) -> None:
-        """End the transaction: what was written since it began is part of the file."""
+        """End the transaction: what was written since it began is part of the file.
+
+        Raises
+        ------
+        OSError
+            If something could not be written. The transaction is undone, and the file can only be closed.
+        """
+        if self._error is not None:
+            self.abandon()
+            raise self._error
+        if self._abandoned:
+            return
         os.ftruncate(self._journal, 0)
         self._size = os.fstat(self._file).st_size
         self._open_transaction = False
@@ -90,11 +103,13 @@ class JournaledFile:
     def abandon(self) -> None:
         """Undo the transaction, and ignore all that is still written."""
         self._abandoned = True
-        _roll_back(self._file, self._journal)
+        with contextlib.suppress(OSError):  # else the next one who opens the file will do it
+            _roll_back(self._file, self._journal)
 
     def release(self) -> None:
-        """Leave the file to others. The journal goes."""
-        journal_of(self._path).unlink(missing_ok=True)
+        """Leave the file to others. The journal goes, if nothing is left to be undone."""
+        if not os.fstat(self._journal).st_size:
+            journal_of(self._path).unlink(missing_ok=True)
         os.close(self._journal)
         os.close(self._file)
 
@@ -103,7 +118,7 @@ class JournaledFile:
         _write_all(self._journal, record, self._written)
         self._written += len(record)
 
-    # -- what h5py calls ---------------------------------------------------------------------------------------
+    # -- what h5py calls. Its library does not survive an exception here: they wait for the end of the transaction.
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
         base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: os.fstat(self._file).st_size}[whence]
@@ -126,22 +141,28 @@ class JournaledFile:
 
     def write(self, data: memoryview) -> int:
         size = len(data)
-        if not self._abandoned:
-            self.begin()
-            old = min(size, self._size - self._place)
-            if old > 0:
-                self._note(self._place, os.pread(self._file, old, self._place))
-            _write_all(self._file, bytes(data), self._place)
+        if not self._abandoned and self._error is None:
+            try:
+                self.begin()
+                old = min(size, self._size - self._place)
+                if old > 0:
+                    self._note(self._place, os.pread(self._file, old, self._place))
+                _write_all(self._file, bytes(data), self._place)
+            except OSError as error:
+                self._error = error
         self._place += size
         return size
 
     def truncate(self, size: int | None = None) -> int:
         size = self._place if size is None else size
-        if not self._abandoned:
-            self.begin()
-            if size < self._size:
-                self._note(size, os.pread(self._file, self._size - size, size))
-            os.ftruncate(self._file, size)
+        if not self._abandoned and self._error is None:
+            try:
+                self.begin()
+                if size < self._size:
+                    self._note(size, os.pread(self._file, self._size - size, size))
+                os.ftruncate(self._file, size)
+            except OSError as error:
+                self._error = error
         return size
 
     def flush(self) -> None:

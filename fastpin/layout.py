@@ -243,6 +243,8 @@ def count(group: h5py.Group) -> int:
 def append(group: h5py.Group, rows: Rows) -> None:
     """Add rows to ``/states`` or ``/cycles``."""
     size, old = len(next(iter(rows.values()))), count(group)
+    if size == 0:
+        return
     if "state" in group:
         rows = {"state": np.arange(old, old + size), **rows}
     for name, array in rows.items():

@@ -327,10 +327,12 @@ class _Writer:
 
     def _close(self) -> None:
         assert self._file is not None
-        self._h5.close()
-        self._file.commit()
-        self._file.release()
-        self._file = None
+        file, self._file = self._file, None
+        try:
+            self._h5.close()
+            file.commit()
+        finally:
+            file.release()
 
     def _put(self, rows: Rows) -> None:
         """Take rows that follow on those before; those that are in the file already are the same."""
@@ -364,10 +366,10 @@ class _Writer:
             if self._cycles:
                 append(self._h5["cycles"], cycle_rows(self._cycles))
             self._h5.flush()
+            self._file.commit()
         except OSError:
             self.abort()
             raise
-        self._file.commit()
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
         self._states, self._cycles, self._pending = [], [], 0
         self._committed = time.monotonic()

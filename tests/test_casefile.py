@@ -132,13 +132,15 @@ def test_history_from_csv_beside_the_case_file(tmp_path: Path) -> None:
 
 def test_solver_options() -> None:
     text = GOOD + '[solve]\nnodes = 51\nmethod = "increment"\nincrements = 7\narc = [-3, 0]\nbetween = [0.25, 0.5]\n'
-    options = parse_case(text).options
+    options = parse_case(text + 'keep = "every 3"\nshortcut = false\n').options
     assert options.keywords() == {
         "nodes": 51,
         "method": "increment",
         "increments": 7,
         "arc": (-3.0, 0.0),
         "between": (0.25, 0.5),
+        "keep": "every 3",
+        "shortcut": False,
     }
 
 
@@ -205,7 +207,16 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("P = 1e6", "P = 1e6\nrepeat = 1.5", 11, "repeat: must be a whole number"),
         ("P = 1e6", "P = 1e6\nrepeat = 1000000000", 11, "more than"),
         ("P = 1e6", "P = [1, 2]\nQ = [1, 2, 3]", 11, "equally long"),
-        ("P = 1e6", "P = 1e6\n[history]\ncsv = 'x.csv'", 11, "either [history] or [[load]]"),
+        ("P = 1e6", "P = 1e6\n[history]\ncsv = 'x.csv'", 12, "either csv or [[load]]"),
+        ("P = 1e6", "amplitude = {Q = 1e5}\nP = 1", 11, "P: can't be given together with amplitude"),
+        ("P = 1e6", "P = 1\nphase = {Q = 90}", 11, "phase: needs an amplitude"),
+        ("P = 1e6", "amplitude = 3", 10, "amplitude: must be a table of loads"),
+        ("P = 1e6", "amplitude = {Q = 'x'}", 10, "amplitude.Q: must be a number"),
+        ("P = 1e6", "amplitude = {q = 1}", 9, 'did you mean "Q"'),
+        ("P = 1e6", "amplitude = {Q = 1}\nphase = {P = 1}", 11, "P has a phase but no amplitude"),
+        ("P = 1e6", "amplitude = {Q = 1}\npoints = 1", 11, "points: must be a whole number of at least 2"),
+        ("P = 1e6", "amplitude = {Q = 1}\nrepeat = 100000000", 11, "more than"),
+        ("P = 1e6", "P = 1e6\n[history]\nrepeat = 0", 12, "repeat: must be a whole number"),
         ("[[load]]\nP = 1e6", "[history]\ncsv = 'no such file.csv'", 10, "No such file"),
         ("[[load]]\nP = 1e6", "[history]\nrepeat = 2", 9, "csv is missing"),
         ("P = 1e6", "P = 1e6\n[[load]]\nrotation = 0.1", 12, "rotation"),

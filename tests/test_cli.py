@@ -169,11 +169,16 @@ def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: 
 
 def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> None:
     arguments = ["--nodes", "99", "--method", "increment", "--increments", "7", "--between", "0.25,0.5"]
+    arguments += ["--keep", "corners", "--no-shortcut"]
     assert main(["run", str(case), *arguments]) == 0
     assert main(["run", str(case), "--between", "3"]) == 0
     first, second = solved
-    assert first == {"nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5)}
+    assert first == {
+        "nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5), "keep": "corners",
+        "shortcut": False,
+    }  # fmt: skip
     assert second["between"] == 3
+    assert second["keep"] == "all"
 
 
 @pytest.mark.parametrize(
@@ -183,6 +188,8 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
         (["--method", "magic"], "--method: must be"),
         (["--increments", "0"], "--increments: must be"),
         (["--between", "x"], "--between: must be"),
+        (["--keep", "some"], '--keep: must be "all", "corners", "cycles" or "every N"'),
+        (["--after", "3"], "--after: needs --start"),
         (["--between", "0.5,0.5"], "--between: must be"),
         (["--plot", "figure.docx"], "--plot: the figure's name must end in"),
         (["--json", "no/such/dir/x.json"], "does not exist"),
@@ -239,35 +246,42 @@ def test_json_on_standard_output_is_the_only_thing_there(
         assert said["load_point"] == state.step + 1
 
 
-def test_all_outputs(case: Path, solved: list[dict[str, Any]], tmp_path: Path) -> None:
+def test_all_outputs(case: Path, tmp_path: Path) -> None:
     from fastpin.store import load
 
     names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
     arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
     for _ in range(2):  # again: an existing file is replaced
-        assert main(["run", str(case), *arguments]) == 0
+        assert main(["run", str(case), "--nodes", "61", *arguments]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"case.toml", *names.values()}
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-    assert len(load(tmp_path / "a.h5")) == len(json.loads((tmp_path / "a.json").read_text())["states"]) == 3
+    assert len(load(tmp_path / "a.h5")) == len(json.loads((tmp_path / "a.json").read_text())["states"]) == 4
 
 
+@pytest.mark.parametrize("stored", [False, True])
 def test_a_lost_load_keeps_what_was_solved(
-    lost: NoEquilibriumError, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    stored: bool, case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from fastpin.store import load
 
-    names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
+    text = EXAMPLE.replace("Q = [7.26e5, -7.26e5, 7.26e5]", "M = [0, 3e4, 0]")
+    case.write_text(text.replace('pin_load = "body"', 'pin_load = "centre"'))
+    names = {"--json": "a.json", "--plot": "a.png", **({"-o": "a.h5"} if stored else {})}
     arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
-    assert main(["run", *arguments]) == 1
+    assert main(["run", str(case), "--nodes", "61", *arguments]) == 1
     captured = capsys.readouterr()
-    assert captured.err == f"fastpin: {lost}\n"
-    assert len(captured.out.splitlines()) == 7
+    assert captured.err.startswith("fastpin: step 3, at ")
+    assert captured.err.count("\n") == 1
+    assert len([line for line in captured.out.splitlines() if " to " in line]) == 2
     document = json.loads((tmp_path / "a.json").read_text())
     assert document["complete"] is False
-    assert document["error"] == str(lost)
-    assert len(document["states"]) == 3
-    assert load(tmp_path / "a.h5").complete is False
+    assert f"fastpin: {document['error']}\n" == captured.err
+    assert len(document["states"]) == 2
     assert (tmp_path / "a.png").exists()
+    if stored:
+        result = load(tmp_path / "a.h5")
+        assert len(result) == 2
+        assert result.complete is False
 
 
 def test_a_load_lost_at_once_has_no_states(

@@ -112,59 +112,6 @@ def test_a_result_of_another_problem_can_not_be_gone_on_from():
         solve(plain(pin_load="body"), [{"Q": 0.1}], start=result)
 
 
-# --- histories from files -----------------------------------------------------------------------------------
-
-
-def test_csv_history(tmp_path):
-    path = tmp_path / "loads.csv"
-    path.write_text("# a comment\nP, Q\n1.0,\n,0.2\n\n,-0.2\n", encoding="utf-8")
-    history = LoadHistory.from_csv(path)
-    assert np.array_equal(history.values()[:, :2], [[1.0, 0.0], [1.0, 0.2], [1.0, -0.2]])
-
-
-@pytest.mark.parametrize(
-    ("text", "field", "words"),
-    [
-        ("P,Q\n1,0\n1,nan\n", "Q", "line 3"),
-        ("P,Q\n1,inf\n", "Q", "line 2"),
-        ("P,Q\n1,0\n1,two\n", "Q", "line 3"),
-        ("P,Q\n1\n", "csv", "line 2"),
-        ("P,q\n1,0\n", "q", 'did you mean "Q"'),
-        ("P,P\n1,0\n", "csv", "line 1"),
-        ("P,Q\n", "csv", "no load corners"),
-        ("", "csv", "no load corners"),
-    ],
-)
-def test_bad_csv_names_its_line(tmp_path, text, field, words):
-    path = tmp_path / "loads.csv"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InputError) as caught:
-        LoadHistory.from_csv(path)
-    assert caught.value.field == field
-    assert words in str(caught.value)
-
-
-def test_missing_csv():
-    with pytest.raises(InputError, match="can't read"):
-        LoadHistory.from_csv("nowhere/loads.csv")
-
-
-# --- helpers ------------------------------------------------------------------------------------------------
-
-
-def test_history_helpers():
-    assert np.array_equal(LoadHistory.monotonic(4, P=2.0).values()[:, 0], [0.5, 1.0, 1.5, 2.0])
-    cycles = LoadHistory.cycles({"P": 1.0}, {"Q": 0.2}, 2)
-    assert np.array_equal(cycles.values()[:, 1], [0.0, 0.2, -0.2, 0.2, -0.2, 0.2])
-    minus_first = LoadHistory.cycles({"P": 1.0, "Q": 0.1}, {"Q": 0.2}, 1, start=-1, return_to_mean=True)
-    assert np.allclose(minus_first.values()[:, 1], [0.1, -0.1, 0.3, -0.1, 0.1])
-    block = LoadHistory([{"Q": 0.1}, {"Q": -0.1}])
-    whole = LoadHistory([{"P": 1.0}]) + block.repeated(3)
-    assert len(whole) == 7
-    assert np.array_equal(whole.values()[:, 0], np.ones(7))
-    assert np.array_equal(whole[2:].values(initial=whole.values()[1])[0], whole.values()[2])
-
-
 # --- materials ----------------------------------------------------------------------------------------------
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from pathlib import Path
 
 import h5py
@@ -13,8 +14,9 @@ from samples import PAIR, sample_result
 from fastpin.errors import InputError
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
-from fastpin.state import Result, State
-from fastpin.store import FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS, load, save
+from fastpin.state import Cycle, Result, State
+from fastpin.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
+from fastpin.store import load, save, size, to_xarray
 
 
 def assert_same(first: Result, second: Result) -> None:
@@ -42,6 +44,7 @@ def assert_same(first: Result, second: Result) -> None:
 def test_every_field_of_a_state_is_stored() -> None:
     known = {*NODE_FIELDS, *NUMBER_FIELDS, *OTHER_FIELDS}
     assert known == {field.name for field in dataclasses.fields(State)}
+    assert set(CYCLE_FIELDS) == set(Cycle._fields)
 
 
 @pytest.mark.parametrize(
@@ -68,7 +71,7 @@ def test_what_a_history_never_gave_stays_not_given(tmp_path: Path) -> None:
         corners = file["history/corners"][()]
         columns = list(file["history/corners"].attrs["columns"])
     assert np.isnan(corners[:, columns.index("M")]).all()
-    assert corners[:, columns.index("P")].tolist() == [1e6, 1e6]
+    assert np.array_equal(corners[:, columns.index("P")], [1e6, np.nan], equal_nan=True)
 
 
 def test_units_versions_and_packing_are_in_the_file(tmp_path: Path) -> None:
@@ -81,6 +84,8 @@ def test_units_versions_and_packing_are_in_the_file(tmp_path: Path) -> None:
         assert file["states/status"].dtype == np.int8
         assert file.attrs["version_numpy"] == np.__version__
         assert file.attrs["error"] == "the pin slid away"
+        assert file.attrs["host"]
+        assert file.attrs["created"].startswith("20")
 
 
 def test_a_result_without_states(tmp_path: Path) -> None:
@@ -148,3 +153,61 @@ def test_failed_writing_leaves_the_old_file(tmp_path: Path) -> None:
 def test_a_directory_that_does_not_exist(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="does not exist"):
         save(sample_result(), tmp_path / "none" / "a.h5")
+
+
+# -- parts, and other programs -------------------------------------------------------------------------------
+
+
+def test_some_states_alone(tmp_path: Path) -> None:
+    result = sample_result([{"P": 1e6 * k} for k in range(1, 8)])
+    path = tmp_path / "a.h5"
+    save(result, path)
+    assert size(path) == 7
+    for picked, steps in ((slice(2, 5), [2, 3, 4]), ([0, 6], [0, 6]), ([], []), (slice(-1, None), [6])):
+        found = load(path, states=picked)
+        assert [state.step for state in found] == steps
+        assert len(found.history) == 7
+
+
+def test_cycles_are_kept(tmp_path: Path) -> None:
+    result = sample_result()
+    cycles = [Cycle(2, 2, 1, 0.5, 0.25, 1e-3, 1e-6, True), Cycle(4, 2, 2, 0.0, 0.0, 1e-4, 0.0, False)]
+    save(
+        Result(list(result), result.problem, result.history, result.grid, "path", {}, True, None, cycles),
+        tmp_path / "a.h5",
+    )
+    found = load(tmp_path / "a.h5").cycles
+    assert list(found) == cycles
+    assert [type(value) for value in found[0]] == [type(value) for value in cycles[0]]
+
+
+def test_xarray_reads_the_states_with_and_without_us(tmp_path: Path) -> None:
+    xarray = pytest.importorskip("xarray")
+    result, path = sample_result(), tmp_path / "a.h5"
+    save(result, path)
+    ours = to_xarray(path)
+    assert ours.pressure.dims == ("state", "theta")
+    assert ours.pressure.attrs["units"] == "Pa"
+    assert np.array_equal(ours.pressure.sel(state=1), result[1].pressure)
+    assert np.array_equal(ours.theta, result.grid.theta)
+    assert ours["load"].sel(load_name="Q").values.tolist() == [0.0, 4.84e5, -4.84e5]
+    assert ours.attrs["complete"] is True
+    with xarray.open_dataset(path, group="states") as theirs:
+        assert set(theirs.variables) == set(ours.variables)
+        for name in theirs.variables:
+            assert theirs[name].dims == ours[name].dims
+            assert np.array_equal(theirs[name].values, ours[name].values)
+
+
+def test_without_xarray_there_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    save(sample_result(), tmp_path / "a.h5")
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(InputError, match=r"pip install fastpin\[xarray\]"):
+        to_xarray(tmp_path / "a.h5")
+
+
+def test_other_programs_may_have_the_file_open(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    save(sample_result(), path)
+    with h5py.File(path, "r"):
+        assert len(load(path)) == 3

@@ -1,0 +1,219 @@
+"""The journal of a file: wherever a process dies, the file is as it was after its last transaction."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from fastpin import journal
+from fastpin.errors import InputError
+from fastpin.journal import JournaledFile, journal_of, open_h5, settled
+
+SIZE, ARRAYS = 50, 3
+ROWS = np.random.default_rng(0).random((200, SIZE))
+
+
+class Machine:
+    """Sees every change of the file and its journal, and can make the disk as it was after any of them."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.changes: list[tuple[str, int, int, bytes]] = []  # what, whose, place, data
+        self.transactions: list[int] = []  # changes until the end of each
+        self._names: dict[int, int] = {}
+        self._pwrite, self._truncate = os.pwrite, os.ftruncate
+        monkeypatch.setattr(journal.os, "pwrite", self.pwrite)
+        monkeypatch.setattr(journal.os, "ftruncate", self.ftruncate)
+
+    def pwrite(self, file: int, data: bytes, place: int) -> int:
+        data = bytes(data)[:4096]  # not all at once
+        self.changes.append(("write", self._whose(file), place, data))
+        return self._pwrite(file, data, place)
+
+    def ftruncate(self, file: int, size: int) -> None:
+        self.changes.append(("cut", self._whose(file), size, b""))
+        self._truncate(file, size)
+
+    def _whose(self, file: int) -> int:
+        return int(os.readlink(f"/proc/self/fd/{file}").endswith(".journal"))
+
+    def disks(self) -> list[tuple[bytes, bytes]]:
+        """File and journal after every change."""
+        now = [bytearray(), bytearray()]
+        disks = []
+        for what, whose, place, data in self.changes:
+            content = now[whose]
+            end = place + len(data)
+            if what == "cut":
+                del content[end:]
+            content.extend(bytes(max(end - len(content), 0)))
+            content[place:end] = data
+            disks.append((bytes(now[0]), bytes(now[1])))
+        return disks
+
+
+def written(path: Path, transactions: int, machine: Machine | None = None) -> None:
+    """A file that grows by a row in every transaction."""
+    file = JournaledFile(path, new=True)
+    h5 = h5py.File(file, "w")
+    arrays = [
+        h5.create_dataset(
+            f"array{k}",
+            (0, SIZE),
+            maxshape=(None, SIZE),
+            chunks=(1, SIZE),
+            dtype=float,
+            compression="gzip",
+            shuffle=True,
+        )
+        for k in range(ARRAYS)
+    ]
+    for count in range(transactions + 1):
+        for array in arrays if count else ():
+            array.resize(count, axis=0)
+            array[count - 1] = ROWS[count - 1]
+        h5.attrs["rows"] = count
+        h5.flush()
+        file.commit()
+        if machine is not None:
+            machine.transactions.append(len(machine.changes))
+    h5.close()
+    file.commit()
+    file.release()
+
+
+def rows_in(path: Path) -> int:
+    """Number of rows of a file, all of which must be right."""
+    with settled(path), open_h5(path) as h5:
+        count = int(h5.attrs["rows"])
+        for k in range(ARRAYS):
+            assert np.array_equal(h5[f"array{k}"][()], ROWS[:count])
+        return count
+
+
+@pytest.mark.slow
+def test_a_process_may_die_after_any_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every single moment: 75 transactions are enough for the index of the rows to split."""
+    machine = Machine(monkeypatch)
+    path = tmp_path / "a.h5"
+    written(path, 75, machine)
+    monkeypatch.undo()
+    unreadable = torn = 0
+    for place, (content, kept) in enumerate(machine.disks(), start=1):
+        if place % 3 and place < 0.8 * len(machine.changes):  # all where the index splits
+            continue
+        done = sum(end <= place for end in machine.transactions)
+        if done == 0:
+            continue
+        path.write_bytes(content)
+        unreadable += not readable(path)
+        torn += bool(kept)
+        journal_of(path).write_bytes(kept)
+        assert rows_in(path) in (done - 1, done)
+    assert torn > 500
+    assert unreadable > 5  # without the journal all that had been written would have been lost
+
+
+def readable(path: Path) -> bool:
+    try:
+        with h5py.File(path, "r") as h5:
+            return all(len(h5[f"array{k}"][()]) >= 0 for k in range(ARRAYS))
+    except (OSError, RuntimeError):
+        return False
+
+
+@pytest.mark.parametrize("cut", [1, 10, 15, 16, 17, 500])
+def test_what_a_dead_process_has_half_noted_counts_for_nothing(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 3)
+    before = path.read_bytes()
+    file = JournaledFile(path, new=False)
+    h5 = h5py.File(file, "r+")
+    h5["array0"][0] = 1.0
+    h5.flush()
+    kept, changed = journal_of(path).read_bytes(), path.read_bytes()
+    file.abandon()
+    h5.close()
+    file.release()
+    assert changed != before
+    assert path.read_bytes() == before
+    path.write_bytes(before)  # the last change had been noted in part, and not been made
+    journal_of(path).write_bytes(kept[:-cut])
+    assert rows_in(path) == 3
+    path.write_bytes(changed)
+    journal_of(path).write_bytes(kept + b"more" * 3)
+    assert rows_in(path) == 3
+    assert path.read_bytes() == before
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 5)
+    file = JournaledFile(path, new=False)
+    h5 = h5py.File(file, "r+")
+
+    def full(*_: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(journal.os, "pwrite", full)
+        h5["array0"].resize(6, axis=0)
+        h5["array0"][5] = 1.0
+        h5.flush()
+        with pytest.raises(OSError, match="No space"):
+            file.commit()
+        h5.close()
+    file.release()
+    assert rows_in(path) == 5
+    assert not journal_of(path).exists()
+
+
+def test_one_writer_at_a_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 2)
+    file = JournaledFile(path, new=False)
+    for new in (False, True):
+        with pytest.raises(InputError, match="another run is writing"):
+            JournaledFile(path, new)
+    assert rows_in(path) == 2
+    file.release()
+    JournaledFile(path, new=False).release()
+
+
+def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 2)
+    file = JournaledFile(path, new=False)
+    h5 = h5py.File(file, "r+")
+    h5.attrs["rows"] = 1
+    for k in range(ARRAYS):
+        h5[f"array{k}"].resize(1, axis=0)
+    h5.flush()  # in the midst of a transaction
+    code = "import sys, pathlib, test_journal; print('begun', flush=True); print(test_journal.rows_in(pathlib.Path(sys.argv[1])))"
+    reader = subprocess.Popen(
+        [sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parent
+    )
+    assert reader.stdout is not None
+    assert reader.stdout.readline() == "begun\n"
+    with pytest.raises(subprocess.TimeoutExpired):
+        reader.wait(0.3)
+    file.commit()
+    assert reader.communicate(timeout=20)[0] == "1\n"
+    h5.close()
+    file.commit()
+    file.release()
+
+
+def test_missing_and_unwritable_files(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="can't be written"):
+        JournaledFile(tmp_path / "none" / "a.h5", new=True)
+    with pytest.raises(InputError, match="can't be written"):
+        JournaledFile(tmp_path / "a.h5", new=False)
+    with pytest.raises(InputError, match="can't be written"):
+        JournaledFile(tmp_path, new=True)

@@ -1,0 +1,447 @@
+"""Histories followed into a file: the same states as in memory, and nothing lost when a run ends early."""
+
+from __future__ import annotations
+
+import errno
+import importlib.util
+import logging
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from test_repeats import PROGRAMS, P, assert_same, known, q
+
+from fastpin import (
+    ArcError,
+    ConvergenceError,
+    Grid,
+    InputError,
+    LoadHistory,
+    NoEquilibriumError,
+    Problem,
+    journal,
+    record,
+    solve,
+    store,
+)
+from fastpin.errors import Interrupted
+from fastpin.journal import journal_of
+from fastpin.record import checkpoint_of, resume, stored_case
+from fastpin.record import record as follow
+
+ROOT = Path(__file__).resolve().parents[1]
+RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
+
+
+@pytest.fixture(scope="module")
+def problem(similar):
+    return Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "a.h5"
+
+
+class StopAt:
+    """Progress that asks to stop where a history has come to a corner, as Ctrl-C would."""
+
+    def __init__(self, corner: float) -> None:
+        self.corner = corner
+
+    def __call__(self, done: float, total: int) -> None:
+        if total > 1 and done >= self.corner:
+            self.corner = np.inf
+            os.kill(os.getpid(), signal.SIGINT)
+
+
+def assert_file(path: Path, expected) -> None:
+    found = store.load(path)
+    assert_same(found, expected)
+    assert known(found) == known(expected)
+    assert found.complete
+
+
+@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize("program", list(PROGRAMS))
+def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
+    history = PROGRAMS[program]
+    follow(problem, history, path, nodes=61, between=1, keep=keep)
+    expected = solve(problem, history, nodes=61, between=1, keep=keep)
+    assert_file(path, expected)
+    found = store.load(path)
+    assert [cycle.solved for cycle in found.cycles] == [cycle.solved for cycle in expected.cycles]
+    assert found.history.values().tolist() == history.values().tolist()
+    assert {**found.statistics, "seconds": 0.0} == {**expected.statistics, "seconds": 0.0}
+    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
+
+
+def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
+    monkeypatch.setattr(record, "PIECE", 7)
+    history = PROGRAMS["spectrum"]
+    follow(problem, history, path, nodes=61)
+    assert_file(path, solve(problem, history, nodes=61))
+
+
+# -- runs that end early -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("corner", [0.0, 0.5, 1.0, 7.0, 20.5, 39.0])
+def test_an_interrupted_run_goes_on(problem, path, corner):
+    with pytest.raises(Interrupted):
+        follow(problem, RANDOM, path, nodes=61, between=1, progress=StopAt(corner), arc=(-3.0, -0.1))
+    interrupted = store.load(path)
+    assert not interrupted.complete
+    assert corner * 2 - 1 <= len(interrupted) <= corner * 2 + 2
+    expected = solve(problem, RANDOM, nodes=61, between=1, arc=(-3.0, -0.1))
+    for one, other in zip(interrupted, expected, strict=False):
+        assert np.array_equal(one.shear, other.shear)
+    resume(path)
+    assert_file(path, expected)
+    assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
+
+
+@pytest.mark.parametrize("program", list(PROGRAMS))
+def test_a_run_interrupted_again_and_again(problem, path, program):
+    history, corner = PROGRAMS[program], 3.0
+    with pytest.raises(Interrupted):
+        follow(problem, history, path, nodes=61, progress=StopAt(corner), arc=(-3.0, -0.1))
+    while True:
+        corner += 6.0
+        try:
+            resume(path, StopAt(corner))
+            break
+        except Interrupted:
+            continue
+    expected = solve(problem, history, nodes=61, arc=(-3.0, -0.1))
+    assert_file(path, expected)
+
+
+def test_ctrl_c_leaves_a_solution_in_memory_with_what_was_solved(problem):
+    with pytest.raises(Interrupted) as stopped:
+        solve(problem, RANDOM, nodes=61, progress=StopAt(5.0), arc=(-3.0, -0.1))
+    assert isinstance(stopped.value, KeyboardInterrupt)
+    first = stopped.value.result
+    assert first is not None
+    assert len(first) == 5
+    assert not first.complete
+    second = solve(problem, RANDOM[5:], start=first)
+    assert np.array_equal(second[-1].shear, solve(problem, RANDOM, grid=first.grid)[-1].shear)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_handlers_of_the_program_and_other_threads_are_left_alone(problem):
+    seen = []
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append(1))
+    try:
+        assert len(solve(problem, RANDOM[:6], nodes=61, progress=StopAt(2.0), arc=(-3.0, -0.1))) == 6
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == [1]
+    results = []
+    thread = threading.Thread(target=lambda: results.append(solve(problem, RANDOM[:3], nodes=61)))
+    thread.start()
+    thread.join()
+    assert len(results[0]) == 3
+
+
+def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, path):
+    def progress(done: float, total: int) -> None:
+        if total > 1 and done > 10.0:
+            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.1)  # where Python looks for signals
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
+    assert not isinstance(stopped.value, Interrupted)
+    resume(path)
+    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+
+
+def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
+    problem = Problem.from_load_parameter(similar, 0.5, 0.55)
+    history = LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"M": 2.0}])
+    with pytest.raises(NoEquilibriumError) as caught:
+        follow(problem, history, path, nodes=61)
+    found = store.load(path)
+    assert len(found) == 2
+    assert not found.complete
+    with h5py.File(path) as file:
+        assert file.attrs["error"] == str(caught.value)
+    with pytest.raises(NoEquilibriumError, match="step 3"):
+        resume(path)
+    expected = solve(problem, [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.1}], grid=found.grid)
+    assert np.array_equal(solve(problem, [{"Q": -0.1}], start=found)[-1].shear, expected[-1].shear)
+
+
+def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path, monkeypatch):
+    """The coarse run is made to see the first step only."""
+    from fastpin import arc
+
+    monkeypatch.setattr(arc, "_outline", lambda values: values[:1])
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
+    history = LoadHistory([{"P": 1.0}, {"Q": 0.05}, {"Q": 0.6}, {"Q": 0.1}])
+    expected = solve(problem, history, nodes=61)
+    follow(problem, history, path, nodes=61)
+    assert_file(path, expected)
+    first = list(arc.grids_to_try(problem, history.values(), 1.0, 61))[0]
+    assert first.theta[-1] < expected.grid.theta[-1]
+    with pytest.raises(Interrupted):  # and in a run that was interrupted before
+        follow(problem, history, path, nodes=61, progress=StopAt(2.0), overwrite=True)
+    assert np.array_equal(store.load(path).grid.theta, first.theta)
+    resume(path)
+    assert_file(path, expected)
+    with pytest.raises(ArcError):
+        follow(problem, history, path, nodes=61, arc=(first.theta[0], first.theta[-1]))
+    with pytest.raises(ArcError):
+        resume(path)
+
+
+def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
+    written, allowed = os.pwrite, [2_000_000]
+
+    def pwrite(file: int, data: bytes, place: int) -> int:
+        allowed[0] -= len(data)
+        if allowed[0] < 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return written(file, data, place)
+
+    monkeypatch.setattr(record, "LONGEST_WAIT", 0.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(journal.os, "pwrite", pwrite)
+        with pytest.raises(OSError, match="No space left"):
+            follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
+    assert 1 < store.size(path) < 40
+    resume(path)
+    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+
+
+def test_a_failure_of_any_kind_leaves_what_was_there(problem, path):
+    def progress(done: float, total: int) -> None:
+        if total > 1 and done > 10.0:
+            raise RuntimeError("something else")
+
+    with pytest.raises(RuntimeError, match="something else"):
+        follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
+    resume(path)
+    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+
+
+@pytest.mark.slow
+def test_a_killed_run_has_lost_nothing(tmp_path):
+    """SIGKILL, at random moments; scripts/kills.py does it a hundred times."""
+    spec = importlib.util.spec_from_file_location("kills", ROOT / "scripts" / "kills.py")
+    kills = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(kills)
+    logging.disable()
+    try:
+        found = kills.kill_until_done(tmp_path, kills=4, longest=0.3, rounds=20)
+    finally:
+        logging.disable(logging.NOTSET)
+    assert found["kills"] == 4
+    assert found["acknowledged"] > 0
+    assert found["lost"] == found["different"] == 0
+    assert found["states"] == 2 * (1 + 20 * 50)
+
+
+# -- checkpoints ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def left(problem, path, monkeypatch):
+    """A run that has died after some thirty corners, with checkpoints."""
+    monkeypatch.setattr(record, "CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(record, "CHECKPOINT_SHARE", 0.0)
+    monkeypatch.setattr(record._Writer, "finish", lambda writer, _: writer.abort())
+    with pytest.raises(Interrupted):
+        follow(problem, RANDOM, path, nodes=61, progress=StopAt(30.0), arc=(-3.0, -0.1))
+    monkeypatch.undo()
+    return solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1))
+
+
+def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
+    assert checkpoint_of(path).exists()
+    steps = []
+    resume(path, lambda done, total: steps.append(done))
+    assert min(steps) >= 28.0
+    assert_file(path, left)
+    assert not checkpoint_of(path).exists()
+
+
+@pytest.mark.parametrize("damage", ["missing", "cut", "other"])
+def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, damage, problem, caplog):
+    checkpoint = checkpoint_of(path)
+    if damage == "missing":
+        checkpoint.unlink()
+    elif damage == "cut":
+        checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
+    else:
+        with h5py.File(checkpoint, "a") as file:
+            file.attrs["run"] = "another"
+    steps = []
+    resume(path, lambda done, total: steps.append(done))
+    assert min(steps) < 2.0
+    assert_file(path, left)
+    assert ("can't be read" in caplog.text) == (damage == "cut")
+
+
+def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
+    with pytest.raises(InputError, match="unfinished run"):
+        follow(problem, RANDOM, path, nodes=61)
+    follow(problem, RANDOM[:3], path, nodes=61, overwrite=True)
+    assert len(store.load(path)) == 3
+    follow(problem, RANDOM[:4], path, nodes=61)  # a finished one
+    assert len(store.load(path)) == 4
+
+
+def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, path, problem):
+    found = store.load(path)
+    assert 25 <= len(found) <= 31
+    assert not found.complete
+    with pytest.raises(InputError, match="can't be gone on from"):
+        solve(problem, [{"Q": 0.1}], start=found)
+    assert len(solve(problem, [{"Q": 0.1}], start=store.load(path, after=20))) == 1
+
+
+def test_states_that_differ_from_those_in_the_file_are_reported(left, path, caplog):
+    checkpoint_of(path).unlink()
+    with h5py.File(path, "a") as file:
+        file["states/pressure"][3] *= 1.0 + 1e-15
+    resume(path)
+    assert "differ from those in the file" in caplog.text
+
+
+def test_only_unfinished_runs_are_gone_on_with(problem, path, tmp_path):
+    follow(problem, RANDOM[:3], path, nodes=61)
+    with pytest.raises(InputError, match="finished run"):
+        resume(path)
+    with pytest.raises(InputError, match="no such file"):
+        resume(tmp_path / "b.h5")
+    whole = path.read_bytes()
+    for content, words in (
+        (whole[: len(whole) // 2], "not a whole HDF5 file"),
+        (b"P,Q\n1,2\n", "not a whole HDF5 file"),
+    ):
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=words):
+            resume(path)
+        assert path.read_bytes() == content
+        assert not journal_of(path).exists()
+    with h5py.File(path, "w") as file:
+        file["x"] = 1
+    with pytest.raises(InputError, match="not a result of fastpin"):
+        resume(path)
+
+
+def test_two_runs_do_not_write_to_one_file(problem, path):
+    def progress(done: float, total: int) -> None:
+        if total > 1 and done == 3.0:
+            with pytest.raises(InputError, match="another run is writing"):
+                resume(path)
+            with pytest.raises(InputError, match="another run is writing"):
+                follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1), overwrite=True)
+            seen.append(len(store.load(path)))
+
+    seen: list[int] = []
+    follow(problem, RANDOM[:6], path, nodes=61, progress=progress, arc=(-3.0, -0.1))
+    assert seen
+    assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
+
+
+def test_a_run_can_be_looked_at_while_it_goes_on(problem, path, monkeypatch):
+    monkeypatch.setattr(record, "LONGEST_WAIT", 0.0)
+    sizes = []
+
+    def progress(done: float, total: int) -> None:
+        if total > 1 and path.exists():
+            found = store.load(path)
+            assert [state.step for state in found] == list(range(len(found)))
+            sizes.append(len(found))
+
+    follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
+    assert sizes == sorted(sizes)
+    assert sizes[-1] >= 40
+
+
+# -- branches ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("corner", [1, 5, 6, 20, 41])
+def test_a_branch_goes_on_from_any_corner(problem, path, tmp_path, corner):
+    follow(problem, RANDOM, path, nodes=61, save_after=[5, 12])
+    trunk = store.load(path, after=corner)
+    assert len(trunk) == len(trunk.history) == corner
+    branch = LoadHistory([{"Q": 0.25}, {"Q": -0.25}])
+    expected = solve(problem, RANDOM[:corner] + branch, grid=trunk.grid)
+    result = solve(problem, branch, start=trunk)
+    assert np.array_equal(result[-1].shear, expected[-1].shear)
+    assert result[-1].dissipation == expected[-1].dissipation
+    follow(problem, branch, tmp_path / "b.h5", start=trunk)
+    assert_same(store.load(tmp_path / "b.h5"), result)
+
+
+def test_a_branch_of_a_branch_that_was_interrupted(problem, path, tmp_path):
+    follow(problem, RANDOM[:10], path, nodes=61, arc=(-3.0, -0.1))
+    second, third = tmp_path / "b.h5", tmp_path / "c.h5"
+    with pytest.raises(Interrupted):
+        follow(problem, RANDOM[10:30], second, start=store.load(path), progress=StopAt(7.0))
+    resume(second)
+    follow(problem, RANDOM[30:], third, start=store.load(second))
+    whole = solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1))
+    assert np.array_equal(store.load(third)[-1].shear, whole[-1].shear)
+    assert store.load(third)[-1].dissipation == whole[-1].dissipation
+    fourth = solve(problem, RANDOM[35:], start=store.load(third, after=5))
+    assert np.array_equal(fourth[-1].shear, whole[-1].shear)
+
+
+def test_corners_that_can_not_be_branched_from(problem, path, tmp_path):
+    follow(problem, RANDOM[:4], path, nodes=61)
+    for after in (0, 5, -1):
+        with pytest.raises(InputError, match="must be a corner from 1 to 4"):
+            store.load(path, after=after)
+    with pytest.raises(InputError, match="save_after"):
+        follow(problem, RANDOM, tmp_path / "b.h5", save_after=[0])
+    store.save(solve(problem, RANDOM[:3], nodes=61), path)
+    with pytest.raises(InputError, match="only its end"):
+        store.load(path, after=2)
+    assert len(solve(problem, [{"Q": 0.1}], start=store.load(path))) == 1
+
+
+def test_what_a_run_was_asked_for_is_in_its_file(problem, path):
+    follow(problem, PROGRAMS["two levels"], path, nodes=61, between=[0.25], keep="every 2", title="A title")
+    case = stored_case(path)
+    assert case.problem == problem
+    assert case.title == "A title"
+    assert (case.options.nodes, case.options.keep, case.options.between) == (61, "every 2", (0.25,))
+    assert [(len(b.given), b.count, b.cycle) for b in case.history.blocks] == [
+        (len(b.given), b.count, b.cycle) for b in PROGRAMS["two levels"].blocks
+    ]
+    assert case.history.longest_cycle == 16
+
+
+def test_graded_grids_and_increments_go_on_as_well(problem, path):
+    theta = -0.5 * np.pi + 1.4 * np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 61))
+    options = {"grid": Grid(theta), "method": "increment", "increments": 5}
+    with pytest.raises(Interrupted):
+        follow(problem, RANDOM[:8], path, progress=StopAt(4.0), **options)
+    resume(path)
+    assert_file(path, solve(problem, RANDOM[:8], **options))
+
+
+def test_bad_input_leaves_no_file(problem, path):
+    with pytest.raises(InputError):
+        follow(problem, RANDOM, path, nodes=2)
+    with pytest.raises(InputError, match="keep"):
+        follow(problem, RANDOM, path, keep="nothing")
+    with pytest.raises(InputError, match="does not exist"):
+        follow(problem, RANDOM, path.parent / "none" / "a.h5")
+    with pytest.raises(ConvergenceError):  # no first contact: nothing is solved, and that is in the file
+        follow(problem, [{"P": 1e-9}, {"P": 1.0}], path, nodes=31, arc=(-3.0, -0.1))
+    assert not store.load(path).complete
+    assert len(list(path.parent.iterdir())) == 1
