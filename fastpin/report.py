@@ -143,7 +143,7 @@ def _load_table(problem: Problem, loads: list[dict[str, float]]) -> str:
     columns += _load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
     columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
-    return _table(columns)
+    return table(columns)
 
 
 def state_table(problem: Problem, states: Sequence[State]) -> str:
@@ -174,7 +174,7 @@ def state_table(problem: Problem, states: Sequence[State]) -> str:
         column("dissipated", "energy", [state.dissipation for state in states], 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
-    return _table(columns)
+    return table(columns)
 
 
 def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
@@ -189,7 +189,8 @@ def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> lis
     return columns
 
 
-def _table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
+def table(columns: Sequence[tuple[str, str, list[str]]]) -> str:
+    """Columns (name, unit, cells) as text; the middle of a long table is left out."""
     count = len(columns[0][2])
     if count > _MAX_ROWS:
         kept = [*range(_MAX_ROWS // 2), *range(count - _MAX_ROWS // 2, count)]

@@ -1,0 +1,146 @@
+"""Executors of a sweep: any of :mod:`concurrent.futures`, or a pool of processes that outlives its workers' deaths."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
+from queue import SimpleQueue
+from typing import Any, TypeVar
+
+from fastpin.worker import prepare
+
+K = TypeVar("K")
+T = TypeVar("T")
+
+DIED = "the worker process died; perhaps it needed more memory than there is"
+MOST_SUBMITTED = 1_000
+"""Tasks that an executor of others is given at a time: enough for a cluster."""
+
+Submit = Callable[[Executor, K], "Future[T]"]
+"""Hands one task to an executor."""
+
+
+def cores() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class WorkerDiedError(Exception):
+    """The process of a task died."""
+
+
+class BrokenError(Exception):
+    """An executor broke, or threw its tasks away; ``tasks`` were on their way."""
+
+    def __init__(self, tasks: list[Any]) -> None:
+        super().__init__("the executor broke")
+        self.tasks = tasks
+
+
+class Pool:
+    """Worker processes, started afresh (spawned) and pinned to one thread each.
+
+    Parameters
+    ----------
+    workers : int
+    """
+
+    def __init__(self, workers: int) -> None:
+        context = multiprocessing.get_context("spawn")
+        before = set(multiprocessing.active_children())
+        resource_tracker.ensure_running()  # before signals are held back: it would let them pass again
+        with _interrupts_held_back():  # a worker inherits that
+            self.executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare)
+            self.executor.submit(os.getpid)  # starts the processes
+        self._processes = set(multiprocessing.active_children()) - before
+
+    def stop(self, busy: bool = True) -> None:
+        """End the workers, whatever they are doing."""
+        if busy:
+            for process in self._processes:
+                process.kill()
+        self.executor.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Ctrl-C comes after the block."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def through(
+    executor: Executor, waiting: deque[K], submit: Submit[K, T], ahead: int = MOST_SUBMITTED
+) -> Iterator[tuple[K, T | BaseException]]:
+    """Tasks with what they return or raise, in the order in which they end, through any executor.
+
+    Not more than `ahead` are on their way at a time; they leave `waiting`. Raises :class:`BrokenError`.
+    """
+    running: dict[Future[T], K] = {}
+    ended: SimpleQueue[Future[T]] = SimpleQueue()
+    try:
+        while waiting or running:
+            while waiting and len(running) < ahead:
+                future = submit(executor, waiting[0])
+                running[future] = waiting.popleft()
+                future.add_done_callback(ended.put)
+            future = ended.get()
+            error = future.exception()
+            if isinstance(error, BrokenExecutor):
+                raise error
+            yield running.pop(future), future.result() if error is None else error
+    except (BrokenExecutor, CancelledError):
+        raise BrokenError(list(running.values())) from None
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def through_processes(
+    workers: int, tasks: Iterable[K], submit: Submit[K, T]
+) -> Iterator[tuple[K, T | BaseException]]:
+    """Tasks with what they return or raise, through worker processes of our own.
+
+    Where a process dies, all tasks that were on their way are tried again, each alone; one whose process dies then has
+    a :class:`WorkerDiedError`.
+    """
+    waiting = deque(tasks)
+    pool = Pool(workers)
+    busy = True
+    try:
+        while waiting:
+            try:
+                yield from through(pool.executor, waiting, submit, 2 * workers)
+            except BrokenError as broken:
+                pool.stop()
+                yield from _one_by_one(broken.tasks or [waiting.popleft()], submit)
+                pool = Pool(workers)
+        busy = False
+    finally:
+        pool.stop(busy)
+
+
+def _one_by_one(tasks: list[K], submit: Submit[K, T]) -> Iterator[tuple[K, T | BaseException]]:
+    pool = Pool(1)
+    try:
+        for task in tasks:
+            try:
+                yield from through(pool.executor, deque([task]), submit)
+            except BrokenError:
+                yield task, WorkerDiedError(DIED)
+                pool.stop()
+                pool = Pool(1)
+    finally:
+        pool.stop()
