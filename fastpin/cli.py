@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``, ``fastpin paper``.
+"""The command line: ``fastpin example``, ``fastpin check``, ``fastpin run``, ``fastpin paper`` and sweeps.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -16,17 +16,25 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastpin import __version__
+from fastpin import __version__, sweepcli
 from fastpin.errors import CaseFileError, FastpinError, InputError, SolveError
 from fastpin.files import check_writable, replacing
+from fastpin.terminal import (
+    EXIT_FAILED,
+    EXIT_INPUT,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    EXIT_PIPE,
+    bar,
+    check_figure,
+    fail,
+)
 
 if TYPE_CHECKING:
     from fastpin.casefile import Case
     from fastpin.state import Result
 
-EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
 LARGE_STRAIN = 0.05
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -47,23 +55,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)  # a line for each fault, with the file's name
         return EXIT_INPUT
     except InputError as error:
-        return _fail(str(error), EXIT_INPUT)
+        return fail(str(error), EXIT_INPUT)
     except FastpinError as error:
-        return _fail(str(error), EXIT_FAILED)
+        return fail(str(error), EXIT_FAILED)
     except KeyboardInterrupt:
-        return _fail("interrupted; nothing was written", EXIT_INTERRUPTED)
+        return fail("interrupted; nothing was written", EXIT_INTERRUPTED)
     except MemoryError:
-        return _fail("not enough memory: use fewer nodes or store fewer states", EXIT_FAILED)
+        return fail("not enough memory: use fewer nodes or store fewer states", EXIT_FAILED)
     except BrokenPipeError:  # the reader of our output has gone (fastpin run | head)
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return EXIT_PIPE
     except OSError as error:
-        return _fail(str(error), EXIT_FAILED)
-
-
-def _fail(message: str, code: int) -> int:
-    print(f"fastpin: {message}", file=sys.stderr)
-    return code
+        return fail(str(error), EXIT_FAILED)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -124,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
     figures.set_defaults(command=_paper)
+    sweepcli.add(commands)
     return parser
 
 
@@ -155,7 +159,7 @@ def _run(options: argparse.Namespace) -> int:
         _print_states(case, result)
     code = EXIT_OK
     if failure is not None:
-        code = _fail(str(failure), EXIT_FAILED)
+        code = fail(str(failure), EXIT_FAILED)
 
     error = None if failure is None else str(failure)
     writers: list[tuple[Any, Callable[[Path], None]]] = []
@@ -174,7 +178,7 @@ def _run(options: argparse.Namespace) -> int:
         try:
             write(Path(path))
         except (OSError, InputError) as trouble:  # the other files are written all the same
-            code = _fail(f"can't write {path}: {trouble}", EXIT_FAILED)
+            code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
     return code
 
 
@@ -190,17 +194,19 @@ def _paper(options: argparse.Namespace) -> int:
         raise InputError(option, error.reason) from None
     finished: list[str] = []
     try:
-        with _bar(len(names), "figure {desc}") as bar:
+        with bar(len(names), "figure {desc}") as shown:
             for name in names:
                 began = time.perf_counter()
-                bar.set_description_str(name, refresh=False)
-                files = paper.make(name, options.output, nodes, lambda part: bar.update(len(finished) + part - bar.n))
+                shown.set_description_str(name, refresh=False)
+                files = paper.make(
+                    name, options.output, nodes, lambda part: shown.update(len(finished) + part - shown.n)
+                )
                 finished.append(name)
                 seconds = time.perf_counter() - began
-                bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
+                shown.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
     except KeyboardInterrupt:
         written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
-        return _fail(f"interrupted; {written}", EXIT_INTERRUPTED)
+        return fail(f"interrupted; {written}", EXIT_INTERRUPTED)
     return EXIT_OK
 
 
@@ -240,8 +246,8 @@ def _check_outputs(options: argparse.Namespace) -> None:
         # "fastpin run --json case.toml" takes the case file for the output.
         if path.suffix == ".toml" or (options.case is not None and path.resolve() == options.case.resolve()):
             raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
-        if name == "--plot" and path.suffix.lower() not in FIGURE_FORMATS:
-            raise InputError(name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
+        if name == "--plot":
+            check_figure(name, path)
         check_writable(path)
         other = seen.setdefault(path.resolve(), name)
         if other != name:
@@ -251,30 +257,16 @@ def _check_outputs(options: argparse.Namespace) -> None:
 def _solve(case: Case) -> tuple[Result | None, SolveError | None]:
     from fastpin.solver import solve
 
-    with _bar(len(case.history), "load point {n:.2f} of {total}") as bar:
+    with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
 
         def progress(done: float, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
+            shown.total = total
+            shown.update(done - shown.n)
 
         try:
             return solve(case.problem, case.history, progress=progress, **case.options.keywords()), None
         except SolveError as error:
             return error.result, error
-
-
-def _bar(total: int, text: str) -> Any:
-    """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
-    from tqdm import tqdm
-
-    return tqdm(
-        total=total,
-        delay=2,
-        disable=None,
-        leave=False,
-        file=sys.stderr,
-        bar_format=f"{{percentage:3.0f}}% |{{bar}}| {text}, {{remaining}} left",
-    )
 
 
 def _print_states(case: Case, result: Result | None) -> None:

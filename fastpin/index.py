@@ -150,10 +150,11 @@ class Index:
         """What is kept of the whole sweep: "version", "plan" (its digest), "title", "text", "fields"."""
         return self._one("SELECT value FROM sweep WHERE name = ?", name)
 
-    def statuses(self) -> dict[str, str]:
-        """"waiting", "done" or "failed", by id."""
+    def statuses(self) -> dict[str, tuple[str, str | None]]:
+        """Status ("waiting", "done", "failed") and reason of a failure, by id."""
         with self._said():
-            return dict(self._database.execute("SELECT id, status FROM runs"))
+            found = self._database.execute("SELECT id, status, reason FROM runs")
+            return {run: (status, reason) for run, status, reason in found}
 
     def rows(self) -> list[dict[str, Any]]:
         """All rows, each a dict from column to value, in the order in which they were added.

@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
@@ -81,9 +81,22 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def handed_out(
+    executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T]
+) -> Generator[tuple[K, T | BaseException], None, None]:
+    """Tasks with what they return or raise, in the order in which they end.
+
+    Through `executor`, or without one through so many worker processes of our own. If an executor that is given breaks,
+    :class:`BrokenError` is raised.
+    """
+    if executor is not None:
+        return through(executor, deque(tasks), submit)
+    return through_processes(min(workers, len(tasks)), tasks, submit)
+
+
 def through(
     executor: Executor, waiting: deque[K], submit: Submit[K, T], ahead: int = MOST_SUBMITTED
-) -> Iterator[tuple[K, T | BaseException]]:
+) -> Generator[tuple[K, T | BaseException], None, None]:
     """Tasks with what they return or raise, in the order in which they end, through any executor.
 
     Not more than `ahead` are on their way at a time; they leave `waiting`. Raises :class:`BrokenError`.
@@ -110,7 +123,7 @@ def through(
 
 def through_processes(
     workers: int, tasks: Iterable[K], submit: Submit[K, T]
-) -> Iterator[tuple[K, T | BaseException]]:
+) -> Generator[tuple[K, T | BaseException], None, None]:
     """Tasks with what they return or raise, through worker processes of our own.
 
     Where a process dies, all tasks that were on their way are tried again, each alone; one whose process dies then has
@@ -132,7 +145,7 @@ def through_processes(
         pool.stop(busy)
 
 
-def _one_by_one(tasks: list[K], submit: Submit[K, T]) -> Iterator[tuple[K, T | BaseException]]:
+def _one_by_one(tasks: list[K], submit: Submit[K, T]) -> Generator[tuple[K, T | BaseException], None, None]:
     pool = Pool(1)
     try:
         for task in tasks:

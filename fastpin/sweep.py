@@ -13,8 +13,7 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import closing
 from dataclasses import dataclass
@@ -29,7 +28,7 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.files import replacing
 from fastpin.index import DONE, FAILED, FILE, WAITING, Index, locked, made
 from fastpin.plan import Plan, Point, parse_plan, read_plan
-from fastpin.pool import DIED, BrokenError, cores, through, through_processes
+from fastpin.pool import DIED, BrokenError, cores, handed_out
 from fastpin.worker import Outcome, solve_run
 
 __all__ = ["Plan", "Point", "Summary", "load", "merge", "parse_plan", "read_plan", "rows", "run", "status"]
@@ -126,7 +125,7 @@ def run(
             index.expect(plan, points.values())
             before = _now(index, points, results)
             unwanted = (DONE,) if retry else (DONE, FAILED)
-            todo = [run for run, state in before.items() if state not in unwanted]
+            todo = [run for run, (state, _) in before.items() if state not in unwanted]
             began = time.perf_counter()
             report = progress or (lambda ended, all_runs: None)
             report(0, len(todo))
@@ -200,7 +199,7 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
 
 def _outcomes(
     plan: Plan, points: dict[str, Point], todo: list[str], results: Path, executor: Executor | None, workers: int
-) -> Iterator[Outcome]:
+) -> Generator[Outcome, None, None]:
     """How each of the runs ends, in the order in which they do."""
 
     def submit(executor: Executor, run: str) -> Future[Outcome]:
@@ -209,13 +208,9 @@ def _outcomes(
 
     if not todo:
         return
-    if executor is None:
-        ended: Iterator[tuple[str, Outcome | BaseException]]
-        ended = through_processes(min(workers, len(todo)), todo, submit)
-    else:
-        ended = through(executor, deque(todo), submit)
     # One thread for BLAS, as in every worker, where an executor runs its tasks in this process.
-    with threadpool_limits(limits=1, user_api="blas"), closing(ended):  # type: ignore[type-var]
+    ended = handed_out(executor, workers, todo, submit)
+    with threadpool_limits(limits=1, user_api="blas"), closing(ended):
         try:
             for run, outcome in ended:
                 yield _checked(run, outcome, results)
@@ -233,28 +228,27 @@ def _checked(run: str, outcome: Outcome | BaseException, results: Path) -> Outco
     return outcome
 
 
-def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, str]:
-    """The status of each run; one whose result is gone is waiting again."""
+def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
+    """Status and reason of each run; one whose result is gone is waiting again."""
     with os.scandir(results) as entries:
         present = {entry.name.removesuffix(".h5") for entry in entries}
+    waiting = WAITING, None
     known = index.statuses()
-    return {run: WAITING if known.get(run) == DONE and run not in present else known.get(run, WAITING) for run in points}
+    found = {run: known.get(run, waiting) for run in points}
+    return {run: waiting if now[0] == DONE and run not in present else now for run, now in found.items()}
 
 
-def _summary(
-    index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0
-) -> Summary:
-    states = _now(index, points, results)
-    reasons = {row["id"]: row["reason"] for row in index.rows() if row["status"] == FAILED}
-    failed = [(points[run], reasons[run]) for run, state in states.items() if state == FAILED]
-    counts = [sum(state == wanted for state in states.values()) for wanted in (DONE, WAITING)]
-    return Summary(*counts, failed, ended, seconds)
+def _summary(index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0) -> Summary:
+    now = _now(index, points, results)
+    failed = [(points[run], reason or "") for run, (state, reason) in now.items() if state == FAILED]
+    done, waiting = (sum(state == wanted for state, _ in now.values()) for wanted in (DONE, WAITING))
+    return Summary(done, waiting, failed, ended, seconds)
 
 
 def _check_plan_copy(plan: Plan, directory: Path) -> None:
     """The copy of a plan must not take the place of another file of the user's."""
     path = directory / PLAN
-    if path.exists() and not (directory / FILE).exists() and path.read_text(encoding="utf-8-sig") != plan.text:
+    if path.exists() and not (directory / FILE).exists() and path.read_bytes() != plan.text.encode():
         raise InputError(str(directory), f"holds another {PLAN}, but no sweep; choose another directory")
 
 

@@ -26,6 +26,7 @@ from fastpin.errors import SolveError
 from fastpin.keyfigures import key_figures
 from fastpin.products import in_one_thread
 from fastpin.solver import solve
+from fastpin.state import Result
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
     try:
         try:
             with in_one_thread():
-                result = solve(case.problem, case.history, **case.options.keywords())
+                result: Result | None = solve(case.problem, case.history, **case.options.keywords())
         except SolveError as error:
             reason, result = str(error), error.result
         seconds = time.perf_counter() - began
