@@ -13,6 +13,7 @@ import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -83,10 +84,13 @@ class Plan:
     points: list[Point]
     _base: _Base = field(repr=False)
 
-    @property
+    @cached_property
     def runs(self) -> dict[str, Point]:
         """The points to be run, by their ids: of those with the same input only the first."""
-        return {point.id: point for point in reversed(self.points)}
+        runs: dict[str, Point] = {}
+        for point in self.points:
+            runs.setdefault(point.id, point)
+        return runs
 
     @property
     def digest(self) -> str:

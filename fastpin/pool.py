@@ -106,7 +106,10 @@ def through(
     try:
         while waiting or running:
             while waiting and len(running) < ahead:
-                future = submit(executor, waiting[0])
+                try:
+                    future = submit(executor, waiting[0])
+                except RuntimeError:  # broken, or shut down
+                    raise BrokenError(list(running.values())) from None
                 running[future] = waiting.popleft()
                 future.add_done_callback(ended.put)
             future = ended.get()
@@ -114,7 +117,7 @@ def through(
             if isinstance(error, BrokenExecutor):
                 raise error
             yield running.pop(future), future.result() if error is None else error
-    except (BrokenExecutor, CancelledError):
+    except (BrokenExecutor, CancelledError):  # of a task
         raise BrokenError(list(running.values())) from None
     finally:
         for future in running:

@@ -113,9 +113,9 @@ def run(
     FastpinError
         If the executor breaks. What is finished is kept.
     """
-    directory = made(Path(directory))
     points = shard_of(plan, shard)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
+    directory = made(Path(directory))
     with locked(directory):
         _check_plan_copy(plan, directory)
         with Index(directory, create=True) as index:

@@ -201,13 +201,9 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
 
 
 def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list[str]]:
-    """A column of the printed table: numbers in a unit that suits them, all else as it is written."""
+    """A column of the printed table: numbers with the prefix that suits them, all else as it was written."""
     if not all(value is None or _is_number(value) for value in values):
-        return (
-            name,
-            "",
-            ["-" if value is None else value if isinstance(value, str) else shown(value) for value in values],
-        )
+        return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]
     factor, label = _scaled([value for value in values if value is not None], unit)
     return name, label, ["-" if value is None else f"{value * factor:.5g}" for value in values]
 
