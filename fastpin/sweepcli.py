@@ -60,6 +60,7 @@ def add(commands: Any) -> None:
 
 def _sweep(options: argparse.Namespace) -> int:
     from fastpin import sweep
+    from fastpin.sweeptable import text
 
     plan = sweep.read_plan(options.plan)
     directory = Path(options.plan.stem) if options.output is None else options.output
@@ -74,8 +75,10 @@ def _sweep(options: argparse.Namespace) -> int:
             now = sweep.status(plan, directory, shard)
             kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command goes on"
             return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
+    rows = _written(options, plan, directory)
     _print_summary(plan, directory, summary, options.status)
-    _show(options, plan, directory)
+    if options.table == "-":
+        print(text(plan, rows))
     return EXIT_FAILED if summary.failed and not options.status else EXIT_OK
 
 
@@ -159,16 +162,14 @@ def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: b
         print("--retry runs what failed again")
 
 
-def _show(options: argparse.Namespace, plan: Plan, directory: Path) -> None:
-    """Table and figure."""
+def _written(options: argparse.Namespace, plan: Plan, directory: Path) -> list[dict[str, Any]]:
+    """Write the files that are asked for; returns the rows of the plan."""
     from fastpin import sweep, sweeptable
 
     if options.table is None and options.plot is None:
-        return
+        return []
     rows = sweep.rows(plan, directory)
-    if options.table == "-":
-        print(sweeptable.text(plan, rows))
-    elif options.table is not None:
+    if options.table not in (None, "-"):
         sweeptable.write_csv(plan, rows, Path(options.table))
     if options.plot is not None:
         from fastpin.sweepplot import plot_sweep
@@ -177,6 +178,7 @@ def _show(options: argparse.Namespace, plan: Plan, directory: Path) -> None:
         plot_sweep(chart, options.plot)
         if chart.missing:
             print(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
+    return rows
 
 
 def _merge(options: argparse.Namespace) -> int:

@@ -102,8 +102,8 @@ class Chart:
     y : Axis or None
         None for curves.
     parts : list of (str, ndarray, ndarray of bool)
-        For each map or curve: its name, one field a line, the values, shape (len(y), len(x)) or (len(x),), nan where there is none, and
-        where a run has failed.
+        For each map or curve: its name, one field a line; the values, shape (len(y), len(x)) or (len(x),), nan where
+        there is none; and where a run has failed.
     missing : int
         Number of points without a value.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -12,7 +12,7 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.index import FILE, Index, locked
 from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import Plan, parse_plan
+from fastpin.plan import Plan, Point, parse_plan
 from fastpin.worker import Outcome
 
 TEXT = """
@@ -66,7 +66,7 @@ def test_rows_come_back(plan: Plan, directory: Path) -> None:
 def test_plain_sql_reads_it(plan: Plan, directory: Path) -> None:
     database = sqlite3.connect(directory / FILE)
     found = database.execute(
-        'SELECT id, json_extract("load.2.Q", \'$[1]\'), json_extract(input, \'$.plate.E\') FROM runs '
+        "SELECT id, json_extract(\"load.2.Q\", '$[1]'), json_extract(input, '$.plate.E') FROM runs "
         "WHERE \"plate.material\" = 'steel' AND status = 'done' AND nodes > 40"
     ).fetchall()
     database.close()
@@ -173,7 +173,7 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
     class Interrupted(BaseException):
         pass
 
-    def points():  # noqa: ANN202
+    def points() -> Iterator[Point]:
         yield plan.points[0]
         raise Interrupted
 
@@ -186,9 +186,12 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
 
 
 def test_a_directory_is_locked_for_one(tmp_path: Path) -> None:
-    with locked(tmp_path):
-        with pytest.raises(InputError, match="another sweep is running in this directory"), locked(tmp_path):
-            pass
+    with (
+        locked(tmp_path),
+        pytest.raises(InputError, match="another sweep is running in this directory"),
+        locked(tmp_path),
+    ):
+        pass
     with locked(tmp_path):
         pass
 

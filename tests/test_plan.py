@@ -139,7 +139,9 @@ def test_dundurs_parameters_replace_two_materials_and_the_other_way_round(tmp_pa
     (tmp_path / "case.toml").write_text(DIMENSIONLESS)
     plan = parse_plan('case = "case.toml"\n[[list]]\ndundurs = {alpha = 0.2, beta = 0.1, nu_pin = 0.3}\n', "", tmp_path)
     assert plan.case(plan.points[0]).problem.pair.dundurs() == pytest.approx((0.2, 0.1))
-    dundurs = DIMENSIONLESS.replace('[pin]\nmaterial = "steel"\n[plate]\nmaterial = "aluminium"', "[dundurs]\nalpha = 9")
+    dundurs = DIMENSIONLESS.replace(
+        '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "aluminium"', "[dundurs]\nalpha = 9"
+    )
     (tmp_path / "case.toml").write_text(dundurs)
     text = 'case = "case.toml"\n[[list]]\npin.material = "steel"\nplate.material = "nickel alloy"\n'
     plan = parse_plan(text, "", tmp_path)
@@ -209,7 +211,9 @@ def test_ids_are_the_same_in_every_process() -> None:
 
 
 def test_points_with_the_same_input_are_one_run() -> None:
-    plan = parse_plan('[grid]\n"pin.material" = ["steel"]\n[[list]]\nplate.nu = 0.33\n[[list]]\ncontact.friction = 0.4\n')
+    plan = parse_plan(
+        '[grid]\n"pin.material" = ["steel"]\n[[list]]\nplate.nu = 0.33\n[[list]]\ncontact.friction = 0.4\n'
+    )
     assert len(plan.points) == 2
     assert len(plan.runs) == 1
     assert next(iter(plan.runs.values())).values == plan.points[0].values
@@ -338,9 +342,7 @@ def test_faults_of_the_base_case_are_told_with_its_lines(tmp_path: Path) -> None
 
 
 def test_a_plan_with_too_many_runs_is_refused_before_they_are_made() -> None:
-    ranges = "\n".join(
-        f"load.1.{name} = {{ from = 1.0, to = 2.0, count = 1000 }}" for name in ("P", "Q", "sxx", "syy")
-    )
+    ranges = "\n".join(f"load.1.{name} = {{ from = 1.0, to = 2.0, count = 1000 }}" for name in ("P", "Q", "sxx", "syy"))
     (found,) = faults(f"[grid]\n{ranges}")
     assert "the plan has 1,000,000,000,000 runs; more than 100,000 are not possible in one" in found
 

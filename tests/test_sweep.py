@@ -16,7 +16,7 @@ from plans import FRICTION, MOMENT, Inline
 from samples import sample_result
 
 import fastpin
-from fastpin import store, sweep, worker
+from fastpin import products, store, sweep, worker
 from fastpin.errors import FastpinError, InputError
 from fastpin.index import FILE, locked
 from fastpin.keyfigures import KEY_FIGURES, key_figures
@@ -65,11 +65,12 @@ def test_what_is_done_has_the_bits_of_a_serial_solution(plan: Plan, swept: tuple
     assert summary.seconds > 0.0
     for run, point in plan.runs.items():
         case = plan.case(point)
+        alone: fastpin.Result | None
         try:
             alone = fastpin.solve(case.problem, case.history, **case.options.keywords())
         except fastpin.NoEquilibriumError as error:
-            assert error.result is not None
             alone = error.result
+        assert alone is not None
         stored = store.load(directory / "results" / f"{run}.h5")
         assert alone.complete == stored.complete
         assert len(alone) == len(stored) > 0
@@ -195,6 +196,19 @@ def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -
 def test_any_executor_gives_the_same(plan: Plan, swept: tuple[Path, Summary], tmp_path: Path) -> None:
     sweep.run(plan, tmp_path, Inline())
     assert comparable(tmp_path) == comparable(swept[0])
+
+
+def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    solve, seen = worker.solve, []
+
+    def watched(*arguments: Any, **options: Any) -> Any:
+        seen.append(products._alone.get())
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(worker, "solve", watched)
+    sweep.run(plan, tmp_path, Inline())
+    assert seen == [True] * 6
+    assert not products._alone.get()
 
 
 def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,7 +61,13 @@ def rows(plan: Plan) -> list[dict[str, Any]]:
         row |= {"id": point.id, "status": "done", "reason": None, "dimensionless": 0}
         rows.append(row | {"peak_pressure": 1e6 * number, "contact_start": -number, "states": 3, "seconds": 0.1})
     rows[1] |= {"status": "failed", "reason": "lost, at last", "peak_pressure": None}
-    rows[2] = {"id": rows[2]["id"], "status": "waiting", "reason": None, **dict.fromkeys(plan.fields), **plan.points[2].values}
+    rows[2] = {
+        "id": rows[2]["id"],
+        "status": "waiting",
+        "reason": None,
+        **dict.fromkeys(plan.fields),
+        **plan.points[2].values,
+    }
     return rows
 
 
@@ -267,7 +273,10 @@ def test_numbers_of_curves(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "contact_start", "contact.clearance")
     assert found.label == "contact start  [deg]"
     assert found.y is None
-    assert [name.splitlines()[-1] for name, _, _ in found.parts] == ["contact.friction = 0.2", "contact.friction = 0.4"] * 2
+    assert [name.splitlines()[-1] for name, _, _ in found.parts] == [
+        "contact.friction = 0.2",
+        "contact.friction = 0.4",
+    ] * 2
     assert found.parts[3][1].tolist() == [-40.0, -41.0, -42.0]
 
 
@@ -293,7 +302,9 @@ def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dic
     figure = sweepplot._draw_maps(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
     mesh = maps[0].collections[0]
-    assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx([20, 40, np.nan, 41, np.nan, 42], nan_ok=True)
+    assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
+        [20, 40, np.nan, 41, np.nan, 42], nan_ok=True
+    )
     assert [patch.get_hatch() for patch in maps[0].patches] == ["////", None]
     assert maps[0].patches[0].get_xy() == pytest.approx((0.1, 10**0.5))
     assert not list(maps[1].patches)
