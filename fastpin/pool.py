@@ -6,13 +6,14 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Collection, Generator, Iterable, Iterator
+from collections.abc import Callable, Collection, Generator, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
+from fastpin.errors import FastpinError
 from fastpin.worker import prepare
 
 K = TypeVar("K")
@@ -49,6 +50,11 @@ class Pool:
     Parameters
     ----------
     workers : int
+
+    Raises
+    ------
+    FastpinError
+        If they don't start.
     """
 
     def __init__(self, workers: int) -> None:
@@ -57,8 +63,15 @@ class Pool:
         resource_tracker.ensure_running()  # before signals are held back: it would let them pass again
         with _interrupts_held_back():  # a worker inherits that
             self.executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare)
-            self.executor.submit(os.getpid)  # starts the processes
+            first, *_ = [self.executor.submit(os.getpid) for _ in range(workers)]  # each starts a process
         self._processes = set(multiprocessing.active_children()) - before
+        try:
+            first.result()
+        except BrokenExecutor:
+            raise FastpinError(
+                "worker processes can't be started; a script that runs a sweep must do so under "
+                'if __name__ == "__main__", because they import it'
+            ) from None
 
     def stop(self, busy: bool = True) -> None:
         """End the workers, whatever they are doing."""
@@ -91,7 +104,7 @@ def handed_out(
     """
     if executor is not None:
         return through(executor, deque(tasks), submit)
-    return through_processes(min(workers, len(tasks)), tasks, submit)
+    return through_processes(workers, tasks, submit)
 
 
 def through(
@@ -125,7 +138,7 @@ def through(
 
 
 def through_processes(
-    workers: int, tasks: Iterable[K], submit: Submit[K, T]
+    workers: int, tasks: Collection[K], submit: Submit[K, T], alone: bool = False
 ) -> Generator[tuple[K, T | BaseException], None, None]:
     """Tasks with what they return or raise, through worker processes of our own.
 
@@ -133,30 +146,18 @@ def through_processes(
     a :class:`WorkerDiedError`.
     """
     waiting = deque(tasks)
-    pool = Pool(workers)
-    busy = True
-    try:
-        while waiting:
-            try:
-                yield from through(pool.executor, waiting, submit, 2 * workers)
-            except BrokenError as broken:
-                pool.stop()
-                yield from _one_by_one(broken.tasks or [waiting.popleft()], submit)
-                pool = Pool(workers)
-        busy = False
-    finally:
-        pool.stop(busy)
-
-
-def _one_by_one(tasks: list[K], submit: Submit[K, T]) -> Generator[tuple[K, T | BaseException], None, None]:
-    pool = Pool(1)
-    try:
-        for task in tasks:
-            try:
-                yield from through(pool.executor, deque([task]), submit)
-            except BrokenError:
-                yield task, WorkerDiedError(DIED)
-                pool.stop()
-                pool = Pool(1)
-    finally:
-        pool.stop()
+    while waiting:
+        suspects: list[K] = []
+        pool = Pool(min(workers, len(waiting)))
+        busy = True
+        try:
+            yield from through(pool.executor, waiting, submit, 1 if alone else 2 * workers)
+            busy = False
+        except BrokenError as broken:
+            suspects = broken.tasks or [waiting.popleft()]
+        finally:
+            pool.stop(busy)
+        if alone:
+            yield from ((task, WorkerDiedError(DIED)) for task in suspects)
+        elif suspects:
+            yield from through_processes(1, suspects, submit, alone=True)

@@ -117,11 +117,11 @@ def run(
     workers = cores() if workers is None else whole_number("workers", workers, 1)
     directory = made(Path(directory))
     with locked(directory):
-        _check_plan_copy(plan, directory)
+        _check_plan_copy(directory, plan.text)
         with Index(directory, create=True) as index:
             results = made(directory / RESULTS).resolve()
             _clear(results)
-            _keep_plan(plan, directory)
+            _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
             before = _now(index, points, results)
             unwanted = (DONE,) if retry else (DONE, FAILED)
@@ -245,16 +245,16 @@ def _summary(index: Index, points: dict[str, Point], results: Path, ended: int =
     return Summary(done, waiting, failed, ended, seconds)
 
 
-def _check_plan_copy(plan: Plan, directory: Path) -> None:
+def _check_plan_copy(directory: Path, text: str = "") -> None:
     """The copy of a plan must not take the place of another file of the user's."""
     path = directory / PLAN
-    if path.exists() and not (directory / FILE).exists() and path.read_bytes() != plan.text.encode():
+    if path.exists() and not (directory / FILE).exists() and path.read_bytes() != text.encode():
         raise InputError(str(directory), f"holds another {PLAN}, but no sweep; choose another directory")
 
 
-def _keep_plan(plan: Plan, directory: Path) -> None:
+def _keep_plan(directory: Path, text: str) -> None:
     with replacing(directory / PLAN) as temporary:
-        temporary.write_text(plan.text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8")
 
 
 def _clear(results: Path) -> None:
@@ -289,6 +289,7 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
         used.
     """
     target = made(Path(directory))
+    _check_plan_copy(target)
     with locked(target), Index(target, create=True) as index:
         made(target / RESULTS)
         for source in map(Path, sources):
@@ -318,8 +319,7 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
             with replacing(target / RESULTS / path.name) as temporary:
                 shutil.copyfile(path, temporary)
     index.absorb(other, wanted)
-    with replacing(target / PLAN) as temporary:
-        temporary.write_text(index.noted("text") or "", encoding="utf-8")
+    _keep_plan(target, index.noted("text") or "")
 
 
 def _check_agreement(one: dict[str, Any], two: dict[str, Any], source: Path) -> None:

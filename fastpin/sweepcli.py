@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 MOST_REASONS = 20
 """Failed runs that are listed with their reasons."""
 
+VALUE = "peak_pressure"
+"""What is plotted without another wish."""
+
 CLUSTER_SECONDS = 30
 """A scheduler that does not answer for so long is not there."""
 
@@ -47,7 +50,7 @@ def add(commands: Any) -> None:
         help="parameters and key figures: as CSV, or printed where FILE is left out",
     )
     sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one key figure (png, pdf or svg)")
-    sweep.add_argument("--value", metavar="NAME", default="peak_pressure", help="key figure to plot (peak_pressure)")
+    sweep.add_argument("--value", metavar="NAME", help=f"key figure to plot (default {VALUE})")
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
     sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis: a map")
     sweep.set_defaults(command=_sweep)
@@ -59,13 +62,18 @@ def add(commands: Any) -> None:
 
 
 def _sweep(options: argparse.Namespace) -> int:
+    shard = _shard(options.shard)
+    _check_combination(options)
+
+    from fastpin.plan import read_plan
+
+    plan = read_plan(options.plan)
+    directory = Path(options.plan.stem) if options.output is None else options.output
+    _check_outputs(options, plan)
+
     from fastpin import sweep
     from fastpin.sweeptable import text
 
-    plan = sweep.read_plan(options.plan)
-    directory = Path(options.plan.stem) if options.output is None else options.output
-    shard = _shard(options.shard)
-    _check_outputs(options, plan)
     if options.status:
         summary = sweep.status(plan, directory, shard)
     else:
@@ -126,6 +134,15 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     return int(parts[1]), int(parts[2])
 
 
+def _check_combination(options: argparse.Namespace) -> None:
+    """Refuse options that would have no effect."""
+    if options.workers is not None and options.dask is not None:
+        raise InputError("--workers", "is for processes of this machine; the scheduler has its own workers")
+    for name in ("value", "x", "y"):
+        if getattr(options, name) is not None and options.plot is None:
+            raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
+
+
 def _check_outputs(options: argparse.Namespace, plan: Plan) -> None:
     """Find out before the work what could not be shown after it."""
     from fastpin.sweeptable import check_axes
@@ -138,7 +155,7 @@ def _check_outputs(options: argparse.Namespace, plan: Plan) -> None:
         check_figure("--plot", options.plot)
         check_writable(options.plot)
         try:
-            check_axes(plan, options.value, options.x, options.y)
+            check_axes(plan, options.value or VALUE, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
 
@@ -174,7 +191,7 @@ def _written(options: argparse.Namespace, plan: Plan, directory: Path) -> list[d
     if options.plot is not None:
         from fastpin.sweepplot import plot_sweep
 
-        chart = sweeptable.chart(plan, rows, options.value, options.x, options.y)
+        chart = sweeptable.chart(plan, rows, options.value or VALUE, options.x, options.y)
         plot_sweep(chart, options.plot)
         if chart.missing:
             print(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)

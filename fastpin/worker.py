@@ -108,9 +108,9 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
             figures = key_figures(result)
             store.save(result, path, error=reason)
     except MemoryError:
-        seconds, reason = time.perf_counter() - began, "not enough memory"
+        seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
     except Exception as error:  # whatever goes wrong in one run is its own failure, and the others go on
-        seconds, reason = time.perf_counter() - began, f"{type(error).__name__}: {error}"
+        seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
     return Outcome(run, reason, figures, seconds, started, socket.gethostname(), _versions())
 
 

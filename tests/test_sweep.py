@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from pathlib import Path
@@ -193,8 +193,12 @@ def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -
 # -- executors -------------------------------------------------------------------------------------------------
 
 
-def test_any_executor_gives_the_same(plan: Plan, swept: tuple[Path, Summary], tmp_path: Path) -> None:
-    sweep.run(plan, tmp_path, Inline())
+@pytest.mark.parametrize("executor", [Inline, lambda: ThreadPoolExecutor(2)], ids=["inline", "threads"])
+def test_any_executor_gives_the_same(
+    executor: Callable[[], Executor], plan: Plan, swept: tuple[Path, Summary], tmp_path: Path
+) -> None:
+    with executor() as working:
+        sweep.run(plan, tmp_path, working)
     assert comparable(tmp_path) == comparable(swept[0])
 
 
@@ -224,6 +228,16 @@ def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch:
     summary = sweep.run(sweep.parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
     assert [reason for _, reason in summary.failed] == ["not enough memory", "ZeroDivisionError: by nothing"]
     assert summary.done == 1
+
+
+def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store, "save", full)
+    summary = sweep.run(plan, tmp_path, Inline())
+    assert summary.failed[0][1] == "OSError: [Errno 28] No space left on device"
+    assert {row["peak_pressure"] for row in sweep.load(tmp_path)} == {None}
 
 
 def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -304,6 +318,13 @@ def test_a_plan_of_the_user_s_is_not_overwritten(plan: Plan, tmp_path: Path) -> 
         sweep.run(plan, tmp_path, Inline())
     assert (tmp_path / "plan.toml").read_text() == "mine"
     assert not (tmp_path / FILE).exists()
+
+
+def test_merging_does_not_overwrite_a_plan_either(copy: Path, tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text("mine")
+    with pytest.raises(InputError, match=r"holds another plan.toml, but no sweep"):
+        sweep.merge([copy], tmp_path)
+    assert (tmp_path / "plan.toml").read_text() == "mine"
 
 
 def test_a_directory_that_can_not_be_made(plan: Plan, tmp_path: Path) -> None:

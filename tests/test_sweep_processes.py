@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -75,11 +76,8 @@ def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     plan = sweep.parse_plan(FRICTION.replace("COUNT", "8"))
 
-    def workers() -> list[int]:
-        found = psutil.Process().children(recursive=True)
-        return [child.pid for child in found if "spawn_main" in " ".join(child.cmdline())]
-
-    summary = sweep.run(plan, tmp_path, workers=2, progress=killer(workers))
+    victims = killer(lambda: [child.pid for child in workers(os.getpid())])
+    summary = sweep.run(plan, tmp_path, workers=2, progress=victims)
     assert (summary.done, summary.failed, summary.waiting) == (8, [], 0)
     assert_same_as_serial(plan, tmp_path)
 
@@ -105,17 +103,37 @@ def test_the_run_that_kills_its_worker_is_found(tmp_path: Path, monkeypatch: pyt
     assert_same_as_serial(plan, tmp_path)
 
 
+def started(path: Path, directory: Path) -> subprocess.Popen[str]:
+    """The command line's main process, leader of a process group as in a terminal."""
+    command = [sys.executable, "-m", "fastpin", "sweep", str(path), "-o", str(directory), "--workers", "2"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, text=True, stdout=pipe, stderr=pipe, env=environment, start_new_session=True)
+
+
+def workers(main: int) -> list[psutil.Process]:
+    """The worker processes of a main process."""
+    found = psutil.Process(main).children(recursive=True)
+    return [child for child in found if "spawn_main" in " ".join(child.cmdline())]
+
+
+def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(FRICTION.replace("COUNT", "41"))
+    with started(path, tmp_path / "out") as main:
+        while len(workers(main.pid)) < 2:
+            time.sleep(0.01)
+        time.sleep(0.2)  # they import what they need
+        os.killpg(main.pid, signal.SIGINT)
+        err = main.communicate(timeout=30)[1]
+    assert main.returncode == 130
+    assert re.fullmatch(r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command goes on\n", err)
+
+
 def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
     path, directory = tmp_path / "plan.toml", tmp_path / "out"
     path.write_text(FRICTION.replace("COUNT", "41"))
     plan = sweep.read_plan(path)
-    command = [sys.executable, "-m", "fastpin", "sweep", str(path), "-o", str(directory), "--workers", "2"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-
-    def started() -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, start_new_session=True
-        )
 
     def wait_for(done: int) -> None:
         until = time.monotonic() + 60.0
@@ -123,7 +141,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
             assert time.monotonic() < until
             time.sleep(0.005)
 
-    with started() as main:
+    with started(path, directory) as main:
         wait_for(3)
         os.killpg(main.pid, signal.SIGINT)  # as Ctrl-C does: the workers are meant, too
         out, err = main.communicate(timeout=30)
@@ -133,18 +151,20 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
     assert out == ""
     assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command goes on\n"
 
-    with started() as main:
+    with started(path, directory) as main:
         wait_for(kept.done + 3)
-        workers = psutil.Process(main.pid).children(recursive=True)
+        left = workers(main.pid)
         main.kill()
         main.communicate(timeout=30)
-    assert psutil.wait_procs(workers, timeout=10)[1] == []
+    assert len(left) == 2
+    assert psutil.wait_procs(left, timeout=10)[1] == []
     before = sweep.status(plan, directory).done
     assert kept.done + 3 <= before < 41
 
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
-    assert done.returncode == 0
-    assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in done.stdout
+    with started(path, directory) as main:
+        out, err = main.communicate(timeout=60)
+    assert (main.returncode, err) == (0, "")
+    assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in out
     assert {file.name for file in (directory / "results").iterdir()} == {f"{run}.h5" for run in plan.runs}
     assert_same_as_serial(plan, directory)
 
@@ -163,3 +183,17 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
         assert pids[0] not in client.run(os.getpid).values()
     assert (summary.done, summary.failed, summary.ended) == (12, [], 12)
     assert_same_as_serial(plan, tmp_path)
+
+
+def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import fastpin.sweep\n"
+        f"plan = fastpin.sweep.parse_plan({FRICTION.replace('COUNT', '3')!r})\n"
+        f"fastpin.sweep.run(plan, {str(tmp_path / 'out')!r}, workers=1)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 1
+    assert "must do so under if __name__" in done.stderr.splitlines()[-1]
+    assert {row["status"] for row in sweep.load(tmp_path / "out")} == {"waiting"}
