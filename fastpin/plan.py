@@ -22,7 +22,7 @@ import numpy as np
 from fastpin.casefile import EXAMPLE, KEYS, Case, case_from, read_text
 from fastpin.caselines import CaseText, Place, Section, choice, closest, number, shown, string, whole
 from fastpin.caseloads import read_history
-from fastpin.errors import CaseFileError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.fields import conflict, other_units, varied
 from fastpin.identity import canonical, canonical_json, run_id
 from fastpin.loading import LoadHistory
@@ -99,9 +99,16 @@ class Plan:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def case(self, point: Point) -> Case:
-        """The case of one point: what :func:`fastpin.solve` needs."""
-        case = self._base.vary(point.values)[1]
-        assert case is not None
+        """The case of one point: what :func:`fastpin.solve` needs.
+
+        Raises
+        ------
+        InputError
+            If a CSV file of its loads has changed since the plan was read.
+        """
+        text, case = self._base.vary(point.values)
+        if case is None or text.placed or run_id(canonical(case)) != point.id:
+            raise InputError(f"run {point.id}", "its loads have changed since the plan was read")
         return case
 
 

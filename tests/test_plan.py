@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 
 from fastpin import plan as plan_module
 from fastpin.casefile import EXAMPLE, builtin_case, parse_case
-from fastpin.errors import CaseFileError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.identity import canonical, run_id
 from fastpin.loading import LOADS
 from fastpin.plan import Plan, parse_plan, read_plan
@@ -112,6 +113,16 @@ def test_the_base_case_lies_beside_the_plan_and_its_loads_beside_it(tmp_path: Pa
     path.write_text('case = "below/case.toml"\n[grid]\nhistory.csv = ["a.csv", "b.csv"]\n')
     plan = read_plan(path)
     assert [plan.case(point).history.values()[0, 0] for point in plan.points] == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("change", [lambda path: path.write_text("P\n2\n"), Path.unlink], ids=["changed", "gone"])
+def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[[Path], None], tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text("P\n1\n")
+    plan = parse_plan('[grid]\nhistory.csv = ["a.csv", "b.csv"]\ncontact.friction = [0.2]\n', folder=tmp_path)
+    change(tmp_path / "a.csv")
+    with pytest.raises(InputError, match="its loads have changed since the plan was read"):
+        plan.case(plan.points[0])
 
 
 @pytest.mark.parametrize(

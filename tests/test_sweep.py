@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from distributed.scheduler import KilledWorker
 from plans import FRICTION, MOMENT, Inline
 from samples import sample_result
 
@@ -283,10 +284,7 @@ def test_an_executor_that_breaks_loses_nothing(plan: Plan, tmp_path: Path, on_su
 
 
 def test_a_worker_that_a_cluster_gives_up_is_a_failure(plan: Plan, tmp_path: Path) -> None:
-    class KilledWorker(Exception):  # noqa: N818
-        """Has the name of dask's."""
-
-    summary = sweep.run(plan, tmp_path, Breaks(KilledWorker("run"), on_submit=False))
+    summary = sweep.run(plan, tmp_path, Breaks(KilledWorker("run", None, 3), on_submit=False))
     assert sum(reason.startswith("the worker process died") for _, reason in summary.failed) == 3
 
 

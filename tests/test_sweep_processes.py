@@ -20,6 +20,7 @@ from threadpoolctl import threadpool_info
 
 from fastpin import sweep
 from fastpin.casefile import Case
+from fastpin.cli import main
 from fastpin.plan import Plan, Point
 from fastpin.pool import Pool
 
@@ -120,13 +121,13 @@ def workers(main: int) -> list[psutil.Process]:
 def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     path.write_text(FRICTION.replace("COUNT", "41"))
-    with started(path, tmp_path / "out") as main:
-        while len(workers(main.pid)) < 2:
+    with started(path, tmp_path / "out") as process:
+        while len(workers(process.pid)) < 2:
             time.sleep(0.01)
         time.sleep(0.2)  # they import what they need
-        os.killpg(main.pid, signal.SIGINT)
-        err = main.communicate(timeout=30)[1]
-    assert main.returncode == 130
+        os.killpg(process.pid, signal.SIGINT)
+        err = process.communicate(timeout=30)[1]
+    assert process.returncode == 130
     assert re.fullmatch(r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command goes on\n", err)
 
 
@@ -141,29 +142,29 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
             assert time.monotonic() < until
             time.sleep(0.005)
 
-    with started(path, directory) as main:
+    with started(path, directory) as process:
         wait_for(3)
-        os.killpg(main.pid, signal.SIGINT)  # as Ctrl-C does: the workers are meant, too
-        out, err = main.communicate(timeout=30)
+        os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: the workers are meant, too
+        out, err = process.communicate(timeout=30)
     kept = sweep.status(plan, directory)
-    assert main.returncode == 130
+    assert process.returncode == 130
     assert 3 <= kept.done < 41
     assert out == ""
     assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command goes on\n"
 
-    with started(path, directory) as main:
+    with started(path, directory) as process:
         wait_for(kept.done + 3)
-        left = workers(main.pid)
-        main.kill()
-        main.communicate(timeout=30)
+        left = workers(process.pid)
+        process.kill()
+        process.communicate(timeout=30)
     assert len(left) == 2
     assert psutil.wait_procs(left, timeout=10)[1] == []
     before = sweep.status(plan, directory).done
     assert kept.done + 3 <= before < 41
 
-    with started(path, directory) as main:
-        out, err = main.communicate(timeout=60)
-    assert (main.returncode, err) == (0, "")
+    with started(path, directory) as process:
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
     assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in out
     assert {file.name for file in (directory / "results").iterdir()} == {f"{run}.h5" for run in plan.runs}
     assert_same_as_serial(plan, directory)
@@ -181,8 +182,13 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
         summary = sweep.run(plan, tmp_path, client.get_executor(), progress=killer(lambda: pids))
         assert len(set(pids)) == 2
         assert pids[0] not in client.run(os.getpid).values()
+
+        (tmp_path / "plan.toml").write_text(plan.text)
+        arguments = ["-o", str(tmp_path / "again"), "--dask", cluster.scheduler_address]
+        assert main(["sweep", str(tmp_path / "plan.toml"), *arguments]) == 0
     assert (summary.done, summary.failed, summary.ended) == (12, [], 12)
-    assert_same_as_serial(plan, tmp_path)
+    for directory in (tmp_path, tmp_path / "again"):
+        assert_same_as_serial(plan, directory)
 
 
 def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
