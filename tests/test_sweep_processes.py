@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -114,8 +115,12 @@ def started(path: Path, directory: Path) -> subprocess.Popen[str]:
 
 def workers(main: int) -> list[psutil.Process]:
     """The worker processes of a main process."""
-    found = psutil.Process(main).children(recursive=True)
-    return [child for child in found if "spawn_main" in " ".join(child.cmdline())]
+    found = []
+    for child in psutil.Process(main).children(recursive=True):
+        with suppress(psutil.Error):  # it has just ended
+            if "spawn_main" in " ".join(child.cmdline()):
+                found.append(child)
+    return found
 
 
 def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
