@@ -230,8 +230,7 @@ def _checked(run: str, outcome: Outcome | BaseException, results: Path) -> Outco
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
     """Status and reason of each run; one whose result is gone is waiting again."""
-    with os.scandir(results) as entries:
-        present = {entry.name.removesuffix(".h5") for entry in entries}
+    present = {name.removesuffix(".h5") for name in os.listdir(results)} if results.is_dir() else set()
     waiting = WAITING, None
     known = index.statuses()
     found = {run: known.get(run, waiting) for run in points}

@@ -157,6 +157,8 @@ def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None
     assert sweep.status(plan, copy).waiting == 1
     assert sweep.run(plan, copy, Inline()).ended == 1
     assert set(files(copy)) == set(before)
+    shutil.rmtree(copy / "results")
+    assert sweep.status(plan, copy).waiting == 4
 
 
 def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
