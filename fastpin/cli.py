@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastpin import __version__, sweepcli
+from fastpin import __version__, cli_sweep
 from fastpin.errors import CaseFileError, FastpinError, InputError, SolveError
 from fastpin.files import check_writable, replacing
 from fastpin.terminal import (
@@ -127,7 +127,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
     figures.set_defaults(command=_paper)
-    sweepcli.add(commands)
+    cli_sweep.add(commands)
     return parser
 
 

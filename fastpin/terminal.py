@@ -13,7 +13,7 @@ FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
 def fail(message: str, code: int) -> int:
-    """Say what went wrong; returns `code`."""
+    """Say what went wrong, and return the exit code."""
     print(f"fastpin: {message}", file=sys.stderr)
     return code
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from plans import FRICTION, MOMENT, Inline
 
-from fastpin import sweep, sweepcli, sweepplot, sweeptable
+from fastpin import cli_sweep, sweep, sweepplot, sweeptable
 from fastpin.cli import main
 from fastpin.errors import InputError
 from fastpin.keyfigures import KEY_FIGURES
@@ -162,7 +162,7 @@ def test_what_can_not_be_done_is_told_before_the_runs(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(sweepcli, "CLUSTER_SECONDS", 0.1)
+    monkeypatch.setattr(cli_sweep, "CLUSTER_SECONDS", 0.1)
     assert main(["sweep", str(path), *arguments]) == 2
     captured = capsys.readouterr()
     assert words in captured.err
@@ -219,7 +219,7 @@ def test_the_progress_bar_has_the_time_left(
         assert "{n} of {total}" in text
         return Bar()
 
-    monkeypatch.setattr(sweepcli, "bar", bar)
+    monkeypatch.setattr(cli_sweep, "bar", bar)
     main(["sweep", str(path)])
     assert shown == [(k, 6) for k in range(7)]
 
