@@ -29,7 +29,7 @@ MAX_NODES = 20_000  # the matrices hold 4 nodes^2 numbers: 13 GB
 METHODS = ("path", "increment")
 
 _MATERIAL_KEYS = ("material", "E", "nu", "rigid")
-_KEYS: dict[str, tuple[str, ...]] = {
+KEYS: dict[str, tuple[str, ...]] = {
     "pin": _MATERIAL_KEYS,
     "plate": _MATERIAL_KEYS,
     "dundurs": ("alpha", "beta", "nu_pin", "convention", "beta_star"),
@@ -47,6 +47,8 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "history": ("csv", "repeat"),
     "solve": ("nodes", "method", "increments", "arc", "between", "keep", "shortcut"),
 }
+"""Sections of a case file and their keys."""
+
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # where a pair is wrong, to check the rest
 
 T = TypeVar("T")
@@ -130,17 +132,21 @@ def read_case(path: str | Path) -> Case:
         With all faults of the file.
     """
     path = Path(path)
+    return parse_case(read_text(path), str(path), path.parent)
+
+
+def read_text(path: Path) -> str:
+    """The text of a case file, or :class:`CaseFileError`."""
     try:
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
     try:
-        decoded = raw.decode("utf-8-sig")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise CaseFileError(str(path), [(line, "is not UTF-8 text")]) from None
-    return parse_case(decoded, str(path), path.parent)
 
 
 def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> Case:
@@ -161,20 +167,22 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
         With all faults of the text.
     """
     source = CaseText(text)
-    case = _case(source, Path(folder)) if source.readable else None
+    case = case_from(source, Path(folder)) if source.readable else None
     if source.faults:
         raise CaseFileError(name, source.faults)
     assert case is not None
     return case
 
 
-def _case(source: CaseText, folder: Path) -> Case | None:
-    """The case; without meaning if there are faults."""
+def case_from(
+    source: CaseText, folder: Path, read: Callable[[CaseText, Path], LoadHistory | None] = read_history
+) -> Case | None:
+    """The case; without meaning if there are faults. `read` finds its loads."""
     _check_keys(source)
     title = source.root.checked("title", string) or ""
     pair = _pair(source, source.section("contact"))
     problem = _problem(source.section("contact", required=True), pair or _STEEL)
-    history = read_history(source, folder)
+    history = read(source, folder)
     options = _options(source.section("solve"))
     if problem is not None and history is not None:
         check_loads(source, problem, history)
@@ -209,14 +217,14 @@ def _check_keys(source: CaseText) -> None:
     for name, value in source.root.table.items():
         if name == "title":
             continue
-        if name in _KEYS:
+        if name in KEYS:
             for section in source.blocks(name):
                 for key in section.table:
-                    if key not in _KEYS[name]:
-                        hint = closest(key, _KEYS[name]) or _owners(key) or f"; the keys are {', '.join(_KEYS[name])}"
+                    if key not in KEYS[name]:
+                        hint = closest(key, KEYS[name]) or _owners(key) or f"; the keys are {', '.join(KEYS[name])}"
                         section.report(f'unknown key "{key}" in {_bracketed(name)}{hint}', key)
         elif isinstance(value, (dict, list)) and not _owners(name):
-            hint = closest(name, tuple(_KEYS)) or f"; the sections are {', '.join(map(_bracketed, _KEYS))}"
+            hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_bracketed, KEYS))}"
             source.report(f"unknown section [{name}]{hint}", name)
         else:
             hint = _owners(name) or closest(name, ("title",))
@@ -225,7 +233,7 @@ def _check_keys(source: CaseText) -> None:
 
 def _owners(key: str) -> str:
     """A hint at the sections that know a key, or nothing."""
-    owners = [_bracketed(section) for section, keys in _KEYS.items() if key in keys]
+    owners = [_bracketed(section) for section, keys in KEYS.items() if key in keys]
     return f"; it belongs in {' or '.join(owners)}" if owners else ""
 
 
@@ -333,6 +341,6 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
 
 
 def _options(section: Section) -> SolveOptions:
-    given = {key: section.value(key) for key in _KEYS["solve"] if key in section}
+    given = {key: section.value(key) for key in KEYS["solve"] if key in section}
     defaults = SolveOptions()
     return _built(section, SolveOptions, given, defaults.keywords()) or defaults

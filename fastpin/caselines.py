@@ -6,6 +6,7 @@ all keys are found beside it, and reading goes on after a faulty line.
 
 from __future__ import annotations
 
+import copy
 import difflib
 import math
 import re
@@ -28,6 +29,8 @@ class CaseText:
     ----------
     faults : list of (int, str)
         Line, from 1, and one sentence for each. Line 0 is the whole text.
+    placed : list of (place, str)
+        Of the faults of values: where the value stands, and the sentence.
     readable : bool
         Whether there are tables to look at; they hold everything but the values on faulty lines.
     root : Section
@@ -36,6 +39,7 @@ class CaseText:
 
     def __init__(self, text: str) -> None:
         self.faults: list[tuple[int, str]] = []
+        self.placed: list[tuple[Place, str]] = []
         self.readable = True
         lines = text.replace("\r\n", "\n").split("\n")
         self._lines, keys, starts = _locate(lines)
@@ -70,8 +74,20 @@ class CaseText:
 
     def report(self, message: str, *place: str | int) -> None:
         """Add a fault, on the line of the value at `place` or of the closest thing around it."""
+        self.placed.append((place, message))
+        self._add(self.line(*place), message)
+
+    def line(self, *place: str | int) -> int:
+        """The line of the value at `place` or of the closest thing around it; 0 if there is none."""
         around = (place[:length] for length in range(len(place), 0, -1))
-        self._add(next((self._lines[part] for part in around if part in self._lines), 0), message)
+        return next((self._lines[part] for part in around if part in self._lines), 0)
+
+    def varied(self, tables: dict[str, Any]) -> CaseText:
+        """This text with other tables; what is wrong with them is reported on the lines of this text."""
+        other = copy.copy(self)
+        other.faults, other.placed = [], []
+        other.root = Section(other, (), tables)
+        return other
 
     def _add(self, line: int, message: str) -> None:
         if (line, message) not in self.faults:

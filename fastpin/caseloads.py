@@ -105,10 +105,11 @@ def _harmonic(block: Section) -> LoadHistory | None:
     tables = {name: _loads(block, name) for name in ("mean", "amplitude", "phase")}
     points = block.checked("points", whole, 2)
     count = block.checked("repeat", whole, 1) or 1
-    if None in tables.values():
+    mean, amplitude, phase = tables.values()
+    if mean is None or amplitude is None or phase is None:
         return None
     try:
-        history = LoadHistory.harmonic(**tables, count=count, points=points)
+        history = LoadHistory.harmonic(mean, amplitude, phase, count, points)
     except InputError as error:
         block.report(str(error), error.field)
         return None

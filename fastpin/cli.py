@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``paper``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``paper``, ``sweep``, ``merge``.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -15,7 +15,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from fastpin import __version__
+from fastpin import __version__, cli_sweep
 from fastpin.errors import CaseFileError, FastpinError, InputError
 from fastpin.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_OK, EXIT_PIPE, bar, fail
 
@@ -113,6 +113,8 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
     figures.set_defaults(command=_paper)
+
+    cli_sweep.add(commands)
     return parser
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError, Interrupted, SolveError
 from fastpin.files import check_writable, replacing
-from fastpin.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, bar, fail
+from fastpin.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, bar, check_figure, fail
 
 if TYPE_CHECKING:
     from fastpin.casefile import Case
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from fastpin.state import Result
 
 LARGE_STRAIN = 0.05
-FIGURE_FORMATS = (".png", ".pdf", ".svg")
 SHOWN = 20
 """States at the beginning and at the end of a long history that are printed."""
 
@@ -150,8 +149,8 @@ def _check_outputs(options: argparse.Namespace) -> None:
         case = getattr(options, "case", None)
         if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
             raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
-        if name in ("--plot", "--cycles") and path.suffix.lower() not in FIGURE_FORMATS:
-            raise InputError(name, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
+        if name in ("--plot", "--cycles"):
+            check_figure(name, path)
         check_writable(path)
         other = seen.setdefault(path.resolve(), name)
         if other != name:

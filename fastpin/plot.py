@@ -1,4 +1,4 @@
-"""Figures. The only module that imports matplotlib; it keeps no global state and needs no display."""
+"""Figures. Only this module and sweepplot.py import matplotlib; they keep no global state and need no display."""
 
 from __future__ import annotations
 

@@ -1,14 +1,18 @@
 """Matrix products in two threads, with the same bits for any number of cores: the two halves are always the same.
 
-BLAS runs on one thread each. Its own threads wait in loops that cost more than they give as soon as another process
-wants a core, and the bits of their results may depend on how many there are.
+Where every core has work of its own, :func:`in_one_thread` computes the halves one after the other. BLAS runs on one
+thread each. Its own threads wait in loops that cost more than they give as soon as another process wants a core, and
+the bits of their results may depend on how many there are.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 import numpy as np
 
@@ -21,6 +25,17 @@ _POINTER = ctypes.c_void_p
 # Called in this way it leaves the interpreter free, and works on parts of arrays in place.
 _dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
+_alone = ContextVar("_alone", default=False)
+
+
+@contextmanager
+def in_one_thread() -> Iterator[None]:
+    """Inside the block the calling thread makes its products alone; their bits stay the same."""
+    before = _alone.set(True)
+    try:
+        yield
+    finally:
+        _alone.reset(before)
 
 
 def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
@@ -31,20 +46,27 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
     if m * n * left.shape[1] < WORTHWHILE:
         _add(out, left, right)
         return
+    half = m // 2
+    lower = out[half:], left[half:], right
+    other = None if _alone.get() else _started(*lower)
+    try:
+        if other is None:
+            _add(*lower)
+        _add(out[:half], left[:half], right)
+    finally:
+        if other is not None:
+            other.result()
+
+
+def _started(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> Future[None] | None:
+    """The product on its way in the second thread; None if the interpreter is about to end."""
     global _second
     if _second is None:
         _second = ThreadPoolExecutor(1, thread_name_prefix="fastpin")
-    half = m // 2
     try:
-        other = _second.submit(_add, out[half:], left[half:], right)
-    except RuntimeError:  # the interpreter is about to end
-        _add(out[half:], left[half:], right)
-        _add(out[:half], left[:half], right)
-        return
-    try:
-        _add(out[:half], left[:half], right)
-    finally:
-        other.result()
+        return _second.submit(_add, out, left, right)
+    except RuntimeError:
+        return None
 
 
 def _add(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:

@@ -159,9 +159,7 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
     columns += _load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
     columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
-    return _table(
-        columns, len(history) - sum(block.corners - len(block.given) for block in history.blocks) - len(loads)
-    )
+    return table(columns, len(history) - sum(block.corners - len(block.given) for block in history.blocks) - len(loads))
 
 
 def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
@@ -192,7 +190,7 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
         column("dissipated", "energy", [state.dissipation for state in states], 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
-    return _table(columns, hidden)
+    return table(columns, hidden)
 
 
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
@@ -234,7 +232,7 @@ def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> lis
     return columns
 
 
-def _table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
+def table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
     """Lines of text, no more than so many; `hidden` rows in the middle are not even in the columns."""
     count = len(columns[0][2])
     middle = min(count, _MAX_ROWS) // 2

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 ALL = slice(None)
 
 
-def save(result: Result, path: str | Path, error: str | None = None) -> None:
+def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
     """Write a result to an HDF5 file, whole or not at all.
 
     Parameters
@@ -57,6 +57,8 @@ def save(result: Result, path: str | Path, error: str | None = None) -> None:
         Overwritten if it exists.
     error : str, optional
         Why the result is incomplete, kept with it.
+    restart : bool
+        Also keep what is needed to go on from the result.
 
     Raises
     ------
@@ -74,7 +76,7 @@ def save(result: Result, path: str | Path, error: str | None = None) -> None:
         write_statistics(file, result.statistics)
         append(file["states"], rows_of(list(result)))
         append(file["cycles"], cycle_rows(result.cycles))
-        if result.restart is not None:
+        if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)
 
 

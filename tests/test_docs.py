@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from fastpin import paper
+from fastpin.keyfigures import KEY_FIGURES
+from fastpin.plan import parse_plan
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
@@ -47,3 +49,28 @@ def test_every_figure_is_shown() -> None:
     text = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
     for name in (*paper.PAPER, *paper.BEYOND):
         assert f"figures/{paper.stem(name)}.png" in text
+
+
+def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    case, plan = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "case.toml").write_text(case)
+    assert len(parse_plan(plan, folder=tmp_path).runs) == 3 * 10 * 2 * 2
+    assert "3 x 10 x 2 x 2 = 120 runs" in text
+
+
+def test_every_column_of_the_index_is_explained() -> None:
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    for name in (
+        *KEY_FIGURES,
+        "id",
+        "status",
+        "reason",
+        "dimensionless",
+        "seconds",
+        "started",
+        "host",
+        "versions",
+        "input",
+    ):
+        assert f"`{name}`" in text, name

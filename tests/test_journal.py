@@ -195,7 +195,8 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
     for k in range(ARRAYS):
         h5[f"array{k}"].resize(1, axis=0)
     h5.flush()  # in the midst of a transaction
-    code = "import sys, pathlib, test_journal; print('begun', flush=True); print(test_journal.rows_in(pathlib.Path(sys.argv[1])))"
+    code = "import sys, pathlib; from test_journal import rows_in; print('begun', flush=True)"
+    code += "; print(rows_in(pathlib.Path(sys.argv[1])))"
     reader = subprocess.Popen(
         [sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parent
     )

@@ -116,3 +116,16 @@ def test_results_have_the_same_bits_with_any_number_of_threads_and_cores():
         )
         digests.add(done.stdout)
     assert len(digests) == 1
+
+
+def test_one_thread_makes_the_same_bits(monkeypatch):
+    out, left, right = arrays(1203, 120, 64)
+    alone, expected = out.copy(order="F"), out.copy(order="F")
+    add_product(expected, left, right)
+    monkeypatch.setattr(products, "_second", None)
+    with products.in_one_thread():
+        add_product(alone, left, right)
+    assert products._second is None
+    assert np.array_equal(alone, expected)
+    add_product(out, left, right)
+    assert products._second is not None

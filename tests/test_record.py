@@ -190,7 +190,7 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
     expected = solve(problem, history, nodes=61)
     follow(problem, history, path, nodes=61)
     assert_file(path, expected)
-    first = list(arc.grids_to_try(problem, history.values(), 1.0, 61))[0]
+    first = next(arc.grids_to_try(problem, history.values(), 1.0, 61))
     assert first.theta[-1] < expected.grid.theta[-1]
     with pytest.raises(Interrupted):  # and in a run that was interrupted before
         follow(problem, history, path, nodes=61, progress=StopAt(2.0), overwrite=True)

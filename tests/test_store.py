@@ -12,10 +12,10 @@ import pytest
 from samples import PAIR, sample_result
 
 from fastpin.errors import InputError
+from fastpin.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
 from fastpin.state import Cycle, Result, State
-from fastpin.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
 from fastpin.store import load, save, size, to_xarray
 
 

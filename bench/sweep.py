@@ -1,0 +1,88 @@
+"""How well a sweep uses the processors: the same runs in a loop, with one worker, and with several.
+
+    python bench/sweep.py                                  1,000 runs with 101 nodes, 1 and 2 workers
+    python bench/sweep.py --runs 100 --nodes 201 --workers 4
+
+Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)); a sweep's time has the starting
+of its workers in it, which the last column leaves out: it counts from the end of the first run. One compilation is done
+before.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import tempfile
+import time
+from pathlib import Path
+
+from threadpoolctl import threadpool_limits
+
+import fastpin
+from fastpin import store, sweep
+from fastpin.plan import Plan
+from fastpin.products import in_one_thread
+
+PLAN = """
+[grid]
+"contact.friction" = {{ from = 0.1, to = 0.9, count = {rows} }}
+"contact.clearance" = {{ from = 1e-6, to = 2e-4, count = {columns}, spacing = "log" }}
+"solve.nodes" = [{nodes}]
+"""
+
+
+def plan_of(runs: int, nodes: int) -> Plan:
+    """A plan of at least so many runs."""
+    rows = max(2, math.isqrt(runs))
+    return sweep.parse_plan(PLAN.format(rows=rows, columns=max(2, math.ceil(runs / rows)), nodes=nodes))
+
+
+def loop(plan: Plan) -> float:
+    """Seconds for all runs one after the other in this process, on one thread, with their files."""
+    with tempfile.TemporaryDirectory() as directory, threadpool_limits(limits=1), in_one_thread():
+        began = time.perf_counter()
+        for run, point in plan.runs.items():
+            case = plan.case(point)
+            result = fastpin.solve(case.problem, case.history, **case.options.keywords())
+            store.save(result, Path(directory) / f"{run}.h5")
+        return time.perf_counter() - began
+
+
+def swept(plan: Plan, workers: int) -> tuple[float, float]:
+    """Seconds of a sweep, and of that part of it after the first run has ended, for as many runs as the whole."""
+    ends: list[float] = []
+    with tempfile.TemporaryDirectory() as directory:
+        began = time.perf_counter()
+        summary = sweep.run(plan, directory, workers=workers, progress=lambda *_: ends.append(time.perf_counter()))
+        seconds = time.perf_counter() - began
+    if summary.done != len(plan.runs):
+        raise SystemExit(f"{len(summary.failed)} runs failed, the first: {summary.failed[0]}")
+    count = len(plan.runs)
+    return seconds, (ends[-1] - ends[1]) * count / (count - 1)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=1000)
+    parser.add_argument("--nodes", type=int, default=101)
+    parser.add_argument("--workers", type=int, nargs="+", default=[2])
+    options = parser.parse_args()
+    plan = plan_of(options.runs, options.nodes)
+    loop(plan_of(1, options.nodes))
+    serial = loop(plan)
+    count = len(plan.runs)
+    print(f"{count} runs, {options.nodes} nodes, {1e3 * serial / count:.1f} ms each in a loop")
+    print(f"loop in this process   {serial:8.2f} s")
+    one, steady_one = swept(plan, 1)
+    print(f"1 worker               {one:8.2f} s, {steady_one:8.2f} s without the start")
+    for workers in options.workers:
+        many, steady = swept(plan, workers)
+        print(
+            f"{workers} workers              {many:8.2f} s, {steady:8.2f} s without the start; efficiency "
+            f"{one / (workers * many):.3f}, {steady_one / (workers * steady):.3f} without the start; "
+            f"{serial / many:.2f} times the loop"
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""Fields of a case, ``section.key``, set in the tables of a case file.
+
+Where a case may say one thing in several ways, a field takes the place of the others: a named material that of
+moduli, Dundurs' parameters that of two materials, a file that of load blocks, and the other way round.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastpin.materials import MATERIALS
+
+_REPLACED: dict[str, tuple[str, ...]] = {
+    "material": ("E", "nu", "rigid"),
+    "E": ("material", "rigid"),
+    "nu": ("material", "rigid"),
+    "rigid": ("material", "E", "nu"),
+}
+"""What each key of [pin] and [plate] replaces in its section of the base case."""
+
+_REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")} | {
+    "load": ("history",),
+    "history": ("load",),
+}
+"""What sections each section replaces in the base case."""
+
+
+def varied(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a case with other values of some fields; `tables` stay as they are."""
+    new = {name: _copied(table) for name, table in tables.items()}
+    for name, value in values.items():
+        _make_room(new, name, value)
+    for name, value in values.items():
+        section, *rest = name.split(".")
+        table = new["load"][int(rest[0]) - 1] if section == "load" else new.setdefault(section, {})
+        if isinstance(table, dict):
+            table[rest[-1]] = value
+    return new
+
+
+def conflict(values: dict[str, Any]) -> tuple[str, str] | None:
+    """Two fields of which one replaces what the other changes; the case reader finds all others."""
+    load = next((name for name in values if name.startswith("load.")), None)
+    history = next((name for name in values if name.startswith("history.")), None)
+    return (load, history) if load and history else None
+
+
+def other_units(tables: dict[str, Any], name: str) -> str | None:
+    """What is wrong with a field that would change the units of the base case's loads; nothing if it does not."""
+    contact = tables.get("contact")
+    given = contact if isinstance(contact, dict) else {}
+    if name == "contact.load_parameter" and ("hole_radius" in given or "clearance" in given):
+        return (
+            f"{name}: the base case gives a hole radius and a clearance, and loads in N/m; with a load parameter they "
+            "would count in units of F. Vary contact.clearance (load parameter times F beta*), or take a base case "
+            "with load_parameter and loads in units of F"
+        )
+    if name in ("contact.hole_radius", "contact.clearance") and "load_parameter" in given:
+        return (
+            f"{name}: the base case gives a load_parameter, and loads in units of F; vary contact.load_parameter, or "
+            "take a base case with hole_radius, clearance and loads in N/m"
+        )
+    return None
+
+
+def _copied(table: Any) -> Any:
+    """A table, or list of tables, of which keys can be set."""
+    if isinstance(table, list):
+        return [dict(item) if isinstance(item, dict) else item for item in table]
+    return dict(table) if isinstance(table, dict) else table
+
+
+def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
+    """Take out of the base case what a field replaces."""
+    section, key = name.split(".")[0], name.split(".")[-1]
+    for other in _REPLACED_SECTIONS.get(section, ()):
+        tables.pop(other, None)
+    body = tables.get(section)
+    if section not in ("pin", "plate") or not isinstance(body, dict) or (key == "rigid" and value is not True):
+        return
+    named = body.get("material")
+    if key in ("E", "nu") and isinstance(named, str) and named in MATERIALS:
+        # One constant is varied, the other stays that of the material.
+        material = MATERIALS[named]
+        body |= {"E": material.E, "nu": material.nu}
+    for other in _REPLACED.get(key, ()):
+        body.pop(other, None)

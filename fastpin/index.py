@@ -1,0 +1,273 @@
+"""The index of a sweep: an SQLite file with one row a run. Only the main process writes it.
+
+A row is committed as soon as its run ends, so it survives a main process that is killed. The journal is SQLite's
+ordinary one: it works on the network file systems of clusters, where a write-ahead log does not, and others can read
+while a sweep runs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from fastpin import __version__
+from fastpin.errors import InputError
+from fastpin.keyfigures import KEY_FIGURES
+from fastpin.plan import Plan, Point, Spacing
+from fastpin.worker import Outcome
+
+FILE = "index.sqlite"
+APPLICATION = 0x6670696E  # "fpin", in the file's header
+FORMAT_VERSION = 1
+WAITING, DONE, FAILED = "waiting", "done", "failed"
+
+_RUN_COLUMNS = {
+    "id": "TEXT PRIMARY KEY",
+    "status": "TEXT NOT NULL",
+    "reason": "TEXT",
+    "dimensionless": "INTEGER NOT NULL",
+    **{name: "INTEGER" if name in ("states", "nodes") else "REAL" for name in KEY_FIGURES},
+    "seconds": "REAL",
+    "started": "TEXT",
+    "host": "TEXT",
+    "versions": "TEXT",
+    "input": "TEXT NOT NULL",
+}
+_OUTCOME_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
+_BUSY_SECONDS = 60.0
+
+
+class Index:
+    """The index in a directory. To be used in a ``with`` statement, which closes it.
+
+    Parameters
+    ----------
+    directory : path
+    create : bool
+        Make the file if there is none.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or is no index; the methods also if it can't be written.
+    """
+
+    def __init__(self, directory: Path, create: bool = False) -> None:
+        self.path = directory / FILE
+        if not create and not self.path.is_file():
+            raise InputError(str(directory), "holds no sweep: there is no index.sqlite")
+        with self._said():
+            mode = "rwc" if create else "rw"
+            self._database = sqlite3.connect(
+                f"{self.path.resolve().as_uri()}?mode={mode}", uri=True, timeout=_BUSY_SECONDS, isolation_level=None
+            )
+            try:
+                self._check(create)
+            except BaseException:
+                self._database.close()
+                raise
+
+    def __enter__(self) -> Index:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._database.close()
+
+    def _check(self, create: bool) -> None:
+        """See that the file is an index; make it one if it is empty."""
+        if create and not self._one("SELECT count(*) FROM sqlite_master"):
+            columns = ", ".join(f'"{name}" {kind}' for name, kind in _RUN_COLUMNS.items())
+            with self._transaction():
+                self._database.execute(f"PRAGMA application_id = {APPLICATION}")
+                self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
+                self._database.execute(f"CREATE TABLE runs ({columns})")
+                self._database.execute("CREATE TABLE sweep (name TEXT PRIMARY KEY, value TEXT)")
+            return
+        if self._one("PRAGMA application_id") != APPLICATION:
+            raise InputError(str(self.path), "is an SQLite file, but not the index of a sweep")
+        if self._one("PRAGMA user_version") != FORMAT_VERSION:
+            raise InputError(str(self.path), "is the index of another version of fastpin, which this one can't read")
+        damage = self._one("PRAGMA quick_check(1)")
+        if damage != "ok":
+            raise sqlite3.DatabaseError(damage)
+
+    # -- what is to be run --------------------------------------------------------------------------------------
+
+    def expect(self, plan: Plan, points: Iterable[Point]) -> None:
+        """Add the points that are new, waiting, and name the values of all; what is known of them stays."""
+        fields = list(plan.fields)
+        with self._said(), self._transaction():
+            self._add_columns(fields)
+            self._note(version=__version__, plan=plan.digest, title=plan.title, text=plan.text)
+            self._note(fields=json.dumps(self.fields | plan.fields))
+            columns = ["id", "status", "dimensionless", "input", *fields]
+            update = "".join(f', "{name}" = excluded."{name}"' for name in fields)
+            self._database.executemany(
+                f"INSERT INTO runs ({_quoted(columns)}) VALUES ({', '.join('?' * len(columns))}) "
+                f"ON CONFLICT (id) DO UPDATE SET input = excluded.input{update}",
+                (
+                    (
+                        point.id,
+                        WAITING,
+                        json.loads(point.input)["dimensionless"],
+                        point.input,
+                        *(_cell(point.values.get(name)) for name in fields),
+                    )
+                    for point in points
+                ),
+            )
+
+    def record(self, outcome: Outcome) -> None:
+        """Write how a run ended."""
+        cells: dict[str, Any] = {
+            "status": DONE if outcome.reason is None else FAILED,
+            "reason": outcome.reason,
+            **dict.fromkeys(KEY_FIGURES),
+            **outcome.figures,
+            "seconds": outcome.seconds,
+            "started": outcome.started,
+            "host": outcome.host,
+            "versions": json.dumps(outcome.versions),
+        }
+        places = ", ".join(f'"{name}" = ?' for name in _OUTCOME_COLUMNS)
+        with self._said():
+            values = [cells[name] for name in _OUTCOME_COLUMNS]
+            self._database.execute(f"UPDATE runs SET {places} WHERE id = ?", [*values, outcome.id])
+
+    # -- what is known -------------------------------------------------------------------------------------------
+
+    @property
+    def fields(self) -> dict[str, Spacing]:
+        """All fields that were ever varied here, and how they were spaced."""
+        return json.loads(self.noted("fields") or "{}")
+
+    def noted(self, name: str) -> str | None:
+        """What is kept of the whole sweep: "version", "plan" (its digest), "title", "text", "fields"."""
+        return self._one("SELECT value FROM sweep WHERE name = ?", name)
+
+    def statuses(self) -> dict[str, tuple[str, str | None]]:
+        """Status ("waiting", "done", "failed") and reason of a failure, by id."""
+        with self._said():
+            found = self._database.execute("SELECT id, status, reason FROM runs")
+            return {run: (status, reason) for run, status, reason in found}
+
+    def rows(self) -> list[dict[str, Any]]:
+        """All rows, each a dict from column to value, in the order in which they were added.
+
+        Lists (loads, the ends of an arc) are lists again, ``versions`` and ``input`` dicts.
+        """
+        with self._said():
+            fields = self.fields
+            found = self._database.execute("SELECT * FROM runs ORDER BY rowid")
+            names = [column[0] for column in found.description]
+            rows = [dict(zip(names, row, strict=True)) for row in found]
+        for row in rows:
+            for name in fields:
+                row[name] = _value(name, row[name])
+            for name in ("versions", "input"):
+                row[name] = json.loads(row[name]) if row[name] else {}
+        return rows
+
+    def absorb(self, other: Index, ids: Sequence[str]) -> None:
+        """Take over these rows of another index of the same plan, and what is known of its sweep."""
+        with self._said(), self._transaction():
+            names = list(other.fields)
+            self._add_columns(names)
+            self._note(**{name: other.noted(name) for name in ("version", "plan", "title", "text", "fields")})
+            columns = _quoted([*_RUN_COLUMNS, *names])
+            marks = ", ".join("?" * (len(_RUN_COLUMNS) + len(names)))
+            for run in ids:
+                row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
+                self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({marks})", row)
+
+    # -- the database --------------------------------------------------------------------------------------------
+
+    def _add_columns(self, fields: Iterable[str]) -> None:
+        known = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
+        for name in fields:
+            if name not in known:
+                self._database.execute(f'ALTER TABLE runs ADD COLUMN "{name}"')
+
+    def _note(self, **values: str | None) -> None:
+        self._database.executemany("INSERT OR REPLACE INTO sweep VALUES (?, ?)", values.items())
+
+    def _one(self, question: str, *values: Any) -> Any:
+        with self._said():
+            row = self._database.execute(question, values).fetchone()
+        return row[0] if row else None
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """All or nothing."""
+        self._database.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+        except BaseException:
+            self._database.execute("ROLLBACK")
+            raise
+        self._database.execute("COMMIT")
+
+    @contextmanager
+    def _said(self) -> Iterator[None]:
+        """What SQLite complains of, in one sentence."""
+        try:
+            yield
+        except (sqlite3.OperationalError, sqlite3.InternalError) as error:
+            raise InputError(str(self.path), f"can't be used: {error}") from None
+        except sqlite3.DatabaseError as error:
+            raise InputError(str(self.path), f"is no index of a sweep, or a damaged one: {error}") from None
+
+
+@contextmanager
+def locked(directory: Path) -> Iterator[None]:
+    """Keep other sweeps out of a directory; the lock goes when this process ends, however it does.
+
+    Raises
+    ------
+    InputError
+        If another sweep is running there, or nothing can be written.
+    """
+    try:
+        lock = sqlite3.connect(directory / "lock", timeout=0.0, isolation_level=None)
+        try:
+            lock.execute("BEGIN EXCLUSIVE")
+        except BaseException:
+            lock.close()
+            raise
+    except sqlite3.Error as error:
+        busy = error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY
+        reason = "another sweep is running in this directory" if busy else f"can't be used: {error}"
+        raise InputError(str(directory), reason) from None
+    try:
+        yield
+    finally:
+        lock.close()
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f'"{name}"' for name in names)
+
+
+def _cell(value: Any) -> Any:
+    """A value of a field in SQL: a number or text as it is, a list as JSON."""
+    return json.dumps(value) if isinstance(value, list) else value
+
+
+def _value(name: str, cell: Any) -> Any:
+    """A value again; only loads, the ends of an arc and fractions of a step may be lists."""
+    may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
+    return json.loads(cell) if may_be_list and isinstance(cell, str) else cell
+
+
+def made(directory: Path) -> Path:
+    """The directory, made if there is none."""
+    try:
+        os.makedirs(directory, exist_ok=True)
+    except OSError as error:
+        raise InputError(str(directory), f"can't be made: {error.strerror or error}") from None
+    return directory

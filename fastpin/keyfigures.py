@@ -1,0 +1,83 @@
+"""Key figures of a run: the few numbers of its last state, and the extremes of all, that a sweep keeps in its index."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from fastpin.report import from_bottom, interval_from_bottom
+from fastpin.state import Interval, Result
+
+KEY_FIGURES: dict[str, str] = {
+    "states": "",
+    "peak_pressure": "traction",
+    "peak_pressure_angle": "angle",
+    "peak_shear": "traction",
+    "peak_shear_angle": "angle",
+    "contact_start": "angle",
+    "contact_stop": "angle",
+    "contact_width": "angle",
+    "stick_width": "angle",
+    "rotation": "rotation",
+    "dx": "displacement",
+    "dy": "displacement",
+    "dissipation": "energy",
+    "max_pressure": "traction",
+    "max_shear": "traction",
+    "residual": "",
+    "nodes": "",
+}
+"""Names of the key figures and their kinds: a key of :func:`fastpin.report.units`, "angle" (deg), "" for a number.
+
+* ``states``, ``nodes``: numbers of states and of nodes.
+* ``peak_pressure`` to ``dissipation``: of the last state. ``peak_shear`` has its sign. Angles count from the bottom of
+  the hole; ``contact_start`` and ``contact_stop`` are the ends of the widest contact interval, ``contact_width`` and
+  ``stick_width`` sums over all. ``dissipation`` is the total since the beginning.
+* ``max_pressure``, ``max_shear``: largest peak pressure and largest magnitude of the peak shear of all states.
+* ``residual``: the largest residual of all states.
+"""
+
+
+def key_figures(result: Result) -> dict[str, Any]:
+    """The key figures of a result with at least one state; None for what a contact that is open does not have.
+
+    Only the numbers of states and nodes are given where the history was not followed to its end.
+    """
+    figures: dict[str, Any] = dict.fromkeys(KEY_FIGURES)
+    figures |= {"states": len(result), "nodes": result.grid.size}
+    if not result.complete:
+        return figures
+    last = result[-1]
+    start, stop = _widest(last.contact)
+    figures |= {
+        "peak_pressure": last.peak_pressure,
+        "peak_pressure_angle": _degrees(last.peak_pressure_angle),
+        "peak_shear": last.peak_shear,
+        "peak_shear_angle": _degrees(last.peak_shear_angle),
+        "contact_start": start,
+        "contact_stop": stop,
+        "contact_width": _width(last.contact),
+        "stick_width": _width(last.stick),
+        "rotation": last.rotation,
+        "dx": last.dx,
+        "dy": last.dy,
+        "dissipation": last.dissipation,
+        "max_pressure": max(state.peak_pressure for state in result),
+        "max_shear": max(abs(state.peak_shear) for state in result),
+        "residual": max(max(state.residuals.values(), default=0.0) for state in result),
+    }
+    return {name: value if value is None or isinstance(value, int) else float(value) for name, value in figures.items()}
+
+
+def _degrees(angle: float) -> float | None:
+    return from_bottom(angle) if math.isfinite(angle) else None
+
+
+def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
+    if not intervals:
+        return None, None
+    return interval_from_bottom(*max(intervals, key=lambda interval: interval[1] - interval[0]))
+
+
+def _width(intervals: list[Interval]) -> float:
+    return math.degrees(sum(stop - start for start, stop in intervals))

@@ -1,0 +1,380 @@
+"""Plans of sweeps: which fields of a case are varied, and the runs that come of it.
+
+A plan is a TOML text with a base case, a ``[grid]`` of which every combination is run, and ``[[list]]`` tables of
+fields that change together. All faults of a plan are reported at once, each with its line, and every run is checked
+before any of them is started.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from fastpin.casefile import EXAMPLE, KEYS, Case, case_from, read_text
+from fastpin.caselines import CaseText, Place, Section, choice, closest, number, shown, string, whole
+from fastpin.caseloads import read_history
+from fastpin.errors import CaseFileError, InputError
+from fastpin.fields import conflict, other_units, varied
+from fastpin.identity import canonical, canonical_json, run_id
+from fastpin.loading import LoadHistory
+
+MAX_RUNS = 100_000
+"""Most runs of one plan."""
+
+MAX_FAULTS = 50
+"""Most faults of runs that are listed."""
+
+DIGITS = 12
+"""Significant digits of the values between the ends of a range, so that 0.3 in a range is the 0.3 of a list."""
+
+Spacing = Literal["linear", "log", "list"]
+Row = dict[str, tuple[Place, Any]]
+"""Fields of a [[list]] block: where each stands, and its value."""
+
+_ROOT_KEYS = ("title", "case", "grid", "list")
+_RANGE_KEYS = ("from", "to", "count", "spacing")
+
+
+@dataclass(frozen=True)
+class Point:
+    """One combination of values.
+
+    Attributes
+    ----------
+    id : str
+        Id of the run; points with the same input share it.
+    values : dict of str to value
+        The varied fields of this point and their values, as TOML gives them.
+    input : str
+        The canonical input, JSON (:func:`fastpin.identity.canonical`).
+    """
+
+    id: str
+    values: dict[str, Any]
+    input: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be run. Made by :func:`read_plan` and :func:`parse_plan`.
+
+    Attributes
+    ----------
+    title : str
+    text : str
+        The plan as it was written.
+    fields : dict of str to {"linear", "log", "list"}
+        The varied fields, and how their values are spaced; "list" where they were listed one by one.
+    points : list of Point
+        In the order of the plan: the last field of the grid changes fastest, the [[list]] slowest.
+    """
+
+    title: str
+    text: str
+    fields: dict[str, Spacing]
+    points: list[Point]
+    _base: _Base = field(repr=False)
+
+    @cached_property
+    def runs(self) -> dict[str, Point]:
+        """The points to be run, by their ids: of those with the same input only the first."""
+        runs: dict[str, Point] = {}
+        for point in self.points:
+            runs.setdefault(point.id, point)
+        return runs
+
+    @property
+    def digest(self) -> str:
+        """The same for plans with the same fields and runs, however they are written."""
+        text = json.dumps([sorted(self.fields), sorted(self.runs)])
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def case(self, point: Point) -> Case:
+        """The case of one point: what :func:`fastpin.solve` needs.
+
+        Raises
+        ------
+        InputError
+            If a CSV file of its loads has changed since the plan was read.
+        """
+        text, case = self._base.vary(point.values)
+        if case is None or text.placed or run_id(canonical(case)) != point.id:
+            raise InputError(f"run {point.id}", "its loads have changed since the plan was read")
+        return case
+
+
+def read_plan(path: str | Path) -> Plan:
+    """Read a plan file. The case file and CSV files of load histories are looked for beside it.
+
+    Raises
+    ------
+    CaseFileError
+        With all faults of the plan, of the base case and of the runs.
+    """
+    path = Path(path)
+    return parse_plan(read_text(path), str(path), path.parent)
+
+
+def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
+    """Read a plan from `text`.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        What errors call the plan.
+    folder : path
+        Where a relative path of the case file, or of a varied CSV file, starts.
+
+    Raises
+    ------
+    CaseFileError
+        With all faults of the text, of the base case and of the runs.
+    """
+    source = CaseText(text)
+    plan = _plan(source, text, Path(folder)) if source.readable else None
+    if source.faults:
+        raise CaseFileError(name, source.faults)
+    assert plan is not None
+    return plan
+
+
+def described(values: dict[str, Any]) -> str:
+    """The values of a point as text."""
+    return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
+
+
+class _Base:
+    """The base case, ready to be varied."""
+
+    def __init__(self, text: str, name: str, folder: Path) -> None:
+        self.name = name
+        self.text = CaseText(text)
+        if self.text.faults:
+            raise CaseFileError(name, self.text.faults)
+        self._folder = folder
+        self._loads: tuple[str, LoadHistory | None] = "", None
+
+    @property
+    def load_blocks(self) -> int:
+        """Number of [[load]] blocks."""
+        blocks = self.text.root.value("load")
+        return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
+
+    def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
+        """The case with these fields; without meaning where the text has faults."""
+        text = self.text.varied(varied(self.text.root.table, values))
+        return text, case_from(text, self._folder, self._read_loads)
+
+    def _read_loads(self, text: CaseText, folder: Path) -> LoadHistory | None:
+        """The load history; the last one is kept, because neighbours in a plan often share it."""
+        given = repr([text.root.table.get(name) for name in ("load", "history")])
+        if given != self._loads[0] or self._loads[1] is None:
+            self._loads = given, read_history(text, folder)
+        return self._loads[1]
+
+
+# -- the text ------------------------------------------------------------------------------------------------
+
+
+def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
+    """The plan; without meaning if there are faults."""
+    for key in source.root.table:
+        if key not in _ROOT_KEYS:
+            hint = closest(key, _ROOT_KEYS) or "; there are title, case, [grid] and [[list]]"
+            source.report(f'unknown key "{key}"{hint}', key)
+    title = source.root.checked("title", string) or ""
+    base = _base(source, folder)
+    places: dict[str, Place] = {}
+    spacings: dict[str, Spacing] = {}
+    rows = _rows(source, base)
+    for row in rows:
+        for field_name, (place, _) in row.items():
+            places.setdefault(field_name, place)
+            spacings[field_name] = "list"
+    axes = _axes(source, base, places, spacings)
+    if not places and not source.faults:
+        source.report("nothing is varied: give a [grid] of lists of values, or [[list]] blocks")
+    count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
+    if count > MAX_RUNS:
+        source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
+    if base is None or source.faults:
+        return None
+    points = _points(source, base, places, rows or [{}], axes)
+    return Plan(title, text, {name: spacings[name] for name in places}, points, base)
+
+
+def _base(source: CaseText, folder: Path) -> _Base | None:
+    name = source.root.checked("case", string)
+    try:
+        if name is None:
+            return _Base(EXAMPLE, "built-in case", folder)
+        path = folder / name
+        return _Base(read_text(path), name, path.parent)
+    except CaseFileError as error:
+        for line, message in error.problems:
+            source.report(f"{error.field}{f', line {line}' if line else ''}: {message}", "case")
+        return None
+
+
+def _rows(source: CaseText, base: _Base | None) -> list[Row]:
+    """Places and values of the fields of the [[list]] blocks."""
+    given = source.root.value("list")
+    blocks = source.blocks("list")
+    if "list" in source.root and (not isinstance(given, list) or not blocks or len(blocks) < len(given)):
+        source.report("lists are [[list]] blocks, with double brackets", "list")
+        return []
+    rows = []
+    for index, block in enumerate(blocks):
+        if not block.table:
+            block.report("[[list]]: gives no field")
+        fields = _fields(source, base, block.table, ("list", index))
+        rows.append({name: (place, value) for place, name, value in fields})
+    return rows
+
+
+def _axes(
+    source: CaseText, base: _Base | None, places: dict[str, Place], spacings: dict[str, Spacing]
+) -> dict[str, list[Any]]:
+    """The values of each field of the grid."""
+    axes = {}
+    for place, name, value in _fields(source, base, source.section("grid").table, ("grid",)):
+        if name in places:
+            source.report(f"{name}: is varied already, in line {source.line(*places[name])}", *place)
+            continue
+        places[name] = place
+        spacings[name] = "list"
+        if isinstance(value, list) and value:
+            axes[name] = value
+        elif isinstance(value, dict):
+            axes[name], spacings[name] = _range(source, place, name, value)
+        else:
+            allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
+            source.report(f"{name}: must be {allowed}, not {'an empty list' if value == [] else shown(value)}", *place)
+    return axes
+
+
+def _fields(
+    source: CaseText, base: _Base | None, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
+) -> Iterator[tuple[Place, str, Any]]:
+    """Place, field and value of all keys of a table; ``contact.friction`` may be a quoted key or a table in a table."""
+    for key in table:
+        here, names = (*place, key), (*parts, *key.split("."))
+        value = Section(source, place, table).value(key)
+        if value is None:  # reported already
+            continue
+        if isinstance(value, dict) and len(names) < (3 if names[0] == "load" else 2):
+            yield from _fields(source, base, value, here, names)
+            continue
+        fault = _field_fault(names, base)
+        if fault:
+            source.report(fault, *here)
+        else:
+            yield here, ".".join(names), value
+
+
+def _field_fault(names: tuple[str, ...], base: _Base | None) -> str | None:
+    """What is wrong with a field's name; nothing if it is one."""
+    name, section = ".".join(names), names[0]
+    if section not in KEYS:
+        hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
+        return f'"{name}": there is no section [{section}] in a case file{hint}'
+    if section == "load":
+        if len(names) != 3 or not names[1].isdecimal():
+            return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
+        blocks = base.load_blocks if base else math.inf
+        if str(int(names[1])) != names[1] or not 1 <= int(names[1]) <= blocks:
+            return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
+    elif len(names) != 2:
+        return f'"{name}": a field is written section.key, such as contact.friction'
+    if names[-1] not in KEYS[section]:
+        hint = closest(names[-1], KEYS[section]) or f"; the keys are {', '.join(KEYS[section])}"
+        return f'"{name}": there is no key "{names[-1]}" in [{section}]{hint}'
+    return other_units(base.text.root.table, name) if base else None
+
+
+def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
+    """The values of a range."""
+    section = Section(source, place, table)
+    before = len(source.placed)
+    for key in table:
+        if key not in _RANGE_KEYS:
+            section.report(f'{name}: unknown key "{key}" in a range; there are {", ".join(_RANGE_KEYS)}', key)
+    for key in _RANGE_KEYS[:3]:
+        if key not in table:
+            section.report(f"{name}: {key} is missing; a range has from, to and count")
+    first, last = section.checked("from", number), section.checked("to", number)
+    count = section.checked("count", whole, 2, MAX_RUNS)
+    spacing: Any = section.checked("spacing", choice, ("linear", "log")) or "linear"
+    if first is None or last is None or count is None or len(source.placed) > before:
+        return [], spacing
+    if spacing == "log" and not first * last > 0.0:
+        section.report(f"{name}: from and to must both be positive, or both negative, where spacing is log")
+        return [], spacing
+    values = (np.geomspace if spacing == "log" else np.linspace)(first, last, count)
+    rounded = [first, *(float(f"{value:.{DIGITS}g}") for value in values[1:-1]), last]
+    if isinstance(table["from"], int) and isinstance(table["to"], int) and all(value % 1 == 0 for value in rounded):
+        return [int(value) for value in rounded], spacing
+    return rounded, spacing
+
+
+# -- the runs ------------------------------------------------------------------------------------------------
+
+
+def _points(
+    source: CaseText, base: _Base, places: dict[str, Place], rows: list[Row], axes: dict[str, list[Any]]
+) -> list[Point]:
+    """All points; what is wrong with their cases is reported on the line of the field, or of the case."""
+    points: list[Point] = []
+    faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
+    count = 0
+    for row, *combination in itertools.product(rows, *axes.values()):
+        values = {name: value for name, (_, value) in row.items()} | dict(zip(axes, combination, strict=True))
+        here = places | {name: place for name, (place, _) in row.items()}
+        count += 1
+        pair = conflict(values)
+        if pair:
+            faults.setdefault((here[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
+            continue
+        text, case = base.vary(values)
+        for place, message in text.placed:
+            faults.setdefault(_located(base, here, values, place, message), []).append(values)
+        if case is not None and not text.placed:
+            document = canonical(case)
+            points.append(Point(run_id(document), values, canonical_json(document)))
+    for (place, message), where in itertools.islice(faults.items(), MAX_FAULTS):
+        source.report(f"{message}{_which(where, count)}", *place)
+    if len(faults) > MAX_FAULTS:
+        source.report(f"and {len(faults) - MAX_FAULTS:,} more faults in the runs")
+    return points
+
+
+def _located(
+    base: _Base, places: dict[str, Place], values: dict[str, Any], place: Place, message: str
+) -> tuple[Place, str]:
+    """Where in the plan a fault of a run belongs, and how it reads there."""
+    parts = [str(part + 1) if isinstance(part, int) else part for part in place]
+    name = ".".join(parts)
+    if name in values:
+        return places[name], f"{name}: {message.removeprefix(f'{parts[-1]}: ')}"
+    line = base.text.line(*place)
+    mine = [known for known in values if parts and known.split(".")[0] == parts[0]]
+    if mine and (not line or line == base.text.line(*place[:1])):  # a section that the plan makes or changes
+        return places[mine[0]], f"{mine[0]}: {message}"
+    return ("case",), f"{base.name}{f', line {line}' if line else ''}: {message}"
+
+
+def _which(where: list[dict[str, Any]], count: int) -> str:
+    if len(where) == count:
+        return ""
+    return f" (in {f'{len(where)} runs, first' if len(where) > 1 else 'the run'} {described(where[0])})"

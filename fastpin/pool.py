@@ -1,0 +1,163 @@
+"""Executors of a sweep: any of :mod:`concurrent.futures`, or a pool of processes that outlives its workers' deaths."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Collection, Generator, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
+from queue import SimpleQueue
+from typing import Any, TypeVar
+
+from fastpin.errors import FastpinError
+from fastpin.worker import prepare
+
+K = TypeVar("K")
+T = TypeVar("T")
+
+DIED = "the worker process died; perhaps it needed more memory than there is"
+MOST_SUBMITTED = 1_000
+"""Tasks that an executor of others is given at a time: enough for a cluster."""
+
+Submit = Callable[[Executor, K], "Future[T]"]
+"""Hands one task to an executor."""
+
+
+def cores() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class WorkerDiedError(Exception):
+    """The process of a task died."""
+
+
+class BrokenError(Exception):
+    """An executor broke, or threw its tasks away; ``tasks`` were on their way."""
+
+    def __init__(self, tasks: list[Any]) -> None:
+        super().__init__("the executor broke")
+        self.tasks = tasks
+
+
+class Pool:
+    """Worker processes, started afresh (spawned) and pinned to one thread each.
+
+    Parameters
+    ----------
+    workers : int
+
+    Raises
+    ------
+    FastpinError
+        If they don't start.
+    """
+
+    def __init__(self, workers: int) -> None:
+        context = multiprocessing.get_context("spawn")
+        before = set(multiprocessing.active_children())
+        resource_tracker.ensure_running()  # before signals are held back: it would let them pass again
+        with _interrupts_held_back():  # a worker inherits that
+            self.executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare)
+            first, *_ = [self.executor.submit(os.getpid) for _ in range(workers)]  # each starts a process
+        self._processes = set(multiprocessing.active_children()) - before
+        try:
+            first.result()
+        except BrokenExecutor:
+            raise FastpinError(
+                "worker processes can't be started; a script that runs a sweep must do so under "
+                'if __name__ == "__main__", because they import it'
+            ) from None
+
+    def stop(self, busy: bool = True) -> None:
+        """End the workers, whatever they are doing."""
+        if busy:
+            for process in self._processes:
+                process.kill()
+        self.executor.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Ctrl-C comes after the block."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def handed_out(
+    executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T]
+) -> Generator[tuple[K, T | BaseException], None, None]:
+    """Tasks with what they return or raise, in the order in which they end.
+
+    Through `executor`, or without one through so many worker processes of our own. If an executor that is given breaks,
+    :class:`BrokenError` is raised.
+    """
+    if executor is not None:
+        return through(executor, deque(tasks), submit)
+    return through_processes(workers, tasks, submit)
+
+
+def through(
+    executor: Executor, waiting: deque[K], submit: Submit[K, T], ahead: int = MOST_SUBMITTED
+) -> Generator[tuple[K, T | BaseException], None, None]:
+    """Tasks with what they return or raise, in the order in which they end, through any executor.
+
+    Not more than `ahead` are on their way at a time; they leave `waiting`. Raises :class:`BrokenError`.
+    """
+    running: dict[Future[T], K] = {}
+    ended: SimpleQueue[Future[T]] = SimpleQueue()
+    try:
+        while waiting or running:
+            while waiting and len(running) < ahead:
+                try:
+                    future = submit(executor, waiting[0])
+                except RuntimeError:  # broken, or shut down
+                    raise BrokenError(list(running.values())) from None
+                running[future] = waiting.popleft()
+                future.add_done_callback(ended.put)
+            future = ended.get()
+            error = future.exception()
+            if isinstance(error, BrokenExecutor):
+                raise error
+            yield running.pop(future), future.result() if error is None else error
+    except (BrokenExecutor, CancelledError):  # of a task
+        raise BrokenError(list(running.values())) from None
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def through_processes(
+    workers: int, tasks: Collection[K], submit: Submit[K, T], alone: bool = False
+) -> Generator[tuple[K, T | BaseException], None, None]:
+    """Tasks with what they return or raise, through worker processes of our own.
+
+    Where a process dies, all tasks that were on their way are tried again, each alone; one whose process dies then has
+    a :class:`WorkerDiedError`.
+    """
+    waiting = deque(tasks)
+    while waiting:
+        suspects: list[K] = []
+        pool = Pool(min(workers, len(waiting)))
+        busy = True
+        try:
+            yield from through(pool.executor, waiting, submit, 1 if alone else 2 * workers)
+            busy = False
+        except BrokenError as broken:
+            suspects = broken.tasks or [waiting.popleft()]
+        finally:
+            pool.stop(busy)
+        if alone:
+            yield from ((task, WorkerDiedError(DIED)) for task in suspects)
+        elif suspects:
+            yield from through_processes(1, suspects, submit, alone=True)

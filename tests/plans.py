@@ -1,0 +1,57 @@
+"""Small plans, and ways to run and compare them, for the tests of sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fastpin
+from fastpin import store
+from fastpin.plan import Plan
+from fastpin.state import State
+
+FRICTION = """
+title = "Friction"
+[grid]
+"contact.friction" = { from = 0.1, to = 0.9, count = COUNT }
+"solve.nodes" = [61]
+"""
+
+MOMENT = """
+title = "Moment that friction carries"
+[grid]
+"contact.pin_load" = ["centre"]
+"solve.nodes" = [41]
+"contact.friction" = [0.1, 0.4]
+"load.2.M" = { from = 1000.0, to = 9000.0, count = 3, spacing = "log" }
+"""
+"""The two largest moments are too much for the smaller friction."""
+
+
+class Inline(Executor):
+    """An executor that does everything at once, in this process."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments, **keywords))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def assert_same_as_serial(plan: Plan, directory: Path) -> None:
+    """Every run of the plan has the bits of a solution in this process."""
+    for run, point in plan.runs.items():
+        case = plan.case(point)
+        alone = fastpin.solve(case.problem, case.history, **case.options.keywords())
+        stored = store.load(directory / "results" / f"{run}.h5")
+        assert len(alone) == len(stored)
+        for expected, state in zip(alone, stored, strict=True):
+            for name in (item.name for item in fields(State) if item.name not in ("problem", "grid")):
+                assert np.array_equal(getattr(expected, name), getattr(state, name)), name

@@ -1,0 +1,201 @@
+"""The index: what is written comes back, also to plain SQL, and what is no index is refused in one sentence."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.index import FILE, Index, locked
+from fastpin.keyfigures import KEY_FIGURES
+from fastpin.plan import Plan, Point, parse_plan
+from fastpin.worker import Outcome
+
+TEXT = """
+title = "Loads"
+[grid]
+load.2.Q = [[1e5, -1e5], 2e5]
+pin.rigid = [false]
+[[list]]
+plate.material = "steel"
+[[list]]
+contact.friction = 0.25
+"""
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return parse_plan(TEXT)
+
+
+@pytest.fixture
+def directory(plan: Plan, tmp_path: Path) -> Path:
+    """An index with one run that is done, one that failed and two that wait."""
+    with Index(tmp_path, create=True) as index:
+        index.expect(plan, plan.points)
+        first, second = (point.id for point in plan.points[:2])
+        figures = dict.fromkeys(KEY_FIGURES) | {"states": 3, "peak_pressure": 0.1 + 0.2, "nodes": 41}
+        index.record(Outcome(first, None, figures, 0.5, "2026-01-01T00:00:00.000+00:00", "here", {"fastpin": "1"}))
+        index.record(Outcome(second, "lost; it's gone", {"states": 1, "nodes": 41}, 0.25, "x", "there"))
+    return tmp_path
+
+
+def test_rows_come_back(plan: Plan, directory: Path) -> None:
+    with Index(directory) as index:
+        rows = index.rows()
+        assert index.noted("title") == "Loads"
+        assert index.fields == dict.fromkeys(plan.fields, "list")
+    assert [row["id"] for row in rows] == [point.id for point in plan.points]
+    assert [row["status"] for row in rows] == ["done", "failed", "waiting", "waiting"]
+    assert rows[0]["peak_pressure"] == 0.1 + 0.2
+    assert (rows[0]["reason"], rows[1]["reason"]) == (None, "lost; it's gone")
+    assert (rows[0]["versions"], rows[2]["versions"]) == ({"fastpin": "1"}, {})
+    assert rows[0]["load.2.Q"] == [1e5, -1e5]
+    assert rows[1]["load.2.Q"] == 2e5
+    assert rows[0]["plate.material"] == "steel"
+    assert rows[2]["plate.material"] is None
+    assert rows[2]["contact.friction"] == 0.25
+    assert rows[0]["input"] == json.loads(plan.points[0].input)
+    assert set(KEY_FIGURES) <= set(rows[0])
+
+
+def test_plain_sql_reads_it(plan: Plan, directory: Path) -> None:
+    database = sqlite3.connect(directory / FILE)
+    found = database.execute(
+        "SELECT id, json_extract(\"load.2.Q\", '$[1]'), json_extract(input, '$.plate.E') FROM runs "
+        "WHERE \"plate.material\" = 'steel' AND status = 'done' AND nodes > 40"
+    ).fetchall()
+    database.close()
+    assert found == [(plan.points[0].id, -1e5, 210e9)]
+
+
+def test_a_plan_that_has_grown_keeps_what_is_known(plan: Plan, directory: Path) -> None:
+    grown = parse_plan(TEXT.replace("[grid]", "[grid]\nsolve.nodes = [401, 61]"))
+    with Index(directory, create=True) as index:
+        index.expect(grown, grown.points)
+        rows = {row["id"]: row for row in index.rows()}
+    assert len(rows) == 8
+    assert rows[plan.points[0].id]["status"] == "done"
+    assert rows[plan.points[0].id]["solve.nodes"] == 401
+    assert list(index_fields(directory)) == [*plan.fields, "solve.nodes"]
+
+
+def index_fields(directory: Path) -> dict[str, str]:
+    with Index(directory) as index:
+        return dict(index.fields)
+
+
+def truncated(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def text(path: Path) -> None:
+    path.write_text("run,status\n" * 1000)
+
+
+def foreign(path: Path) -> None:
+    path.unlink()
+    database = sqlite3.connect(path)
+    database.execute("CREATE TABLE runs (id TEXT)")
+    database.close()
+
+
+def later(path: Path) -> None:
+    database = sqlite3.connect(path)
+    database.execute("PRAGMA user_version = 99")
+    database.close()
+
+
+def garbled(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[200:-100] = b"\xff" * (len(content) - 300)
+    path.write_bytes(content)
+
+
+def missing(path: Path) -> None:
+    path.unlink()
+
+
+def a_directory(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
+
+
+@pytest.mark.parametrize("create", [False, True])
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (truncated, "is no index of a sweep, or a damaged one"),
+        (text, "is no index of a sweep, or a damaged one"),
+        (garbled, "is no index of a sweep, or a damaged one"),
+        (foreign, "is an SQLite file, but not the index of a sweep"),
+        (later, "is the index of another version of fastpin"),
+    ],
+)
+def test_what_is_no_index_is_refused(damage: Callable[[Path], None], words: str, create: bool, directory: Path) -> None:
+    damage(directory / FILE)
+    before = (directory / FILE).read_bytes()
+    with pytest.raises(InputError) as caught:
+        Index(directory, create=create)
+    assert words in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+    assert (directory / FILE).read_bytes() == before
+
+
+@pytest.mark.parametrize(("damage", "words"), [(missing, "holds no sweep"), (a_directory, "holds no sweep")])
+def test_a_sweep_that_is_not_there(damage: Callable[[Path], None], words: str, directory: Path) -> None:
+    damage(directory / FILE)
+    with pytest.raises(InputError, match=words):
+        Index(directory)
+
+
+def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) -> None:
+    with Index(directory) as index:
+        index._database.execute("PRAGMA query_only = ON")  # what SQLite says of a file that may only be read
+        for write in (
+            lambda: index.expect(plan, plan.points),
+            lambda: index.record(Outcome(plan.points[0].id, "lost")),
+        ):
+            with pytest.raises(InputError, match=r"index.sqlite: can't be used: attempt to write a readonly database"):
+                write()
+
+
+def test_an_index_that_can_not_be_made_is_named() -> None:
+    with pytest.raises(InputError, match=r"can't be used: unable to open database file"):
+        Index(Path("/proc/1"), create=True)
+
+
+def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
+    class Interrupted(BaseException):
+        pass
+
+    def points() -> Iterator[Point]:
+        yield plan.points[0]
+        raise Interrupted
+
+    with Index(tmp_path, create=True) as index:
+        with pytest.raises(Interrupted):
+            index.expect(plan, points())
+        assert index.rows() == []
+        index.expect(plan, plan.points)
+        assert len(index.rows()) == 4
+
+
+def test_a_directory_is_locked_for_one(tmp_path: Path) -> None:
+    with (
+        locked(tmp_path),
+        pytest.raises(InputError, match="another sweep is running in this directory"),
+        locked(tmp_path),
+    ):
+        pass
+    with locked(tmp_path):
+        pass
+
+
+def test_a_lock_that_can_not_be_made_is_named() -> None:
+    with pytest.raises(InputError, match="can't be used: unable to open"), locked(Path("/proc/1")):
+        pass

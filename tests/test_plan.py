@@ -1,0 +1,372 @@
+"""Plans: their runs, their ids, and their faults, all at once and each with its line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fastpin import plan as plan_module
+from fastpin.casefile import EXAMPLE, builtin_case, parse_case
+from fastpin.errors import CaseFileError, InputError
+from fastpin.identity import canonical, run_id
+from fastpin.loading import LOADS
+from fastpin.plan import Plan, parse_plan, read_plan
+
+ROOT = Path(__file__).resolve().parents[1]
+DIMENSIONLESS = """
+[pin]
+material = "steel"
+[plate]
+material = "aluminium"
+[contact]
+load_parameter = 0.1
+friction = 0.4
+[[load]]
+P = 1
+"""
+
+
+def faults(text: str, folder: Path = ROOT) -> list[str]:
+    with pytest.raises(CaseFileError) as caught:
+        parse_plan(text, "plan", folder)
+    return str(caught.value).splitlines()
+
+
+def points(text: str, folder: Path | str = ROOT) -> list[dict[str, object]]:
+    return [point.values for point in parse_plan(text, folder=folder).points]
+
+
+# -- what is run ---------------------------------------------------------------------------------------------
+
+
+def test_a_grid_is_every_combination_and_crossed_with_the_lists() -> None:
+    found = points(
+        """
+        [grid]
+        "contact.friction" = [0.2, 0.4]
+        contact.clearance = [0.0, 1e-5]
+        [[list]]
+        pin.material = "steel"
+        plate.material = "steel"
+        [[list]]
+        "pin.E" = 1e11
+        """
+    )
+    assert len(found) == 8
+    assert found[1] == {
+        "pin.material": "steel",
+        "plate.material": "steel",
+        "contact.friction": 0.2,
+        "contact.clearance": 1e-5,
+    }
+    assert found[-1] == {"pin.E": 1e11, "contact.friction": 0.4, "contact.clearance": 1e-5}
+
+
+def test_ranges() -> None:
+    plan = parse_plan(
+        """
+        [grid]
+        contact.friction = { from = 0.1, to = 0.9, count = 9 }
+        "contact.clearance" = { from = 1e-6, to = 1e-3, count = 4, spacing = "log" }
+        [grid.solve]
+        nodes = { from = 101, to = 301, count = 3 }
+        """
+    )
+    assert plan.fields == {"contact.friction": "linear", "contact.clearance": "log", "solve.nodes": "linear"}
+    assert len(plan.points) == 9 * 4 * 3
+    assert sorted({point.values["contact.friction"] for point in plan.points}) == [k / 10 for k in range(1, 10)]
+    assert sorted({point.values["contact.clearance"] for point in plan.points}) == [1e-6, 1e-5, 1e-4, 1e-3]
+    nodes = [point.values["solve.nodes"] for point in plan.points[:3]]
+    assert nodes == [101, 201, 301]
+    assert all(isinstance(count, int) for count in nodes)
+
+
+def test_fields_reach_the_case() -> None:
+    plan = parse_plan(
+        """
+        [grid]
+        "load.2.Q" = [[1e5, -1e5], 3e5]
+        contact.plane = ["stress"]
+        solve.between = [[0.5]]
+        """
+    )
+    first, second = (plan.case(point) for point in plan.points)
+    assert first.history.values()[:, LOADS.index("Q")].tolist() == [0.0, 1e5, -1e5]
+    assert second.history.values()[:, LOADS.index("Q")].tolist() == [0.0, 3e5]
+    assert first.problem.pair.plane == "stress"
+    assert first.options.between == (0.5,)
+    assert first.problem.friction == builtin_case().problem.friction
+
+
+def test_the_base_case_lies_beside_the_plan_and_its_loads_beside_it(tmp_path: Path) -> None:
+    below = tmp_path / "below"
+    below.mkdir()
+    for name, force in (("a", 1.0), ("b", 2.0)):
+        (below / f"{name}.csv").write_text(f"P\n{force}\n")
+    (below / "case.toml").write_text(DIMENSIONLESS)
+    path = tmp_path / "plan.toml"
+    path.write_text('case = "below/case.toml"\n[grid]\nhistory.csv = ["a.csv", "b.csv"]\n')
+    plan = read_plan(path)
+    assert [plan.case(point).history.values()[0, 0] for point in plan.points] == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("change", [lambda path: path.write_text("P\n2\n"), Path.unlink], ids=["changed", "gone"])
+def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[[Path], None], tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.csv").write_text("P\n1\n")
+    plan = parse_plan('[grid]\nhistory.csv = ["a.csv", "b.csv"]\ncontact.friction = [0.2]\n', folder=tmp_path)
+    change(tmp_path / "a.csv")
+    with pytest.raises(InputError, match="its loads have changed since the plan was read"):
+        plan.case(plan.points[0])
+
+
+@pytest.mark.parametrize(
+    ("fields", "pin", "plate"),
+    [
+        ('pin.material = "steel"', (210e9, 0.3), (69e9, 0.33)),
+        ("pin.E = 1e11", (1e11, 0.32), (69e9, 0.33)),  # the other constant stays that of the named material
+        ("pin.nu = 0.25", (116e9, 0.25), (69e9, 0.33)),
+        ('plate.material = "steel"', (116e9, 0.32), (210e9, 0.3)),
+        ("plate.E = 2e11", (116e9, 0.32), (2e11, 0.33)),
+        ("pin.rigid = true", (np.inf, 0.3), (69e9, 0.33)),
+        ("pin.rigid = false", (116e9, 0.32), (69e9, 0.33)),
+    ],
+)
+def test_one_way_to_give_a_material_replaces_the_others(
+    fields: str, pin: tuple[float, float], plate: tuple[float, float]
+) -> None:
+    plan = parse_plan(f"[[list]]\n{fields}\n")
+    pair = plan.case(plan.points[0]).problem.pair
+    assert (pair.pin.E, pair.pin.nu) == pin
+    assert (pair.plate.E, pair.plate.nu) == plate
+
+
+def test_dundurs_parameters_replace_two_materials_and_the_other_way_round(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(DIMENSIONLESS)
+    plan = parse_plan('case = "case.toml"\n[[list]]\ndundurs = {alpha = 0.2, beta = 0.1, nu_pin = 0.3}\n', "", tmp_path)
+    assert plan.case(plan.points[0]).problem.pair.dundurs() == pytest.approx((0.2, 0.1))
+    dundurs = DIMENSIONLESS.replace(
+        '[pin]\nmaterial = "steel"\n[plate]\nmaterial = "aluminium"', "[dundurs]\nalpha = 9"
+    )
+    (tmp_path / "case.toml").write_text(dundurs)
+    text = 'case = "case.toml"\n[[list]]\npin.material = "steel"\nplate.material = "nickel alloy"\n'
+    plan = parse_plan(text, "", tmp_path)
+    assert plan.case(plan.points[0]).problem.pair.plate.name == "nickel alloy"
+
+
+def test_load_blocks_and_a_file_replace_each_other(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("P\n5\n")
+    plan = parse_plan('[[list]]\nhistory.csv = "a.csv"\n', folder=tmp_path)
+    assert plan.case(plan.points[0]).history.values()[:, 0].tolist() == [5.0]
+
+
+# -- ids -----------------------------------------------------------------------------------------------------
+
+
+def test_the_id_depends_on_the_input_and_on_nothing_else() -> None:
+    other = '[contact]\nfriction = 0.40\npin_load = "body"\nclearance = 2e-5\nhole_radius = 0.01\n'
+    other += "[plate]\nnu = 0.33\nE = 6.9e10\n[pin]\nnu = 0.32\nE = 116e9 # titanium\n"
+    other += "[[load]]\nP = 2420000\nQ = -0.0\n[[load]]\nQ = 7.26e5\n[[load]]\nQ = -7.26e5\n[[load]]\nQ = 7.26e5\n"
+    first = parse_case(EXAMPLE.replace("P = 2.42e6", "P = 2.42e6\nQ = 0"))
+    assert run_id(canonical(first)) == run_id(canonical(parse_case(other)))
+    # never given is not the same as zero
+    assert run_id(canonical(first)) != run_id(canonical(builtin_case()))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("nodes = 401", "nodes = 402"),
+        ("E  = 69e9", "E  = 69.000000000001e9"),
+        ('"body" ', '"centre" '),
+        ("friction = 0.4", "friction = 0.4000000000000001"),
+        ("Q = [7.26e5, -7.26e5, 7.26e5]", "Q = [7.26e5, -7.26e5]"),
+        ("# between = 3", "between = 3"),
+    ],
+)
+def test_every_bit_of_the_input_counts(old: str, new: str) -> None:
+    assert old in EXAMPLE
+    assert run_id(canonical(parse_case(EXAMPLE.replace(old, new)))) != run_id(canonical(builtin_case()))
+
+
+def test_what_is_not_used_does_not_count() -> None:
+    path = parse_case(EXAMPLE.replace("# increments = 80", "increments = 90"))
+    assert run_id(canonical(path)) == run_id(canonical(builtin_case()))
+    increment = EXAMPLE.replace('method = "path"', 'method = "increment"')
+    ids = {run_id(canonical(parse_case(increment.replace("# increments = 80", f"increments = {n}")))) for n in (80, 90)}
+    assert len(ids) == 2
+
+
+def test_another_version_of_the_solver_is_another_run() -> None:
+    document = canonical(builtin_case())
+    assert run_id(document, "1.0") != run_id(document, "1.1")
+
+
+def test_ids_are_the_same_in_every_process() -> None:
+    code = (
+        "from fastpin.casefile import builtin_case; from fastpin.identity import *; "
+        "print(run_id(canonical(builtin_case()), '1'))"
+    )
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", code], env={"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}, capture_output=True
+        ).stdout.decode()
+        for seed in ("1", "2")
+    ]
+    assert found == [run_id(canonical(builtin_case()), "1") + "\n"] * 2
+
+
+def test_points_with_the_same_input_are_one_run() -> None:
+    plan = parse_plan(
+        '[grid]\n"pin.material" = ["steel"]\n[[list]]\nplate.nu = 0.33\n[[list]]\ncontact.friction = 0.4\n'
+    )
+    assert len(plan.points) == 2
+    assert len(plan.runs) == 1
+    assert next(iter(plan.runs.values())).values == plan.points[0].values
+
+
+def test_the_digest_is_that_of_fields_and_runs() -> None:
+    def digest(text: str) -> str:
+        return parse_plan(text).digest
+
+    assert digest("[grid]\ncontact.friction = [0.2, 0.3]") == digest(
+        'title = "x"\n[grid]\n"contact.friction" = [3e-1, 0.2] # reversed'
+    )
+    assert digest("[grid]\ncontact.friction = [0.2, 0.3]") != digest("[grid]\ncontact.friction = [0.2]")
+
+
+# -- faults --------------------------------------------------------------------------------------------------
+
+
+def test_all_faults_of_the_text_come_at_once_with_their_lines() -> None:
+    text = """titel = "x"
+[grid]
+"contact.frition" = [0.2]
+"load.5.Q" = [2]
+pin.nu = { from = 1, to = 3, count = 2.5, spac = 3 }
+contact.load_parameter = [1]
+contact.friction = 0.3
+x.y = [3]
+contact.plane = []
+load.Q = [1]
+title = ["a"]
+plate.nu = { from = -1, to = 1, count = 3, spacing = "log" }
+[[list]]
+contact.friction = 0.3
+"""
+    expected = [
+        (1, 'unknown key "titel", did you mean "title"?'),
+        (3, '"contact.frition": there is no key "frition" in [contact], did you mean "friction"?'),
+        (4, '"load.5.Q": the case has 2 [[load]] blocks, counted from 1'),
+        (5, 'pin.nu: unknown key "spac" in a range; there are from, to, count, spacing'),
+        (5, "count: must be a whole number from 2 to 100000, not 2.5"),
+        (6, "contact.load_parameter: the base case gives a hole radius and a clearance, and loads in N/m"),
+        (7, "contact.friction: is varied already, in line 14"),
+        (8, '"x.y": there is no section [x] in a case file'),
+        (9, "contact.plane: must be a list of values, or { from = 0.1, to = 1.0, count = 10 }, not an empty list"),
+        (10, '"load.Q": a load is written load.N.key'),
+        (11, '"title": there is no section [title] in a case file'),
+        (12, "plate.nu: from and to must both be positive, or both negative, where spacing is log"),
+    ]
+    found = faults(text)
+    assert len(found) == len(expected)
+    for line, (number, words) in zip(found, expected, strict=True):
+        assert line.startswith(f"plan, line {number}: {words}"), line
+
+
+def test_a_bad_value_names_field_value_and_run() -> None:
+    text = """[grid]
+contact.friction = [0.2, -1]
+load.2.Q = [
+    2, "a"]
+[[list]]
+pin.material = "stahl"
+[[list]]
+pin.E = 1e11
+"""
+    assert faults(text) == [
+        "plan, line 2: contact.friction: must not be negative, not -1 "
+        '(in 4 runs, first pin.material = "stahl", contact.friction = -1, load.2.Q = 2)',
+        'plan, line 3: load.2.Q: must be a number, not "a" '
+        '(in 4 runs, first pin.material = "stahl", contact.friction = 0.2, load.2.Q = "a")',
+        'plan, line 6: pin.material: must be "Ti-6Al-4V" or "aluminium" or "steel" or "nickel alloy", not "stahl", '
+        'did you mean "steel"? (in 4 runs, first pin.material = "stahl", contact.friction = 0.2, load.2.Q = 2)',
+    ]
+
+
+def test_what_a_field_breaks_elsewhere_is_told_with_the_case_s_line(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(EXAMPLE)
+    line = EXAMPLE.splitlines().index(next(row for row in EXAMPLE.splitlines() if row.startswith("clearance"))) + 1
+    text = 'case = "case.toml"\n[grid]\ncontact.hole_radius = [1e-2, 1e-5]\n'
+    (found,) = faults(text, tmp_path)
+    assert found.startswith(f"plan, line 1: case.toml, line {line}: clearance: must be smaller than the hole radius")
+    assert found.endswith("(in the run contact.hole_radius = 1e-05)")
+
+
+def test_sections_that_a_plan_makes_are_checked(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(DIMENSIONLESS)
+    found = faults('case = "case.toml"\n[grid]\ndundurs.alpha = [0.2]\n', tmp_path)
+    assert [line[:40] for line in found] == ["plan, line 3: dundurs.alpha: [dundurs]: "] * 2
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "nothing is varied"),
+        ('case = "missing.toml"\n[grid]\nsolve.nodes = [41]', "missing.toml: can't be read: No such file"),
+        ("[list]\npin.E = 1", "line 1: lists are [[list]] blocks"),
+        ("[[list]]", "line 1: [[list]]: gives no field"),
+        ("grid = 3", "line 1: grid: must be a section [grid], not 3"),
+        ('[[list]]\nload.1.P = 1\nhistory.csv = "a.csv"', "line 3: history.csv: can't be given together with load.1.P"),
+        ("[grid]\ncontact.friction = [nan]", "line 2: contact.friction: must be a finite number, not nan"),
+        ("[grid]\ncontact.friction = [0.2, .3]", "line 2: contact.friction: must be"),
+        ("[grid]\ncontact.friction = [1979-05-27]", "line 2: contact.friction: must be a number, not 1979-05-27"),
+    ],
+)
+def test_single_faults(text: str, words: str, tmp_path: Path) -> None:
+    (found,) = faults(text, tmp_path)
+    assert words in found
+
+
+def test_units_of_the_loads_stay_those_of_the_case(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(DIMENSIONLESS)
+    (found,) = faults('case = "case.toml"\n[grid]\ncontact.clearance = [1e-5]\n', tmp_path)
+    assert "vary contact.load_parameter, or take a base case with hole_radius" in found
+    plan = parse_plan('case = "case.toml"\n[grid]\ncontact.load_parameter = [0.2, 0.5]\n', "", tmp_path)
+    assert [plan.case(point).problem.clearance for point in plan.points] == [0.2, 0.5]
+
+
+def test_faults_of_the_base_case_are_told_with_its_lines(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(EXAMPLE.replace("friction = 0.4", "friction = much").replace("0.33", "3.3"))
+    text = 'case = "case.toml"\n[grid]\nsolve.nodes = [41, 51]\n'
+    (found,) = faults(text, tmp_path)
+    assert found.startswith("plan, line 1: case.toml, line ")
+    (tmp_path / "case.toml").write_text(EXAMPLE.replace("0.33", "3.3"))
+    (found,) = faults(text, tmp_path)
+    assert found.startswith("plan, line 1: case.toml, line ")
+    assert found.endswith("must lie between 0 and 0.5, not 3.3")  # of all runs, which need not be named
+
+
+def test_a_plan_with_too_many_runs_is_refused_before_they_are_made() -> None:
+    ranges = "\n".join(f"load.1.{name} = {{ from = 1.0, to = 2.0, count = 1000 }}" for name in ("P", "Q", "sxx", "syy"))
+    (found,) = faults(f"[grid]\n{ranges}")
+    assert "the plan has 1,000,000,000,000 runs; more than 100,000 are not possible in one" in found
+
+
+def test_a_flood_of_faults_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan_module, "MAX_FAULTS", 3)
+    found = faults(f"[grid]\ncontact.friction = {[-k for k in range(1, 11)]}")
+    assert len(found) == 4
+    assert any("and 7 more faults in the runs" in line for line in found)
+
+
+def test_a_plan_knows_its_cases_again() -> None:
+    plan = parse_plan("[grid]\ncontact.friction = [0.2, 0.3]\n")
+    assert isinstance(plan, Plan)
+    for point in plan.points:
+        assert run_id(canonical(plan.case(point))) == point.id

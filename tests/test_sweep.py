@@ -1,0 +1,398 @@
+"""Sweeps: what is run, kept, skipped, tried again, split and merged."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from distributed.scheduler import KilledWorker
+from plans import FRICTION, MOMENT, Inline
+from samples import sample_result
+
+import fastpin
+from fastpin import products, store, sweep, worker
+from fastpin.errors import FastpinError, InputError
+from fastpin.index import FILE, locked
+from fastpin.keyfigures import KEY_FIGURES, key_figures
+from fastpin.plan import Plan
+from fastpin.report import interval_from_bottom
+from fastpin.sweep import Summary
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return sweep.parse_plan(MOMENT)
+
+
+@pytest.fixture(scope="module")
+def calls() -> list[tuple[int, int]]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def swept(plan: Plan, calls: list[tuple[int, int]], tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Summary]:
+    """A sweep with two worker processes, and its summary."""
+    directory = tmp_path_factory.mktemp("swept") / "new"
+    return directory, sweep.run(plan, directory, workers=2, progress=lambda *now: calls.append(now))
+
+
+@pytest.fixture
+def copy(swept: tuple[Path, Summary], tmp_path: Path) -> Path:
+    """A copy of the directory of that sweep."""
+    shutil.copytree(swept[0], tmp_path / "copy")
+    return tmp_path / "copy"
+
+
+def files(directory: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in (directory / "results").iterdir()}
+
+
+def comparable(directory: Path) -> dict[str, dict[str, Any]]:
+    """What two sweeps of one plan have in common."""
+    unlike = ("seconds", "started", "host")
+    return {row["id"]: {k: v for k, v in row.items() if k not in unlike} for row in sweep.load(directory)}
+
+
+def test_what_is_done_has_the_bits_of_a_serial_solution(plan: Plan, swept: tuple[Path, Summary]) -> None:
+    directory, summary = swept
+    assert (summary.total, summary.done, summary.waiting, summary.ended) == (6, 4, 0, 6)
+    assert summary.seconds > 0.0
+    for run, point in plan.runs.items():
+        case = plan.case(point)
+        alone: fastpin.Result | None
+        try:
+            alone = fastpin.solve(case.problem, case.history, **case.options.keywords())
+        except fastpin.NoEquilibriumError as error:
+            alone = error.result
+        assert alone is not None
+        stored = store.load(directory / "results" / f"{run}.h5")
+        assert alone.complete == stored.complete
+        assert len(alone) == len(stored) > 0
+        for expected, state in zip(alone, stored, strict=True):
+            assert np.array_equal(expected.pressure, state.pressure)
+            assert np.array_equal(expected.shear, state.shear)
+
+
+def test_failures_have_their_reason(plan: Plan, swept: tuple[Path, Summary]) -> None:
+    directory, summary = swept
+    assert [point.values["contact.friction"] for point, _ in summary.failed] == [0.1, 0.1]
+    assert [point.values["load.2.M"] for point, _ in summary.failed] == [3000.0, 9000.0]
+    for point, reason in summary.failed:
+        assert reason.startswith("step 2, at ")
+        assert "nothing holds the pin any more" in reason
+        (row,) = (row for row in sweep.load(directory) if row["id"] == point.id)
+        assert (row["status"], row["reason"], row["states"]) == ("failed", reason, 1)
+        assert row["peak_pressure"] is None
+
+
+def test_progress_counts_from_nothing_to_all(swept: tuple[Path, Summary], calls: list[tuple[int, int]]) -> None:
+    assert calls == [(k, 6) for k in range(7)]
+
+
+def test_key_figures_are_those_of_the_result(plan: Plan, swept: tuple[Path, Summary]) -> None:
+    rows = {row["id"]: row for row in sweep.load(swept[0])}
+    run = plan.points[3].id
+    result = store.load(swept[0] / "results" / f"{run}.h5")
+    row, last = rows[run], result[-1]
+    assert {name: row[name] for name in KEY_FIGURES} == key_figures(result)
+    assert row["peak_pressure"] == last.peak_pressure
+    assert (row["contact_start"], row["contact_stop"]) == interval_from_bottom(*last.contact[0])
+    assert row["contact_width"] == pytest.approx(np.degrees(last.contact[0][1] - last.contact[0][0]))
+    assert row["stick_width"] == pytest.approx(sum(np.degrees(stop - start) for start, stop in last.stick))
+    assert row["max_pressure"] == max(state.peak_pressure for state in result)
+    assert row["max_shear"] == max(abs(state.peak_shear) for state in result)
+    assert row["residual"] == max(max(state.residuals.values()) for state in result)
+    assert (row["states"], row["nodes"], row["dissipation"]) == (len(result), 41, last.dissipation)
+    assert row["versions"]["fastpin"] == fastpin.__version__
+    assert row["started"].endswith("+00:00")
+    assert row["seconds"] > 0.0
+
+
+def test_key_figures_without_contact() -> None:
+    figures = key_figures(open_result())
+    assert figures["contact_start"] is None
+    assert figures["peak_pressure_angle"] is None
+    assert (figures["contact_width"], figures["peak_pressure"]) == (0.0, 0.0)
+
+
+def open_result() -> fastpin.Result:
+    result = sample_result()
+    nothing = np.zeros(result.grid.size)
+    state = replace(
+        result[0], pressure=nothing, shear=nothing, status=np.full(result.grid.size, fastpin.OPEN, dtype=np.int8)
+    )
+    return fastpin.Result([state], result.problem, result.history, result.grid, "path", {}, True, None)
+
+
+# -- going on --------------------------------------------------------------------------------------------------
+
+
+def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = files(copy)
+    monkeypatch.setattr(worker, "solve", None)  # not needed
+    summary = sweep.run(plan, copy, Inline())
+    assert (summary.done, len(summary.failed), summary.ended) == (4, 2, 0)
+    assert files(copy) == before
+
+
+def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
+    started = {row["id"]: row["started"] for row in sweep.load(copy)}
+    summary = sweep.run(plan, copy, Inline(), retry=True)
+    assert (summary.done, len(summary.failed), summary.ended) == (4, 2, 2)
+    again = {row["id"] for row in sweep.load(copy) if row["started"] != started[row["id"]]}
+    assert again == {point.id for point, _ in summary.failed}
+
+
+def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None:
+    before = files(copy)
+    run = plan.points[4].id
+    (copy / "results" / f"{run}.h5").unlink()
+    assert sweep.status(plan, copy).waiting == 1
+    assert sweep.run(plan, copy, Inline()).ended == 1
+    assert set(files(copy)) == set(before)
+    shutil.rmtree(copy / "results")
+    assert sweep.status(plan, copy).waiting == 4
+
+
+def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
+    grown = sweep.parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.5]"))
+    assert sweep.status(grown, copy) == Summary(3, 3, [])
+    summary = sweep.run(grown, copy, Inline())
+    assert (summary.done, summary.failed, summary.ended) == (6, [], 3)
+    assert len(sweep.load(copy)) == 9
+    assert (copy / "plan.toml").read_text() == grown.text
+
+
+def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fastpin.identity.run_id, "__defaults__", ("99",))
+    later = sweep.parse_plan(MOMENT)
+    assert not set(later.runs) & set(plan.runs)
+    assert sweep.status(later, copy) == Summary(0, 6, [])
+
+
+def test_half_written_results_are_cleared_away(plan: Plan, copy: Path) -> None:
+    rest = copy / "results" / ".abc.123.h5"
+    rest.touch()
+    sweep.run(plan, copy, Inline())
+    assert not rest.exists()
+
+
+def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -> None:
+    rows = sweep.rows(plan, copy)
+    assert [row["id"] for row in rows] == [point.id for point in plan.points]
+    assert rows[0]["status"] == "done"
+    unknown = sweep.rows(plan, tmp_path)
+    assert {row["status"] for row in unknown} == {"waiting"}
+    assert unknown[1]["load.2.M"] == plan.points[1].values["load.2.M"]
+
+
+# -- executors -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("executor", [Inline, lambda: ThreadPoolExecutor(2)], ids=["inline", "threads"])
+def test_any_executor_gives_the_same(
+    executor: Callable[[], Executor], plan: Plan, swept: tuple[Path, Summary], tmp_path: Path
+) -> None:
+    with executor() as working:
+        sweep.run(plan, tmp_path, working)
+    assert comparable(tmp_path) == comparable(swept[0])
+
+
+def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    solve, seen = worker.solve, []
+
+    def watched(*arguments: Any, **options: Any) -> Any:
+        seen.append(products._alone.get())
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(worker, "solve", watched)
+    sweep.run(plan, tmp_path, Inline())
+    assert seen == [True] * 6
+    assert not products._alone.get()
+
+
+def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    errors = iter([MemoryError(), ZeroDivisionError("by nothing")])
+    solve = worker.solve
+
+    def failing(*arguments: Any, **options: Any) -> Any:
+        for error in errors:
+            raise error
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(worker, "solve", failing)
+    summary = sweep.run(sweep.parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
+    assert [reason for _, reason in summary.failed] == ["not enough memory", "ZeroDivisionError: by nothing"]
+    assert summary.done == 1
+
+
+def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store, "save", full)
+    summary = sweep.run(plan, tmp_path, Inline())
+    assert summary.failed[0][1] == "OSError: [Errno 28] No space left on device"
+    assert {row["peak_pressure"] for row in sweep.load(tmp_path)} == {None}
+
+
+def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker, "__version__", "0.0")
+    summary = sweep.run(plan, tmp_path, Inline())
+    assert summary.failed[0][1] == f"the worker has fastpin 0.0, the sweep {fastpin.__version__}"
+
+
+def test_a_result_that_does_not_arrive_is_a_failure(
+    plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(store, "save", lambda *_, **__: None)  # as if to a disk of another machine
+    summary = sweep.run(plan, tmp_path, Inline())
+    assert summary.done == 0
+    assert "the result did not arrive" in summary.failed[0][1]
+
+
+class Breaks(Inline):
+    """An executor whose fourth task breaks it."""
+
+    def __init__(self, error: Exception, on_submit: bool) -> None:
+        self.error = error
+        self.on_submit = on_submit
+        self.left = 3
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> Future[Any]:
+        self.left -= 1
+        if self.left >= 0:
+            return super().submit(function, *arguments, **keywords)
+        if self.on_submit:
+            raise self.error
+        future: Future[Any] = Future()
+        future.set_exception(self.error)
+        return future
+
+
+@pytest.mark.parametrize("on_submit", [True, False])
+def test_an_executor_that_breaks_loses_nothing(plan: Plan, tmp_path: Path, on_submit: bool) -> None:
+    with pytest.raises(FastpinError, match="the executor has stopped working; runs that are finished are kept"):
+        sweep.run(plan, tmp_path, Breaks(BrokenProcessPool("gone"), on_submit))
+    assert sweep.status(plan, tmp_path).waiting in (3, 6)
+    assert sweep.run(plan, tmp_path, Inline()).total == 6
+
+
+def test_a_worker_that_a_cluster_gives_up_is_a_failure(plan: Plan, tmp_path: Path) -> None:
+    summary = sweep.run(plan, tmp_path, Breaks(KilledWorker("run", None, 3), on_submit=False))
+    assert sum(reason.startswith("the worker process died") for _, reason in summary.failed) == 3
+
+
+# -- arguments and directories ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"workers": 0}, "workers: must be a whole number of at least 1"),
+        ({"shard": (0, 2)}, "shard"),
+        ({"shard": (3, 2)}, "shard: must be i/n with i from 1 to n, not 3/2"),
+    ],
+)
+def test_arguments_out_of_range(plan: Plan, arguments: dict[str, Any], words: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        sweep.run(plan, tmp_path / "new", Inline(), **arguments)
+    assert not (tmp_path / "new").exists()
+
+
+def test_two_sweeps_in_one_directory_are_refused(plan: Plan, tmp_path: Path) -> None:
+    with locked(tmp_path), pytest.raises(InputError, match="another sweep is running in this directory"):
+        sweep.run(plan, tmp_path, Inline())
+
+
+def test_a_plan_of_the_user_s_is_not_overwritten(plan: Plan, tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text("mine")
+    with pytest.raises(InputError, match=r"holds another plan.toml, but no sweep"):
+        sweep.run(plan, tmp_path, Inline())
+    assert (tmp_path / "plan.toml").read_text() == "mine"
+    assert not (tmp_path / FILE).exists()
+
+
+def test_merging_does_not_overwrite_a_plan_either(copy: Path, tmp_path: Path) -> None:
+    (tmp_path / "plan.toml").write_text("mine")
+    with pytest.raises(InputError, match=r"holds another plan.toml, but no sweep"):
+        sweep.merge([copy], tmp_path)
+    assert (tmp_path / "plan.toml").read_text() == "mine"
+
+
+def test_a_directory_that_can_not_be_made(plan: Plan, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="can't be made"):
+        sweep.run(plan, tmp_path / "file" / "below", Inline())
+
+
+# -- parts -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def parts(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The plan run in three parts."""
+    directories = [tmp_path_factory.mktemp(f"part{part}") for part in (1, 2, 3)]
+    for part, directory in enumerate(directories, start=1):
+        assert sweep.run(plan, directory, Inline(), shard=(part, 3)).total == 2
+    return directories
+
+
+def test_parts_make_the_whole(plan: Plan, parts: list[Path], swept: tuple[Path, Summary], tmp_path: Path) -> None:
+    assert sweep.merge(parts[:2], tmp_path) == 4
+    assert sweep.merge(parts[1:], tmp_path) == 6
+    assert comparable(tmp_path) == comparable(swept[0])
+    assert set(files(tmp_path)) == set(files(swept[0]))
+    summary = sweep.run(plan, tmp_path, Inline())
+    assert (summary.done, summary.ended) == (4, 0)
+
+
+def test_the_order_of_the_points_does_not_matter_to_parts(plan: Plan) -> None:
+    turned = sweep.parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.1]"))
+    for part in (1, 2, 3):
+        assert set(sweep.shard_of(turned, (part, 3))) == set(sweep.shard_of(plan, (part, 3)))
+
+
+def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    shutil.copytree(copy, other)
+    with sweep.Index(other) as index:
+        index.record(worker.Outcome(plan.points[0].id, "lost"))
+        index._database.execute("UPDATE runs SET status = 'waiting' WHERE id = ?", [plan.points[1].id])
+    for name, order in (("a", (copy, other)), ("b", (other, copy))):
+        sweep.merge(order, tmp_path / name)
+        assert comparable(tmp_path / name) == comparable(copy)
+
+
+def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[Path, Summary], tmp_path: Path) -> None:
+    run = plan.points[0].id
+    with sweep.Index(copy) as index:
+        index._database.execute("UPDATE runs SET peak_pressure = 1.01 * peak_pressure WHERE id = ?", [run])
+    with pytest.raises(InputError, match=f"run {run} has peak_pressure = "):
+        sweep.merge([swept[0], copy], tmp_path / "whole")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("plan", "belongs to another plan"), ("version", "was made by another version of fastpin")]
+)
+def test_other_plans_and_versions_are_not_merged(
+    name: str, words: str, copy: Path, swept: tuple[Path, Summary], tmp_path: Path
+) -> None:
+    with sweep.Index(copy) as index:
+        index._note(**{name: "another"})
+    with pytest.raises(InputError, match=words):
+        sweep.merge([swept[0], copy], tmp_path / "whole")
+
+
+def test_merging_needs_sweeps(copy: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no sweep"):
+        sweep.merge([tmp_path], tmp_path / "whole")
+    with pytest.raises(InputError, match="can't be merged into itself"):
+        sweep.merge([copy], copy)

@@ -1,0 +1,210 @@
+"""Sweeps whose processes die, are interrupted, or work on a cluster: the results are those of one process."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numba
+import psutil
+import pytest
+from plans import FRICTION, assert_same_as_serial
+from threadpoolctl import threadpool_info
+
+from fastpin import sweep
+from fastpin.casefile import Case
+from fastpin.cli import main
+from fastpin.plan import Plan, Point
+from fastpin.pool import Pool
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def threads() -> list[int]:
+    """Threads of all BLAS and OpenMP libraries of this process, and of Numba."""
+    return [library["num_threads"] for library in threadpool_info()] + [numba.config.NUMBA_NUM_THREADS]
+
+
+class Poison:
+    """A case that ends the process which unpacks it."""
+
+    def __reduce__(self) -> Any:
+        return os._exit, (9,)
+
+
+def killer(victims: Callable[[], list[int]]) -> Callable[[int, int], None]:
+    """A progress function that kills the first of some processes when the second run has ended."""
+
+    def progress(ended: int, total: int) -> None:
+        if ended == 2:
+            os.kill(victims()[0], signal.SIGKILL)
+
+    return progress
+
+
+@pytest.fixture
+def many_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS"):
+        monkeypatch.setenv(name, "2")
+
+
+def test_a_worker_has_one_thread(many_threads: None) -> None:
+    pool = Pool(1)
+    try:
+        found = pool.executor.submit(threads).result()
+    finally:
+        pool.stop(busy=False)
+    assert len(found) > 1
+    assert set(found) == {1}
+
+
+def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
+    code = (
+        "from threadpoolctl import threadpool_info\nfrom fastpin.worker import one_thread\n"
+        "one_thread()\nprint({library['num_threads'] for library in threadpool_info()})"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout == "{1}\n"
+
+
+def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
+    plan = sweep.parse_plan(FRICTION.replace("COUNT", "8"))
+
+    victims = killer(lambda: [child.pid for child in workers(os.getpid())])
+    summary = sweep.run(plan, tmp_path, workers=2, progress=victims)
+    assert (summary.done, summary.failed, summary.waiting) == (8, [], 0)
+    assert_same_as_serial(plan, tmp_path)
+
+
+def test_the_run_that_kills_its_worker_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = sweep.parse_plan(FRICTION.replace("COUNT", "5"))
+    guilty = plan.points[2]
+    case = Plan.case
+
+    def poisoned(self: Plan, point: Point) -> Case | Poison:
+        return Poison() if point == guilty else case(self, point)
+
+    monkeypatch.setattr(Plan, "case", poisoned)
+    summary = sweep.run(plan, tmp_path, workers=2)
+    assert (summary.done, summary.waiting) == (4, 0)
+    ((point, reason),) = summary.failed
+    assert point == guilty
+    assert reason.startswith("the worker process died")
+    monkeypatch.setattr(Plan, "case", case)
+    assert sweep.run(plan, tmp_path, workers=1).ended == 0
+    again = sweep.run(plan, tmp_path, workers=1, retry=True)
+    assert (again.done, again.failed, again.ended) == (5, [], 1)
+    assert_same_as_serial(plan, tmp_path)
+
+
+def started(path: Path, directory: Path) -> subprocess.Popen[str]:
+    """The command line's main process, leader of a process group as in a terminal."""
+    command = [sys.executable, "-m", "fastpin", "sweep", str(path), "-o", str(directory), "--workers", "2"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, text=True, stdout=pipe, stderr=pipe, env=environment, start_new_session=True)
+
+
+def workers(main: int) -> list[psutil.Process]:
+    """The worker processes of a main process."""
+    found = []
+    for child in psutil.Process(main).children(recursive=True):
+        with suppress(psutil.Error):  # it has just ended
+            if "spawn_main" in " ".join(child.cmdline()):
+                found.append(child)
+    return found
+
+
+def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(FRICTION.replace("COUNT", "41"))
+    with started(path, tmp_path / "out") as process:
+        while len(workers(process.pid)) < 2:
+            time.sleep(0.01)
+        time.sleep(0.2)  # they import what they need
+        os.killpg(process.pid, signal.SIGINT)
+        err = process.communicate(timeout=30)[1]
+    assert process.returncode == 130
+    assert re.fullmatch(r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command goes on\n", err)
+
+
+def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
+    path, directory = tmp_path / "plan.toml", tmp_path / "out"
+    path.write_text(FRICTION.replace("COUNT", "41"))
+    plan = sweep.read_plan(path)
+
+    def wait_for(done: int) -> None:
+        until = time.monotonic() + 60.0
+        while sweep.status(plan, directory).done < done:
+            assert time.monotonic() < until
+            time.sleep(0.005)
+
+    with started(path, directory) as process:
+        wait_for(3)
+        os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: the workers are meant, too
+        out, err = process.communicate(timeout=30)
+    kept = sweep.status(plan, directory)
+    assert process.returncode == 130
+    assert 3 <= kept.done < 41
+    assert out == ""
+    assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command goes on\n"
+
+    with started(path, directory) as process:
+        wait_for(kept.done + 3)
+        left = workers(process.pid)
+        process.kill()
+        process.communicate(timeout=30)
+    assert len(left) == 2
+    assert psutil.wait_procs(left, timeout=10)[1] == []
+    before = sweep.status(plan, directory).done
+    assert kept.done + 3 <= before < 41
+
+    with started(path, directory) as process:
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in out
+    assert {file.name for file in (directory / "results").iterdir()} == {f"{run}.h5" for run in plan.runs}
+    assert_same_as_serial(plan, directory)
+
+
+def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
+    from distributed import Client, LocalCluster
+
+    plan = sweep.parse_plan(FRICTION.replace("COUNT", "12"))
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
+        Client(cluster) as client,
+    ):
+        pids = list(client.run(os.getpid).values())
+        summary = sweep.run(plan, tmp_path, client.get_executor(), progress=killer(lambda: pids))
+        assert len(set(pids)) == 2
+        assert pids[0] not in client.run(os.getpid).values()
+
+        (tmp_path / "plan.toml").write_text(plan.text)
+        arguments = ["-o", str(tmp_path / "again"), "--dask", cluster.scheduler_address]
+        assert main(["sweep", str(tmp_path / "plan.toml"), *arguments]) == 0
+    assert (summary.done, summary.failed, summary.ended) == (12, [], 12)
+    for directory in (tmp_path, tmp_path / "again"):
+        assert_same_as_serial(plan, directory)
+
+
+def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import fastpin.sweep\n"
+        f"plan = fastpin.sweep.parse_plan({FRICTION.replace('COUNT', '3')!r})\n"
+        f"fastpin.sweep.run(plan, {str(tmp_path / 'out')!r}, workers=1)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 1
+    assert "must do so under if __name__" in done.stderr.splitlines()[-1]
+    assert {row["status"] for row in sweep.load(tmp_path / "out")} == {"waiting"}
