@@ -18,11 +18,11 @@ _REPLACED: dict[str, tuple[str, ...]] = {
 }
 """What each key of [pin] and [plate] replaces in its section of the base case."""
 
-_REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")} | {
-    "load": ("history",),
-    "history": ("load",),
-}
+_REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}
 """What sections each section replaces in the base case."""
+
+
+_FILE = "history.csv"
 
 
 def varied(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
@@ -32,17 +32,19 @@ def varied(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
         _make_room(new, name, value)
     for name, value in values.items():
         section, *rest = name.split(".")
-        table = new["load"][int(rest[0]) - 1] if section == "load" else new.setdefault(section, {})
-        if isinstance(table, dict):
-            table[rest[-1]] = value
+        table = new["load"][int(rest.pop(0)) - 1] if section == "load" else new.setdefault(section, {})
+        if isinstance(table, dict) and len(rest) == 2:  # the amplitude of one load of a block
+            inner = table.get(rest[0])
+            table[rest[0]] = {**inner, rest[1]: value} if isinstance(inner, dict) else {rest[1]: value}
+        elif isinstance(table, dict):
+            table[rest[0]] = value
     return new
 
 
 def conflict(values: dict[str, Any]) -> tuple[str, str] | None:
     """Two fields of which one replaces what the other changes; the case reader finds all others."""
     load = next((name for name in values if name.startswith("load.")), None)
-    history = next((name for name in values if name.startswith("history.")), None)
-    return (load, history) if load and history else None
+    return (load, _FILE) if load and _FILE in values else None
 
 
 def other_units(tables: dict[str, Any], name: str) -> str | None:
@@ -75,6 +77,10 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
     section, key = name.split(".")[0], name.split(".")[-1]
     for other in _REPLACED_SECTIONS.get(section, ()):
         tables.pop(other, None)
+    if name == _FILE:
+        tables.pop("load", None)
+    elif section == "load" and isinstance(tables.get("history"), dict):
+        tables["history"].pop("csv", None)
     body = tables.get(section)
     if section not in ("pin", "plate") or not isinstance(body, dict) or (key == "rigid" and value is not True):
         return

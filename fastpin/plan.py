@@ -25,7 +25,7 @@ from fastpin.caseloads import read_history
 from fastpin.errors import CaseFileError, InputError
 from fastpin.fields import conflict, other_units, varied
 from fastpin.identity import canonical, canonical_json, run_id
-from fastpin.loading import LoadHistory
+from fastpin.loading import LOADS, LoadHistory
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
@@ -154,6 +154,10 @@ def described(values: dict[str, Any]) -> str:
     return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
 
 
+_TABLES = (("mean",), ("amplitude",), ("phase",))
+"""Keys of a [[load]] block that are tables of loads."""
+
+
 class _Base:
     """The base case, ready to be varied."""
 
@@ -273,7 +277,7 @@ def _fields(
         value = Section(source, place, table).value(key)
         if value is None:  # reported already
             continue
-        if isinstance(value, dict) and len(names) < (3 if names[0] == "load" else 2):
+        if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in _TABLES):
             yield from _fields(source, base, value, here, names)
             continue
         fault = _field_fault(names, base)
@@ -290,14 +294,18 @@ def _field_fault(names: tuple[str, ...], base: _Base | None) -> str | None:
         hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
         return f'"{name}": there is no section [{section}] in a case file{hint}'
     if section == "load":
-        if len(names) != 3 or not names[1].isdecimal():
+        if not 3 <= len(names) <= 4 or not names[1].isdecimal():
             return f'"{name}": a load is written load.N.key, such as load.2.Q in the second [[load]] block'
         blocks = base.load_blocks if base else math.inf
         if str(int(names[1])) != names[1] or not 1 <= int(names[1]) <= blocks:
             return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
     elif len(names) != 2:
         return f'"{name}": a field is written section.key, such as contact.friction'
-    if names[-1] not in KEYS[section]:
+    if names[2:3] in _TABLES and (len(names) == 3 or names[3] not in LOADS):
+        return f'"{name}": write one load of {names[2]}, such as load.{names[1]}.{names[2]}.Q'
+    if len(names) == 4 and names[2:3] not in _TABLES:
+        return f'"{name}": only mean, amplitude and phase of a block have loads of their own'
+    if names[2:3] not in _TABLES and names[-1] not in KEYS[section]:
         hint = closest(names[-1], KEYS[section]) or f"; the keys are {', '.join(KEYS[section])}"
         return f'"{name}": there is no key "{names[-1]}" in [{section}]{hint}'
     return other_units(base.text.root.table, name) if base else None

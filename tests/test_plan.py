@@ -172,10 +172,33 @@ def test_the_id_depends_on_the_input_and_on_nothing_else() -> None:
     other = '[contact]\nfriction = 0.40\npin_load = "body"\nclearance = 2e-5\nhole_radius = 0.01\n'
     other += "[plate]\nnu = 0.33\nE = 6.9e10\n[pin]\nnu = 0.32\nE = 116e9 # titanium\n"
     other += "[[load]]\nP = 2420000\nQ = -0.0\n[[load]]\nQ = 7.26e5\n[[load]]\nQ = -7.26e5\n[[load]]\nQ = 7.26e5\n"
-    first = parse_case(EXAMPLE.replace("P = 2.42e6", "P = 2.42e6\nQ = 0"))
+    first = parse_case(EXAMPLE.replace("\nP = 2.42e6", "\nP = 2.42e6\nQ = 0"))
     assert run_id(canonical(first)) == run_id(canonical(parse_case(other)))
     # never given is not the same as zero
     assert run_id(canonical(first)) != run_id(canonical(builtin_case()))
+
+
+def test_parts_of_blocks_are_varied(tmp_path: Path) -> None:
+    harmonic = "[[load]]\nmean = { P = 1e6 }\namplitude = { Q = 1e5, sxx = 1e6 }\nrepeat = 3\n[history]\nrepeat = 2\n"
+    (tmp_path / "case.toml").write_text(EXAMPLE + harmonic)
+    text = 'case = "case.toml"\n[grid]\nload.3.amplitude.Q = [1e5, 2e5]\nload.3.phase = { sxx = [0, 90] }\n'
+    plan = parse_plan(text + "history.repeat = [2, 5]\nload.3.repeat = [4]\n", folder=tmp_path)
+    assert len(plan.points) == len(plan.runs) == 8
+    for point in plan.points:
+        history = plan.case(point).history
+        points = 2 if point.values["load.3.phase.sxx"] == 0 else 24
+        assert len(history) == point.values["history.repeat"] * (4 + 1 + 4 * points)
+        assert history.values()[4, 1] == point.values["load.3.amplitude.Q"]
+        assert history.values()[4, 3] == pytest.approx(1e6 if points == 2 else 0.0)
+
+
+def test_blocks_that_are_cycles_are_other_input() -> None:
+    once = EXAMPLE.replace("# repeat = 1000  ", "repeat = 2  ")
+    spelt = EXAMPLE.replace("Q = [7.26e5, -7.26e5, 7.26e5]", "Q = [7.26e5, -7.26e5, 7.26e5, 7.26e5, -7.26e5, 7.26e5]")
+    ids = [run_id(canonical(parse_case(text))) for text in (EXAMPLE, once, spelt)]
+    assert len(set(ids)) == 3
+    assert run_id(canonical(parse_case(once + "shortcut = false\n"))) == ids[1]
+    assert run_id(canonical(parse_case(once + 'keep = "cycles"\n'))) != ids[1]
 
 
 @pytest.mark.parametrize(
@@ -322,6 +345,9 @@ def test_sections_that_a_plan_makes_are_checked(tmp_path: Path) -> None:
         ("[list]\npin.E = 1", "line 1: lists are [[list]] blocks"),
         ("[[list]]", "line 1: [[list]]: gives no field"),
         ("grid = 3", "line 1: grid: must be a section [grid], not 3"),
+        ("[grid]\nload.1.amplitude = [1]", 'line 2: "load.1.amplitude": write one load of amplitude'),
+        ("[grid]\nload.1.amplitude.X = [1]", "write one load of amplitude, such as load.1.amplitude.Q"),
+        ('[grid]\n"load.1.Q.X" = [1]', "only mean, amplitude and phase"),
         ('[[list]]\nload.1.P = 1\nhistory.csv = "a.csv"', "line 3: history.csv: can't be given together with load.1.P"),
         ("[grid]\ncontact.friction = [nan]", "line 2: contact.friction: must be a finite number, not nan"),
         ("[grid]\ncontact.friction = [0.2, .3]", "line 2: contact.friction: must be"),
