@@ -31,7 +31,11 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     else:
         source.report("no loads: [[load]] blocks or a section [history] are missing", "load")
         return None
-    return _repeated(section, history)
+    whole = _repeated(section, history)
+    if whole is not None and len(whole) > MAX_CORNERS:
+        source.report(f"the history has {len(whole):,} corners, more than {MAX_CORNERS:,}", "load")
+        return None
+    return whole
 
 
 def check_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
@@ -94,9 +98,11 @@ def _repeated(section: Section, history: LoadHistory | None) -> LoadHistory | No
     count = section.checked("repeat", whole, 1)
     if count is None or history is None:
         return history
-    rows = sum(block.corners for block in history.blocks)
-    if len(history) * count > MAX_CORNERS or rows > MAX_ROWS:
+    if len(history) * count > MAX_CORNERS:
         section.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
+        return None
+    if len(history) > MAX_ROWS:
+        section.report(f"repeat: what is repeated has more than {MAX_ROWS:,} corners", "repeat")
         return None
     return history.repeated(count)
 

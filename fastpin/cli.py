@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``paper``, ``sweep``, ``merge``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper``, ``sweep``, ``merge``.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -11,6 +11,7 @@ import logging
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,9 +31,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         2 for input that can't be used; 130 when interrupted.
     """
     try:
-        options = _parser().parse_args(arguments)
+        options = _parser().parse_args(_joined(sys.argv[1:] if arguments is None else list(arguments)))
         _log(getattr(options, "verbose", 0))
-        signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # batch systems ask in this way
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems ask in this way
         code = int(options.command(options))
         sys.stdout.flush()
         return code
@@ -52,6 +54,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_PIPE
     except OSError as error:
         return fail(str(error), EXIT_FAILED)
+
+
+def _joined(arguments: list[str]) -> list[str]:
+    """The arguments with ``--keep every N`` in one word, as ``--keep "every N"``."""
+    for k in range(len(arguments) - 2):
+        if arguments[k : k + 2] == ["--keep", "every"]:
+            return [*arguments[: k + 1], f"every {arguments[k + 2]}", *arguments[k + 3 :]]
+    return arguments
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -75,8 +85,10 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
     _add_outputs(run)
     run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write all states to an HDF5 file as they come")
-    run.add_argument("--overwrite", action="store_true", help="with -o: also a file that holds an unfinished run")
-    run.add_argument("--keep", metavar="WHICH", help='all, corners, cycles or "every N": states to keep (default all)')
+    run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
+    run.add_argument(
+        "--keep", metavar="WHICH", help="states to keep: all, corners, cycles or every N corners (default all)"
+    )
     run.add_argument("--nodes", type=int, help="number of nodes")
     run.add_argument("--method", help="path or increment")
     run.add_argument("--increments", type=int, help="increments a corner (method increment)")
@@ -99,6 +111,11 @@ def _parser() -> argparse.ArgumentParser:
     resume.add_argument("output", metavar="FILE", type=Path, help="its HDF5 file (run -o FILE)")
     _add_outputs(resume)
     resume.set_defaults(command=_resume)
+
+    show = commands.add_parser("show", help="print and draw a result that is in a file", allow_abbrev=False)
+    show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE), also of a run that goes on")
+    _add_outputs(show)
+    show.set_defaults(command=_show)
 
     figures = commands.add_parser("paper", help="compute and draw the figures of the paper", allow_abbrev=False)
     figures.add_argument(
@@ -173,6 +190,12 @@ def _resume(options: argparse.Namespace) -> int:
     from fastpin import cli_run
 
     return cli_run.resume(options)
+
+
+def _show(options: argparse.Namespace) -> int:
+    from fastpin import cli_run
+
+    return cli_run.show(options)
 
 
 def _paper(options: argparse.Namespace) -> int:

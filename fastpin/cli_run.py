@@ -31,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     case = builtin_case() if options.case is None else read_case(options.case)
     case = _overridden(case, options)
     _check_outputs(options)
+    _check_combination(case, options)
     start = _start(options)
     keywords = {**case.options.keywords(), **({} if start is None else {"start": start})}
     with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
@@ -38,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
         if options.output is not None:
             from fastpin.record import record
 
-            saved = _whole_numbers(options.save_after) if options.save_after is not None else ()
+            saved = _whole_numbers(len(case.history), options.save_after)
             ended = _ended(
                 lambda: record(
                     case.problem, case.history, options.output, progress=progress, save_after=saved,
@@ -61,9 +62,20 @@ def resume(options: argparse.Namespace) -> int:
 
     case = stored_case(options.output)
     _check_outputs(options)
+    _check_cycles(case, options)
     with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
         ended = _ended(lambda: go_on(options.output, _progress(shown)))
     return _hand_out_stored(case, options, ended)
+
+
+def show(options: argparse.Namespace) -> int:
+    """Print and draw a result that is in a file."""
+    from fastpin.record import stored_case
+
+    case = stored_case(options.output)
+    _check_outputs(options)
+    _check_cycles(case, options)
+    return _hand_out_stored(case, options, None)
 
 
 def _ended(work: Callable[[], object]) -> SolveError | Interrupted | None:
@@ -113,11 +125,32 @@ def _between(text: str) -> int | tuple[float, ...]:
         raise InputError("--between", error.reason) from None
 
 
-def _whole_numbers(text: str) -> list[int]:
+def _check_combination(case: Case, options: argparse.Namespace) -> None:
+    """Refuse options that would have no effect, and what can't be drawn."""
+    for name in ("save_after", "overwrite"):
+        if getattr(options, name) and options.output is None:
+            raise InputError(f"--{name.replace('_', '-')}", "needs --output FILE")
+    if options.start is not None and options.nodes is not None:
+        raise InputError("--nodes", "is that of the result to go on from (--start)")
+    if case.options.keep == "cycles" and not case.history.longest_cycle:
+        raise InputError("--keep", "the history has no cycles: none of its blocks is repeated")
+    _check_cycles(case, options)
+
+
+def _check_cycles(case: Case, options: argparse.Namespace) -> None:
+    if options.cycles is not None and not case.history.longest_cycle:
+        raise InputError("--cycles", "the history has no cycles: none of its blocks is repeated")
+
+
+def _whole_numbers(corners: int, text: str | None) -> list[int]:
+    """The corners after which a restart is kept."""
     try:
-        return [int(part) for part in text.split(",")]
+        numbers = [] if text is None else [int(part) for part in text.split(",")]
     except ValueError:
-        raise InputError("--save-after", f"must be corners such as 4,10, not {text!r}") from None
+        numbers = [0]
+    if not all(1 <= number <= corners for number in numbers):
+        raise InputError("--save-after", f"must be corners from 1 to {corners}, such as 1,{corners}, not {text!r}")
+    return numbers
 
 
 def _start(options: argparse.Namespace) -> Result | None:
@@ -135,7 +168,10 @@ def _start(options: argparse.Namespace) -> Result | None:
     except InputError as error:
         raise InputError("--after" if error.field == "after" else error.field, error.reason) from None
     if start.restart is None:
-        raise InputError(str(options.start), "holds an unfinished run: resume it, or say after which corner (--after)")
+        why = "its run has not finished: resume it, or say after which corner (--after)"
+        if start.complete:
+            why = "it holds nothing to go on from, as the results of sweeps do"
+        raise InputError("--start", f"{options.start}: {why}")
     return start
 
 
@@ -165,7 +201,7 @@ def _hand_out_stored(case: Case, options: argparse.Namespace, ended: SolveError 
     from fastpin.plot import MAX_LINES, spread
     from fastpin.store import load, size
 
-    if not options.output.is_file():
+    if ended is not None and ended.result is None:  # the file, if there is one, is not of this run
         return _hand_out(case, options, None, ended)
     count = size(options.output)
     if options.json is not None:
@@ -195,9 +231,17 @@ def _hand_out(
         code = fail(error, EXIT_FAILED)
     elif ended is not None:
         error = "interrupted"
-        solved = "nothing was solved" if result is None else "what was solved is above"
-        more = f"; go on with: fastpin resume {options.output}" if options.output is not None and result else ""
-        code = fail(f"interrupted; {solved}{more}", EXIT_INTERRUPTED)
+        where = (
+            "before the first corner"
+            if result is None
+            else f"after {_reached(result)} of {len(case.history):,} corners"
+        )
+        more = (
+            f"; go on with: fastpin resume {options.output}"
+            if options.output is not None and result is not None
+            else ""
+        )
+        code = fail(f"interrupted {where}{more}", EXIT_INTERRUPTED)
 
     writers: list[tuple[Any, Callable[[Path], None]]] = []
     if options.json is not None:
@@ -213,7 +257,7 @@ def _hand_out(
         with_cycles = result
         writers.append((options.cycles, lambda path: _plot_cycles(with_cycles, path, case.title)))
     elif options.cycles is not None:
-        code = fail(f"can't write {options.cycles}: the history has no cycles", EXIT_FAILED)
+        code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
     for path, write in writers:
         if path is None:
             continue
@@ -224,13 +268,18 @@ def _hand_out(
     return code
 
 
+def _reached(result: Result) -> int:
+    """Corners that were solved, kept or not."""
+    return 0 if result.restart is None else result.restart.corner
+
+
 def _print_states(case: Case, result: Result | None, hidden: int) -> None:
     from fastpin.report import cycle_lines, state_table
 
     if case.title:
         print(case.title)
     if result is None or not len(result):
-        print("no state was reached")
+        print("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
         return
     print(state_table(case.problem, list(result), hidden))
     strain = case.problem.pair.beta_star * max(state.peak_pressure for state in result)

@@ -84,7 +84,7 @@ def _sweep(options: argparse.Namespace) -> int:
             kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command goes on"
             return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
     rows = _written(options, plan, directory)
-    _print_summary(plan, directory, summary, options.status)
+    _print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
         print(text(plan, rows))
     return EXIT_FAILED if summary.failed and not options.status else EXIT_OK
@@ -138,6 +138,8 @@ def _check_combination(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
     if options.workers is not None and options.dask is not None:
         raise InputError("--workers", "is for processes of this machine; the scheduler has its own workers")
+    if options.status and options.retry:
+        raise InputError("--retry", "runs what failed again, --status runs nothing")
     for name in ("value", "x", "y"):
         if getattr(options, name) is not None and options.plot is None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
@@ -160,7 +162,7 @@ def _check_outputs(options: argparse.Namespace, plan: Plan) -> None:
             raise InputError(f"--{error.field}", error.reason) from None
 
 
-def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: bool) -> None:
+def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: bool, retried: bool) -> None:
     from fastpin.plan import described
 
     if plan.title:
@@ -175,7 +177,7 @@ def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: b
         print(f"failed: {point.id}  {described(point.values)}: {reason}")
     if len(summary.failed) > MOST_REASONS:
         print(f"... {len(summary.failed) - MOST_REASONS} more failed")
-    if summary.failed:
+    if summary.failed and not retried:
         print("--retry runs what failed again")
 
 

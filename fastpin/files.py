@@ -42,6 +42,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
         with open(temporary, "rb") as written:
             os.fsync(written.fileno())
         os.replace(temporary, target)
+    except OSError as error:
+        raise InputError(str(path), f"can't be written: {error.strerror or error}") from None
     finally:
         temporary.unlink(missing_ok=True)
 

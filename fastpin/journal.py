@@ -26,12 +26,13 @@ try:
 except ImportError:  # no such locks on this system: nobody else may write to the file
     fcntl = None  # type: ignore[assignment]
 
-_RECORD = struct.Struct("<QII")  # place in the file, length, checksum of what follows
+_RECORD = struct.Struct("<QIII")  # place in the file, length, checksums of what follows and of what came in its place
 
 
 def journal_of(path: Path) -> Path:
-    """Where the journal of a file is."""
-    return path.with_name(path.name + ".journal")
+    """Where the journal of a file is: beside the file itself, whatever links lead there."""
+    real = Path(os.path.realpath(path))
+    return real.with_name(real.name + ".journal")
 
 
 class JournaledFile:
@@ -62,7 +63,11 @@ class JournaledFile:
         if not _locked(self._file):
             os.close(self._file)
             raise InputError(str(path), "another run is writing to it")
-        self._journal = os.open(journal_of(path), os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            self._journal = os.open(journal_of(path), os.O_RDWR | os.O_CREAT, 0o666)
+        except OSError as error:
+            os.close(self._file)
+            raise InputError(str(journal_of(path)), f"can't be written: {error.strerror}") from None
         _wait_for(self._journal, alone=True)
         if new:
             os.ftruncate(self._journal, 0)
@@ -79,7 +84,7 @@ class JournaledFile:
             return
         _wait_for(self._journal, alone=True)
         self._written = 0
-        self._note(self._size, b"")
+        self._note(self._size, b"", b"")
         self._open_transaction = True
 
     def commit(self) -> None:
@@ -113,8 +118,8 @@ class JournaledFile:
         os.close(self._journal)
         os.close(self._file)
 
-    def _note(self, place: int, old: bytes) -> None:
-        record = _RECORD.pack(place, len(old), zlib.crc32(old, place & 0xFFFFFFFF)) + old
+    def _note(self, place: int, old: bytes, new: bytes) -> None:
+        record = _RECORD.pack(place, len(old), _checksum(old, place), zlib.crc32(new)) + old
         _write_all(self._journal, record, self._written)
         self._written += len(record)
 
@@ -146,7 +151,7 @@ class JournaledFile:
                 self.begin()
                 old = min(size, self._size - self._place)
                 if old > 0:
-                    self._note(self._place, os.pread(self._file, old, self._place))
+                    self._note(self._place, os.pread(self._file, old, self._place), bytes(data[:old]))
                 _write_all(self._file, bytes(data), self._place)
             except OSError as error:
                 self._error = error
@@ -159,7 +164,7 @@ class JournaledFile:
             try:
                 self.begin()
                 if size < self._size:
-                    self._note(size, os.pread(self._file, self._size - size, size))
+                    self._note(size, os.pread(self._file, self._size - size, size), b"")
                 os.ftruncate(self._file, size)
             except OSError as error:
                 self._error = error
@@ -214,33 +219,68 @@ def open_h5(path: Path) -> h5py.File:
         raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
 
 
+def check_free(path: Path) -> None:
+    """Raise :class:`InputError` if another process is writing to a file."""
+    if fcntl is None or not path.is_file():
+        return
+    with path.open("rb") as file:
+        if not _locked(file.fileno()):
+            raise InputError(str(path), "another run is writing to it")
+
+
 def _wait_for(journal: int, alone: bool | None) -> None:
     """Wait for the lock under which the file is written (`alone`) or read; None gives it back."""
     if fcntl is not None:
         kind = {True: fcntl.LOCK_EX, False: fcntl.LOCK_SH, None: fcntl.LOCK_UN}[alone]
-        fcntl.flock(journal, kind)
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(journal, kind)
 
 
 def _roll_back(file: int, journal: int) -> None:
-    """Put back what an unfinished transaction has overwritten, the latest first."""
+    """Put back what an unfinished transaction has overwritten, the latest first.
+
+    A journal that was left behind by another file of the same name is of no use: the parts that it speaks of are
+    neither what they were before the transaction nor what that made of them.
+    """
     records = list(_records(os.pread(journal, os.fstat(journal).st_size, 0)))
-    for place, old in reversed(records[1:]):
-        _write_all(file, old, place)
-    if records:
+    restored: list[tuple[int, bytes]] = []
+    ours = bool(records) and os.fstat(file).st_size >= records[0][0]
+    for number, (place, old, new) in reversed(list(enumerate(records[1:], start=1))):
+        now = _as_restored(os.pread(file, len(old), place), place, restored)
+        latest = number == len(records) - 1  # may have been written in part
+        ours &= latest or now == old or zlib.crc32(now) == new
+        restored.append((place, old))
+    if ours:
+        for place, old in restored:
+            _write_all(file, old, place)
         os.ftruncate(file, records[0][0])
     os.ftruncate(journal, 0)
 
 
-def _records(data: bytes) -> Iterator[tuple[int, bytes]]:
+def _as_restored(now: bytes, place: int, restored: list[tuple[int, bytes]]) -> bytes:
+    """A part of a file, after others have been restored one after the other."""
+    part = bytearray(now)
+    for begin, old in restored:
+        first, last = max(begin, place), min(begin + len(old), place + len(now))
+        if first < last:
+            part[first - place : last - place] = old[first - begin : last - begin]
+    return bytes(part)
+
+
+def _records(data: bytes) -> Iterator[tuple[int, bytes, int]]:
     """The whole records of a journal; the last one may have been cut short, before what it describes was done."""
     at = 0
     while at + _RECORD.size <= len(data):
-        place, length, checksum = _RECORD.unpack_from(data, at)
+        place, length, checksum, new = _RECORD.unpack_from(data, at)
         old = data[at + _RECORD.size : at + _RECORD.size + length]
-        if len(old) < length or zlib.crc32(old, place & 0xFFFFFFFF) != checksum:
+        if len(old) < length or _checksum(old, place) != checksum:
             return
-        yield place, old
+        yield place, old, new
         at += _RECORD.size + length
+
+
+def _checksum(old: bytes, place: int) -> int:
+    return zlib.crc32(old, place & 0xFFFFFFFF)
 
 
 def _write_all(file: int, data: bytes, place: int) -> None:

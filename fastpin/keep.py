@@ -25,6 +25,10 @@ class Keep:
     which: str = "all"
     every: int = 1
 
+    def __post_init__(self) -> None:
+        if self.which not in WORDS or self.every < 1 or (self.every > 1 and self.which != "corners"):
+            raise InputError("keep", f"{self.which!r} of every {self.every} corners is no choice of states")
+
     @classmethod
     def of(cls, text: str | Keep) -> Keep:
         """Read ``"all"``, ``"corners"``, ``"cycles"`` or ``"every N"``.

@@ -7,7 +7,7 @@
 ``/grid``               ``theta`` (n,), rad
 ``/solver``             attributes: method and options; ``statistics``
 ``/states``             one array a quantity, one row a state: (states,), (states, n) or (states, names)
-``/cycles``             one array a quantity, one row a cycle
+``/cycles``             one array a quantity, one row a cycle; empty where the history has none
 ``/restart``            to go on from: ``start``, ``latest`` and the corners that were asked for
 ======================  ============================================================================================
 
@@ -109,7 +109,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     solver.create_group("statistics")
     _make_states(file, problem, grid)
     cycles, unit = file.create_group("cycles"), units(problem)
-    for name, kind in CYCLE_FIELDS.items():
+    for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
 
 
@@ -212,7 +212,7 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
         dataset.dims[0].attach_scale(scales["state"])
         if dimension:
             dataset.dims[1].attach_scale(scales[dimension])
-    loads = _growing(group, "load", (len(LOADS),), float, [unit[LOAD_KIND[name]] for name in LOADS])
+    loads = _growing(group, "loads", (len(LOADS),), float, [unit[LOAD_KIND[name]] for name in LOADS])
     residuals = _growing(group, "residuals", (len(RESIDUALS),), float, "")
     for dataset, dimension in ((loads, "load_name"), (residuals, "residual_name")):
         dataset.dims[0].attach_scale(scales["state"])
@@ -223,7 +223,7 @@ def rows_of(states: Sequence[State]) -> Rows:
     """States as rows."""
     names = [*NODE_FIELDS, *NUMBER_FIELDS]
     rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
-    rows["load"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
+    rows["loads"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
     rows["residuals"] = np.array(
         [[state.residuals.get(name, np.nan) for name in RESIDUALS] for state in states], dtype=float
     )
@@ -237,7 +237,8 @@ def cycle_rows(cycles: Sequence[Cycle]) -> Rows:
 
 def count(group: h5py.Group) -> int:
     """Number of rows of ``/states`` or ``/cycles``."""
-    return int(group["state" if "state" in group else "corner"].shape[0])
+    first = next((group[name] for name in ("state", "corner") if name in group), None)
+    return 0 if first is None else int(first.shape[0])
 
 
 def append(group: h5py.Group, rows: Rows) -> None:
@@ -270,7 +271,7 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
     for name in NODE_FIELDS:
         if group[name].shape[1:] != (grid.size,):
             raise ValueError(f"states/{name} has shape {group[name].shape}, there are {grid.size} nodes")
-    rows = read_rows(group, [*NODE_FIELDS, *NUMBER_FIELDS, "load", "residuals"], picked)
+    rows = read_rows(group, [*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals"], picked)
     states = []
     for k in range(len(rows["step"])):
         per_node = {name: rows[name][k] for name in NODE_FIELDS}
@@ -281,7 +282,7 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
             State(
                 **per_node,
                 **{name: rows[name][k].item() for name in NUMBER_FIELDS},
-                load=named_load(rows["load"][k]),
+                load=named_load(rows["loads"][k]),
                 theta=grid.theta,
                 residuals={name: value for name, value in residuals if not np.isnan(value)},
                 problem=problem,
@@ -293,6 +294,8 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
 
 def read_cycles(file: h5py.File) -> list[Cycle]:
     """The cycles of a result."""
+    if not count(file["cycles"]):
+        return []
     rows = read_rows(file["cycles"], list(CYCLE_FIELDS), slice(None))
     return [Cycle(*values) for values in zip(*(rows[name].tolist() for name in CYCLE_FIELDS), strict=True)]
 

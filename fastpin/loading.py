@@ -10,9 +10,11 @@ import bisect
 import csv
 import difflib
 import math
+import re
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TextIO
 
@@ -34,6 +36,8 @@ LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
 
 POINTS = 24
 """Corners a cycle of loads that are out of phase, unless said otherwise."""
+
+MOST_POINTS = 100_000
 
 MOST_FAULTS = 20
 """Faulty lines of a CSV file that are reported."""
@@ -60,6 +64,8 @@ class Block:
         How often the block is run through.
     cycle : bool
         Whether each time through is a cycle.
+    size : int
+        Corners of the cycle of which this is the end; 0 if it is not cut.
     """
 
     given: np.ndarray
@@ -67,11 +73,21 @@ class Block:
     lengths: tuple[int, ...] = ()
     count: int = 1
     cycle: bool = False
+    size: int = 0
 
     @property
     def corners(self) -> int:
         """Number of corners, all times through."""
         return len(self.given) * self.count
+
+    @cached_property
+    def begins(self) -> np.ndarray:
+        """Which of the cycles inside begin with a corner, a bit each, shape (corners,)."""
+        begins = np.zeros(len(self.given), dtype=np.int64)
+        for inner, length in enumerate(self.lengths, start=1):
+            first = np.flatnonzero(self.ends == inner) - length + 1
+            begins[first[first >= 0]] |= 1 << (inner % 63)
+        return begins
 
     def cut(self, start: int, stop: int) -> Iterator[Block]:
         """The corners from `start` to `stop`, as few blocks."""
@@ -88,8 +104,8 @@ class Block:
             yield self._part(0, stop - last * size)
 
     def _part(self, start: int, stop: int) -> Block:
-        whole = self.cycle and stop == len(self.given)
-        return replace(self, given=self.given[start:stop], ends=self.ends[start:stop], count=1, cycle=whole)
+        whole, size = self.cycle and stop == len(self.given), self.size or len(self.given)
+        return replace(self, given=self.given[start:stop], ends=self.ends[start:stop], count=1, cycle=whole, size=size)
 
 
 class LoadHistory:
@@ -208,7 +224,8 @@ class LoadHistory:
                 raise InputError("phase", f"{name} has a phase but no amplitude")
         if points is None:
             points = 2 if all(angle % 180.0 == 0.0 for angle in phase.values()) else POINTS
-        whole_number("points", points, 2)
+        if whole_number("points", points, 2) > MOST_POINTS:
+            raise InputError("points", f"must not be more than {MOST_POINTS:,}, not {points:,}")
 
         def corner(turn: float) -> dict[str, float]:
             return {
@@ -263,7 +280,10 @@ class LoadHistory:
             raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
 
     def repeated(self, count: int) -> LoadHistory:
-        """This history `count` times in a row; each time is a cycle."""
+        """This history `count` times in a row; each time is a cycle.
+
+        Cycles may lie inside others. Where several end at one corner, only the innermost and the outermost are told.
+        """
         whole_number("count", count, 1)
         given = np.vstack([_times(block, block.count) for block in self._blocks])
         ends: list[np.ndarray] = []
@@ -288,6 +308,10 @@ class LoadHistory:
 
     def __getitem__(self, item: slice) -> LoadHistory:
         """A part of the history (a slice without a step); what a part leaves out keeps the value before it."""
+        if not isinstance(item, slice):
+            raise InputError(
+                "history", "parts are slices, such as history[2:5]; values() has the loads at every corner"
+            )
         start, stop, step = item.indices(len(self))
         if step != 1:
             raise InputError("history", "parts are slices without a step")
@@ -322,7 +346,7 @@ class LoadHistory:
     def cycle_length(self, cycle: CycleKey) -> int:
         """Corners of a cycle."""
         block = self._blocks[cycle[0]]
-        return block.lengths[cycle[1] - 1] if cycle[1] else len(block.given)
+        return block.lengths[cycle[1] - 1] if cycle[1] else block.size or len(block.given)
 
     def cycles_after(self, index: int) -> list[CycleKey]:
         """The cycles that begin after a corner (-1: with the first one)."""
@@ -331,7 +355,7 @@ class LoadHistory:
         number, place = self._locate(index + 1)
         block = self._blocks[number]
         row = place % len(block.given)
-        begun = [(number, 0)] if block.cycle and row == 0 else []
+        begun = [(number, 0)] if block.cycle and row == 0 and block.size in (0, len(block.given)) else []
         for inner, length in enumerate(block.lengths, start=1):
             if row + length <= len(block.given) and block.ends[row + length - 1] == inner:
                 begun.append((number, inner))
@@ -355,7 +379,8 @@ class LoadHistory:
             last = min(row + length, stop)
             given, before = block.given[row:last], block.given[row - period : last - period]
             same = np.all((given == before) | (np.isnan(given) & np.isnan(before)), axis=1)
-            same &= block.ends[row:last] == block.ends[row - period : last - period]
+            for marks in (block.ends, block.begins):
+                same &= marks[row:last] == marks[row - period : last - period]
             if not same.all():
                 row += int(np.argmin(same))
                 break
@@ -402,7 +427,7 @@ def named_load(vector: np.ndarray) -> dict[str, float]:
 
 def filled(given: np.ndarray, last: np.ndarray) -> np.ndarray:
     """The loads at a corner where `given` acts, and `last` where it says nothing."""
-    return np.where(np.isnan(given), last, given)
+    return np.where(np.isnan(given), last, given) + 0.0  # -0 is 0
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:
@@ -439,6 +464,9 @@ def _read_csv(file: TextIO, name: str) -> np.ndarray:
             continue
         cells = next(csv.reader([line], skipinitialspace=True))
         if header is None:
+            if len(cells) == 1 and (separator := re.search(r"[;\t]", line)):
+                name_of = {";": "semicolons", "\t": "tabs"}[separator[0]]
+                raise CaseFileError(name, [(number, f"cells must be separated by commas, not {name_of}")])
             try:
                 header = [_load_index(cell.strip(), f"column {k}") for k, cell in enumerate(cells, start=1)]
             except InputError as error:
@@ -453,7 +481,7 @@ def _read_csv(file: TextIO, name: str) -> np.ndarray:
             for index, cell in zip(header, cells, strict=True):
                 if cell and not cell.isspace():
                     try:
-                        numbers[index - len(LOADS)] = finite(LOADS[index], float(cell))
+                        numbers[index - len(LOADS)] = finite(LOADS[index], float(cell.replace("_", "x")))
                     except ValueError:
                         faults.append((number, f"{LOADS[index]} must be a finite number, not {cell.strip()!r}"))
         if len(faults) >= MOST_FAULTS:

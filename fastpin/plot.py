@@ -167,9 +167,12 @@ def _draw_cycles(result: Result, title: str, width: float) -> Figure:
         panels[2].plot([corner[0] - one[0].length, *corner], angle * turned, **line(colour), **marker)
     for panel in panels[:2]:
         panel.set_yscale("log")
+    largest = np.nanmax([0.0, *(energy * cycle.dissipation for cycle in result.cycles)])
+    if largest > 0.0:
+        panels[1].set_ylim(bottom=max(panels[1].get_ylim()[0], 1e-9 * largest))  # below is rounding
     panels[0].set_ylabel("largest change / peak N")
     panels[1].set_ylabel(f"dissipated in a cycle  [{unit}]")
-    panels[2].set_ylabel(f"turned by the cycles  [{unit_of_angle}]")
+    panels[2].set_ylabel(f"turned, in all  [{unit_of_angle}]")
     panels[2].set_xlabel("corner of the load history at which the cycle ends")
     handles: list[Artist] = [
         Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **line(colour))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import glob
 import logging
+import os
 import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +21,8 @@ from fastpin.checks import whole_number
 from fastpin.errors import ArcError, InputError, Interrupted, SolveError
 from fastpin.files import check_writable, replacing
 from fastpin.grid import Grid
-from fastpin.journal import JournaledFile, open_h5, settled
+from fastpin.interrupt import held_back
+from fastpin.journal import JournaledFile
 from fastpin.keep import Keep
 from fastpin.layout import (
     Rows,
@@ -41,7 +45,7 @@ from fastpin.restart import read_restart, write_restart
 from fastpin.run import Method, Progress, Restart, Run
 from fastpin.solver import Task, check_start
 from fastpin.state import Cycle, Result, State
-from fastpin.store import opened
+from fastpin.store import is_unfinished, load, opened
 
 log = logging.getLogger(__name__)
 
@@ -62,8 +66,16 @@ PIECE = 256
 
 
 def checkpoint_of(path: Path) -> Path:
-    """Where the latest checkpoint of an unfinished run is."""
-    return path.with_name(path.name + ".checkpoint")
+    """Where the latest checkpoint of an unfinished run is: beside the file itself, whatever links lead there."""
+    real = Path(os.path.realpath(path))
+    return real.with_name(real.name + ".checkpoint")
+
+
+def clear_checkpoints(path: Path) -> None:
+    """Remove the checkpoint of a run that has ended, and those that a process was killed over."""
+    checkpoint = checkpoint_of(path)
+    for left in (checkpoint, *checkpoint.parent.glob(f".{glob.escape(checkpoint.stem)}.*{checkpoint.suffix}")):
+        left.unlink(missing_ok=True)
 
 
 def record(
@@ -99,16 +111,16 @@ def record(
     save_after : sequence of int
         After so many corners keep what is needed to start from there: ``load(path, after=corner)`` is quick then.
     overwrite : bool
-        Also overwrite a file that holds an unfinished run.
+        Replace a file that exists.
     title : str
         Kept with the file.
 
     Raises
     ------
     InputError
-        Naming the field that can't be used; also if the file holds an unfinished run, or can't be written.
+        Naming the field that can't be used; also if the file exists, or can't be written.
     SolveError
-        As :func:`fastpin.solve`. What was solved before is in the file.
+        As :func:`fastpin.solve`. What was solved before is in the file; ``result`` holds the last state of it.
     OSError
         If the file can't be written any more, for example because the disk is full. What was in it stays.
 
@@ -118,14 +130,18 @@ def record(
     check_writable(path)
     if start is not None:
         check_start(problem, start)
+    saved = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
     task = Task.checked(problem, history, nodes, method, increments, arc, grid, between, keep, shortcut, progress)
-    saved = {whole_number("save_after", corner, 1) for corner in save_after}
-    if not overwrite and path.exists() and is_unfinished(path):
-        raise InputError(str(path), "holds an unfinished run; resume it, or overwrite it (--overwrite)")
-    writer = _Writer(path, task, title, saved)
+    task = replace(task, stops=saved)
+    if max(saved, default=0) > len(task.history):
+        raise InputError("save_after", f"must be corners from 1 to {len(task.history)}, not {max(saved)}")
+    writer = _Writer(path, task, title)
+    writer.overwrite = overwrite
+    writer.check_overwriting()
+    writer.chosen_arc &= start is None
     with _writing(writer):
         if start is not None and start.restart is not None:
-            task.go_on(writer, start.restart.elsewhere(), start.grid)
+            task.branch(writer, start.restart, start.grid)
         else:
             task.follow(writer)
 
@@ -170,21 +186,13 @@ def stored_case(path: str | Path) -> Case:
         See :func:`fastpin.store.load`.
     """
     with opened(Path(path)) as file:
-        options = {name: plain(value) for name, value in file["solver"].attrs.items()}
-        return Case(
-            read_problem(file),
-            read_history(file),
-            SolveOptions(
-                nodes=options["nodes"],
-                method=options["method"],
-                increments=options["increments"],
-                arc=tuple(options["arc"].tolist()) if "arc" in options else None,
-                between=tuple(options["fractions"].tolist()[:-1]),
-                keep=options["keep"],
-                shortcut=bool(options["shortcut"]),
-            ),
-            options["title"],
-        )
+        given = {name: plain(value) for name, value in file["solver"].attrs.items()}
+        options: dict[str, Any] = {name: given[name] for name in ("method", "increments", "keep") if name in given}
+        if "run" in file.attrs:
+            options["arc"] = tuple(given["arc"].tolist()) if "arc" in given else None
+            options |= {"between": tuple(given["fractions"].tolist()[:-1]), "shortcut": bool(given["shortcut"])}
+        options["nodes"] = read_grid(file).size
+        return Case(read_problem(file), read_history(file), SolveOptions(**options), given.get("title", ""))
 
 
 @contextmanager
@@ -192,11 +200,9 @@ def _writing(writer: _Writer) -> Iterator[None]:
     """End the file as the run ends."""
     try:
         yield
-    except SolveError as error:
-        writer.finish(str(error))
-        raise
-    except Interrupted:
-        writer.finish("interrupted")
+    except (SolveError, Interrupted) as ended:
+        if writer.finish(str(ended)):
+            ended.result = load(writer.path, states=slice(-1, None))
         raise
     except BaseException:
         writer.abort()
@@ -207,12 +213,12 @@ def _writing(writer: _Writer) -> Iterator[None]:
 class _Writer:
     """The recorder of a run that writes to a file."""
 
-    def __init__(self, path: Path, task: Task, title: str, save_after: set[int]) -> None:
+    def __init__(self, path: Path, task: Task, title: str) -> None:
         self.path = path
         self.task = task
         self.chosen_arc = task.arc is None and task.grid is None  # by the solver
+        self.overwrite = True  # also an unfinished run
         self._title = title
-        self._save_after = save_after
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
@@ -234,8 +240,18 @@ class _Writer:
         self._file, self._h5 = file, h5
         self._name = str(h5.attrs["run"])
         self._stored = [count(h5["states"]), count(h5["cycles"])]
-        self._at = self._corner = [int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])]
+        seen = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
+        self._at, self._corner = list(seen), list(seen)
         self._seconds = float(restart_group["statistics"].attrs.get("seconds", 0.0))
+
+    def check_overwriting(self) -> None:
+        """Raise :class:`InputError` if there is a file that must not be overwritten."""
+        if self.path.exists() and not self.path.is_file():
+            raise InputError(str(self.path), "must be an ordinary file")
+        if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
+            return
+        what = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
+        raise InputError(str(self.path), f"{what} (--overwrite replaces it)")
 
     # -- what a run calls ----------------------------------------------------------------------------------------
 
@@ -243,6 +259,8 @@ class _Writer:
         self._run = run
         if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.system.grid.theta):
             return  # reopened
+        if self._file is None:
+            self.check_overwriting()  # once more: the way to here was long
         self.abort()
         self._name = uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
@@ -253,7 +271,7 @@ class _Writer:
         options = {
             "title": self._title, "nodes": task.nodes, "method": task.method, "increments": task.increments,
             "arc": task.arc, "arc_chosen": self.chosen_arc, "fractions": task.fractions, "keep": str(task.keep),
-            "shortcut": task.shortcut, "save_after": sorted(self._save_after),
+            "shortcut": task.shortcut, "save_after": sorted(task.stops),
         }  # fmt: skip
         write_head(self._h5, task.problem, task.history, system.grid, options)
         self._h5.attrs["run"] = self._name
@@ -287,7 +305,7 @@ class _Writer:
     def corner_reached(self) -> None:
         self._corner = list(self._at)
         now = time.monotonic()
-        if self._run.corner in self._save_after and str(self._run.corner) not in self._h5["restart"]:
+        if self._run.corner in self.task.stops and str(self._run.corner) not in self._h5["restart"]:
             self._write_restart(self._h5.create_group(f"restart/{self._run.corner}"))
             self._commit()
         elif now - self._committed > LONGEST_WAIT:
@@ -301,10 +319,19 @@ class _Writer:
 
     # -- the file ------------------------------------------------------------------------------------------------
 
-    def finish(self, error: str | None) -> None:
-        """End the file with what the run has found, and why it ended early."""
+    def finish(self, error: str | None) -> bool:
+        """End the file with what the run has found, and why it ended early; False if it had not even begun."""
         if self._file is None:
-            return
+            return False
+        try:
+            with held_back():
+                self._finish(error)
+        except BaseException:
+            self.abort()
+            raise
+        return True
+
+    def _finish(self, error: str | None) -> None:
         run = self._run
         if self._pending:
             self._commit()
@@ -317,7 +344,7 @@ class _Writer:
             self._h5.attrs["error"] = error
         self._commit()
         self._close()
-        checkpoint_of(self.path).unlink(missing_ok=True)
+        clear_checkpoints(self.path)
 
     def abort(self) -> None:
         """Leave the file as it was after the last transaction."""
@@ -390,30 +417,25 @@ class _Writer:
         return self._seconds + time.monotonic() - self._began
 
 
-def is_unfinished(path: Path) -> bool:
-    """Whether a file holds a run that has not come to its end."""
-    try:
-        with settled(path), open_h5(path) as file:
-            return "run" in file.attrs and not file.attrs["complete"]
-    except InputError:
-        return False
-
-
 def _reopened(path: Path, progress: Progress | None) -> tuple[_Writer, Restart]:
     """The writer of an unfinished run, and where the run goes on."""
     file = JournaledFile(path, new=False)
     try:
+        if path.stat().st_size == 0:
+            raise InputError(str(path), "is empty: its run ended before it had begun; start it again")
         try:
             h5 = h5py.File(file, "r+")
         except OSError:
             raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
         try:
             check_format(h5, str(path))
+            if "run" not in h5.attrs:
+                raise InputError(str(path), "was not written by a run, there is nothing to go on with")
             if h5.attrs["complete"]:
                 raise InputError(str(path), "holds a finished run, there is nothing to go on with")
             task = _stored_task(h5, progress)
             options = h5["solver"].attrs
-            writer = _Writer(path, task, str(options["title"]), set(options["save_after"].tolist()))
+            writer = _Writer(path, task, str(options["title"]))
             writer.chosen_arc = bool(options["arc_chosen"])
             restart = _latest(path, h5, lambda group: writer.reopen(file, h5, group))
             h5.attrs.pop("error", None)
@@ -442,6 +464,7 @@ def _stored_task(h5: h5py.File, progress: Progress | None) -> Task:
         keep=Keep.of(options["keep"]),
         shortcut=bool(options["shortcut"]),
         progress=progress,
+        stops=frozenset(options["save_after"].tolist()),
     )
 
 

@@ -201,15 +201,23 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
     return lines
 
 
+def _first_and_last(values: list[float], unit: str, digits: int) -> list[str]:
+    """What is zero but for rounding, against the largest, is shown as zero."""
+    noise = 1e-9 * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    shown = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
+    return ["not known" if math.isnan(value) else _quantity(value, unit, digits) for value in shown]
+
+
 def _series_line(problem: Problem, cycles: list[Cycle]) -> str:
     first, last = cycles[0], cycles[-1]
     steady = periodic_from(cycles)
     kind = units(problem)
-    dissipation = [_quantity(cycle.dissipation, kind["energy"], 4) for cycle in (first, last)]
-    turned = [_quantity(cycle.rotation_change, kind["rotation"], 3) for cycle in (first, last)]
+    dissipation = _first_and_last([cycle.dissipation for cycle in cycles], kind["energy"], 4)
+    turned = _first_and_last([cycle.rotation_change for cycle in cycles], kind["rotation"], 3)
     state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
     corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
-    text = f"{last.number:,} cycle{'s' if last.number > 1 else ''} of {corners}: {state}"
+    where = f"to corner {last.corner + 1:,}"
+    text = f"{where}, {last.number:,} cycle{'s' if last.number > 1 else ''} of {corners}: {state}"
     if len(cycles) == 1:
         return f"{text}; dissipated {dissipation[0]}, turned {turned[0]}"
     change = max(last.pressure_change, last.shear_change)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections import Counter, deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
@@ -208,6 +208,8 @@ class Run:
         Where to start from; without load if not given.
     shortcut : bool
         Whether what repeats exactly is taken from the record instead of being solved again.
+    stops : collection of int
+        Numbers of corners at which the recorder wants to see the run.
 
     Attributes
     ----------
@@ -230,6 +232,7 @@ class Run:
         progress: Progress | None = None,
         start: Restart | None = None,
         shortcut: bool = True,
+        stops: Collection[int] = (),
     ) -> None:
         self.system = system
         self.method = method
@@ -239,6 +242,7 @@ class Run:
         self.keep = keep
         self.progress = progress
         self.shortcut = shortcut
+        self.stops = stops
         if start is None:
             first, load = unloaded(system), np.zeros(system.loads.shape[1])
             now = replace(first, dissipation=0.0, work=0.0)
@@ -366,17 +370,26 @@ class Run:
         """
         now = self.corner - 1
         length = math.lcm(period, self.keep.every)  # so that the same corners are kept
+        unkept = now - since < length  # go on as far as nothing is kept, then
+        length = period if unkept else length
         if period == 0 or len(self.log) < length or now - since < length:
             return
         ahead = history.same_ahead(self.corner, length)
+        if unkept:
+            ahead = min(ahead, self.keep.every - 1 - self.corner % self.keep.every)
         if self.keep.every > 1 or self.keep.which == "cycles":
             ahead = min(ahead, len(history) - 1 - self.corner)  # the last corner is always kept
+        ahead = min(ahead, min((stop for stop in self.stops if stop > self.corner), default=len(history)) - self.corner)
         times = ahead // length
         if times < 1:
             return
         logged = [self.log[k - length] for k in range(length)]
+        if unkept:
+            logged = [replace(entry, kept=[]) for entry in logged]
         if any(cycle.corner - cycle.length < now - length for entry in logged for _, cycle in entry.cycles):
             return  # a cycle that began before: what it changed will not be repeated
+        if any(mark.number == 0 and mark.corner > now - length for mark in self.marks.values()):
+            return  # one that has begun and not ended
         log.info("corner %d: the last %d corners repeat %d times and are not solved again", now + 1, length, times)
         latest = [other for other in self.repeats if other.last > now - length]
         counts = _counts(logged, now - length)

@@ -103,7 +103,7 @@ def solve(
     began = time.perf_counter()
     try:
         if start is not None and start.restart is not None:
-            task.go_on(kept, start.restart.elsewhere(), start.grid)
+            task.branch(kept, start.restart, start.grid)
         else:
             task.follow(kept)
     except (SolveError, Interrupted) as ended:
@@ -164,6 +164,7 @@ class Task:
     keep: Keep
     shortcut: bool
     progress: Progress | None
+    stops: frozenset[int] = frozenset()
 
     @classmethod
     def checked(
@@ -192,12 +193,13 @@ class Task:
         one_of("method", method, ("path", "increment"))
         increments = whole_number("increments", increments, 1)
         check_loads(problem, history)
+        keep = Keep.of(keep)
+        if keep.which == "cycles" and not history.longest_cycle:
+            raise InputError("keep", "the history has no cycles: none of its blocks is repeated")
         fractions = _fractions(between)
         if arc is not None:
             arc = _checked_arc(arc)
-        return cls(
-            problem, history, nodes, method, increments, arc, grid, fractions, Keep.of(keep), bool(shortcut), progress
-        )
+        return cls(problem, history, nodes, method, increments, arc, grid, fractions, keep, bool(shortcut), progress)
 
     def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
         """Follow the history from no load, on the first grid that is wide enough, of those `beyond` one that is not."""
@@ -208,7 +210,7 @@ class Task:
             given = None if beyond is not None else self.grid
             for chosen in _grids(self.problem, values, force, self.nodes, self.arc, given, progress):
                 if beyond is not None:
-                    if np.array_equal(chosen.theta, beyond.theta):
+                    if np.allclose(chosen.theta, beyond.theta, rtol=0.0, atol=1e-9):
                         beyond = None
                     continue
                 log.info("%d nodes from %.5g to %.5g rad", chosen.size, chosen.theta[0], chosen.theta[-1])
@@ -227,6 +229,14 @@ class Task:
             system = System.build(self.problem, grid, start.force)
             self._run(system, recorder, start, self._progress(asked))
 
+    def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+        """Follow the history from where another one has led."""
+        try:
+            self.go_on(recorder, start.elsewhere(), grid)
+        except ArcError as error:
+            error.args = (f"{error}; here it is that of the result to go on from: solve that one on a wider arc",)
+            raise
+
     def reach(self, start: Restart, grid: Grid) -> Restart:
         """Follow the history from a corner to its end, and keep nothing but what is needed to go on from there."""
         with held_back() as asked, _one_thread():
@@ -239,8 +249,9 @@ class Task:
 
     def _run(self, system: System, recorder: Recorder, start: Restart | None, progress: Progress) -> None:
         run = Run(
-            system, self.method, self.increments, self.fractions, recorder, self.keep, progress, start, self.shortcut
-        )
+            system, self.method, self.increments, self.fractions, recorder, self.keep, progress, start, self.shortcut,
+            self.stops,
+        )  # fmt: skip
         recorder.begin(run)
         run.follow(self.history)
 

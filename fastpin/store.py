@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+from fastpin.checks import whole_number
 from fastpin.errors import InputError
 from fastpin.files import check_writable, replacing
 from fastpin.grid import Grid
-from fastpin.journal import open_h5, settled
+from fastpin.journal import check_free, open_h5, settled
 from fastpin.keep import Keep
 from fastpin.layout import (
     append,
@@ -54,7 +55,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     ----------
     result : Result
     path : path
-        Overwritten if it exists.
+        Overwritten if it exists, unless it holds an unfinished run.
     error : str, optional
         Why the result is incomplete, kept with it.
     restart : bool
@@ -66,6 +67,9 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         If `path` can't be written.
     """
     check_writable(path)
+    check_free(Path(path))
+    if is_unfinished(Path(path)):
+        raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
@@ -105,17 +109,23 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     path = Path(path)
     with opened(path) as file:
         problem, grid, history = read_problem(file), read_grid(file), read_history(file)
-        complete, restart = bool(file.attrs["complete"]), None
+        complete, restart, task = bool(file.attrs["complete"]), None, None
         restarts = file.get("restart", {})
+        found = count(file["states"])
         if after is not None:
-            restart = _restart_after(path, file, problem, grid, history, after)
+            task, restart = _way_to(path, file, problem, grid, history, after)
             history, complete = history[:after], True
-            found = range(int(np.searchsorted(file["states/step"][()], after)))
-            states = found[states] if isinstance(states, slice) else states
+            found = int(np.searchsorted(file["states/step"][()], after))
         elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
             restart = read_restart(restarts["latest"])
+        if isinstance(states, slice):
+            states = slice(*states.indices(found))
+        elif any(not -found <= state < found for state in states):
+            raise InputError("states", f"must be places from 0 to {found - 1}, not {list(states)}")
+        else:
+            states = [state % found for state in states]
         cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
-        return Result(
+        result = Result(
             states=read_states(file, problem, grid, states),
             problem=problem,
             history=history,
@@ -126,6 +136,18 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             restart=restart,
             cycles=cycles,
         )
+    if task is not None and restart is not None and restart.corner < len(task.history):
+        result.restart = task.reach(restart, grid)  # the file is free again: this may take a while
+    return result
+
+
+def is_unfinished(path: Path) -> bool:
+    """Whether a file holds a run that has not come to its end."""
+    try:
+        with opened(path) as file:
+            return "run" in file.attrs and not file.attrs.get("complete", True)
+    except InputError:
+        return False
 
 
 def size(path: str | Path) -> int:
@@ -191,25 +213,27 @@ def opened(path: Path) -> Iterator[Any]:
             raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
 
 
-def _restart_after(
+def _way_to(
     path: Path, file: h5py.File, problem: Problem, grid: Grid, history: LoadHistory, after: int
-) -> Restart:
-    """The restart after a corner; from the latest one that is stored before it, if need be."""
-    reached = 0
+) -> tuple[Task, Restart]:
+    """The history up to a corner, and the latest restart on the way there."""
+    whole_number("after", after, 1)
+    reached = max((int(group.attrs["corner"]) for group in file.get("restart", {}).values()), default=0)
     if count(file["states"]):
-        reached = int(file["states/step"][-1]) + (1 if file["states/fraction"][-1] == 1.0 else 0)
+        last = int(file["states/step"][-1]) + (1 if file["states/fraction"][-1] == 1.0 else 0)
+        reached = max(reached, last)
     if not 1 <= after <= reached:
         raise InputError("after", f"must be a corner from 1 to {reached}, not {after}: {path} has no others")
     stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
-    if not stored:
-        raise InputError("after", f"{path} was not written by a run: only its end can be gone on from")
+    if "run" not in file.attrs or not stored:
+        raise InputError("after", f"{path} was not written by a run: it can't be gone on from")
     start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
     options = {name: plain(value) for name, value in file["solver"].attrs.items()}
     task = Task(
         problem, history[:after], grid.size, options["method"], options["increments"], None, grid,
         options["fractions"], Keep.of(options["keep"]), True, None,
     )  # fmt: skip
-    return task.reach(start, grid)
+    return task, start
 
 
 def _first_line(error: Exception) -> str:

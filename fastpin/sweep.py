@@ -34,6 +34,7 @@ from fastpin.worker import Outcome, solve_run
 __all__ = ["Plan", "Point", "Summary", "load", "merge", "parse_plan", "read_plan", "rows", "run", "status"]
 
 RESULTS = "results"
+HDF5 = b"\x89HDF\r\n\x1a\n"
 PLAN = "plan.toml"
 MUST_AGREE = ("states", "nodes", "peak_pressure", "max_pressure", "contact_width")
 """Key figures in which two solutions of one run agree to :data:`AGREEMENT`, also from different machines."""
@@ -230,11 +231,17 @@ def _checked(run: str, outcome: Outcome | BaseException, results: Path) -> Outco
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
     """Status and reason of each run; one whose result is gone is waiting again."""
-    present = {name.removesuffix(".h5") for name in os.listdir(results)} if results.is_dir() else set()
+    present = {path.stem for path in results.glob("*.h5") if _is_hdf5(path)}
     waiting = WAITING, None
     known = index.statuses()
     found = {run: known.get(run, waiting) for run in points}
     return {run: waiting if now[0] == DONE and run not in present else now for run, now in found.items()}
+
+
+def _is_hdf5(path: Path) -> bool:
+    """Whether a file begins as a result does."""
+    with path.open("rb") as file:
+        return file.read(len(HDF5)) == HDF5
 
 
 def _summary(index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0) -> Summary:
@@ -287,31 +294,45 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
         If the parts are of different plans or versions of fastpin, two results of one run disagree, or files can't be
         used.
     """
-    target = made(Path(directory))
-    _check_plan_copy(target)
+    target = Path(directory)
+    for source in map(Path, sources):
+        if source.resolve() == target.resolve():
+            raise InputError(str(source), "can't be merged into itself")
+    _check_parts([*([target] if (target / FILE).exists() else []), *map(Path, sources)])
+    _check_plan_copy(made(target))
     with locked(target), Index(target, create=True) as index:
         made(target / RESULTS)
         for source in map(Path, sources):
-            if source.resolve() == target.resolve():
-                raise InputError(str(source), "can't be merged into itself")
             with Index(source) as other:
                 _absorb(index, other, target, source)
         return len(index.statuses())
 
 
+def _check_parts(parts: Sequence[Path]) -> None:
+    """See that all parts are of one plan and agree, before anything is written."""
+    notes: dict[str, str | None] = {}
+    done: dict[str, dict[str, Any]] = {}
+    for part in parts:
+        with Index(part) as index:
+            for name, words in (
+                ("version", "was made by another version of fastpin"),
+                ("plan", "belongs to another plan"),
+            ):
+                if notes.setdefault(name, index.noted(name)) != index.noted(name):
+                    raise InputError(str(part), f"{words} than {parts[0]}")
+            for row in index.rows():
+                if row["status"] == DONE:
+                    _check_agreement(done.setdefault(row["id"], row), row, part)
+
+
 def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
-    for name, words in (("version", "was made by another version of fastpin"), ("plan", "belongs to another plan")):
-        if index.noted(name) not in (None, other.noted(name)):
-            raise InputError(str(source), f"{words} than what is merged already")
-    mine = {row["id"]: row for row in index.rows()}
+    mine = index.statuses()
     rank = (WAITING, FAILED, DONE)
-    wanted = []
-    for row in other.rows():
-        known = mine.get(row["id"])
-        if known is not None and known["status"] == row["status"] == DONE:
-            _check_agreement(known, row, source)
-        elif known is None or rank.index(row["status"]) > rank.index(known["status"]):
-            wanted.append(row["id"])
+    wanted = [
+        run
+        for run, (state, _) in other.statuses().items()
+        if run not in mine or rank.index(state) > rank.index(mine[run][0])
+    ]
     for run in wanted:
         path = source / RESULTS / f"{run}.h5"
         if path.exists():

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import signal
 import stat
 import subprocess
 import sys
+import time
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -176,13 +179,16 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
     arguments += ["--keep", "corners", "--no-shortcut"]
     assert main(["run", str(case), *arguments]) == 0
     assert main(["run", str(case), "--between", "3"]) == 0
-    first, second = solved
+    first, second = solved[:2]
     assert first == {
         "nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5), "keep": "corners",
         "shortcut": False,
     }  # fmt: skip
     assert second["between"] == 3
     assert second["keep"] == "all"
+    for every in (["every", "10"], ["every 10"], ["every-10"]):
+        assert main(["run", "--keep", *every, str(case)]) == 0
+        assert solved[-1]["keep"] == "every 10"
 
 
 @pytest.mark.parametrize(
@@ -193,6 +199,7 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
         (["--increments", "0"], "--increments: must be"),
         (["--between", "x"], "--between: must be"),
         (["--keep", "some"], '--keep: must be "all", "corners", "cycles" or "every N"'),
+        (["--keep", "every", "x"], '--keep: must be "all", "corners", "cycles" or "every N"'),
         (["--after", "3"], "--after: needs --start"),
         (["--between", "0.5,0.5"], "--between: must be"),
         (["--plot", "figure.docx"], "--plot: the figure's name must end in"),
@@ -255,8 +262,9 @@ def test_all_outputs(case: Path, tmp_path: Path) -> None:
 
     names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
     arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
-    for _ in range(2):  # again: an existing file is replaced
-        assert main(["run", str(case), "--nodes", "61", *arguments]) == 0
+    assert main(["run", str(case), "--nodes", "61", *arguments]) == 0
+    assert main(["run", str(case), "--nodes", "61", *arguments]) == 2  # a result is not replaced by accident
+    assert main(["run", str(case), "--nodes", "61", *arguments, "--overwrite"]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"case.toml", *names.values()}
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert len(load(tmp_path / "a.h5")) == len(json.loads((tmp_path / "a.json").read_text())["states"]) == 4
@@ -539,3 +547,160 @@ def test_replacing_never_replaces_a_device(tmp_path: Path) -> None:
     with replacing(os.devnull) as temporary:
         temporary.write_text("gone")
     assert not Path(os.devnull).is_file()
+
+
+# -- long histories ------------------------------------------------------------------------------------------
+
+CYCLES = EXAMPLE.replace("# repeat = 1000  ", "repeat = 12  ").replace("nodes = 401", "nodes = 61")
+
+
+@pytest.fixture
+def cyclic(tmp_path: Path) -> Path:
+    path = tmp_path / "cycles.toml"
+    path.write_text(CYCLES)
+    return path
+
+
+def test_cycles_are_told_stored_and_drawn(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stored, figure = str(tmp_path / "a.h5"), str(tmp_path / "c.png")
+    assert main(["run", str(cyclic), "-o", stored, "--keep", "cycles", "--cycles", figure, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert len(document["states"]) == len(document["cycles"]) == 12
+    assert document["history"]["blocks"][1]["repeat"] == 12
+    assert Path(figure).read_bytes().startswith(b"\x89PNG")
+    assert main(["show", stored]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"to corner 37, 12 cycles of 3 corners: (not yet periodic|periodic from)", out)
+    assert len([line for line in out.splitlines() if line.endswith(("e-15", "e-16"))]) == 12
+    assert main(["show", stored, "--json", str(tmp_path / "a.json")]) == 0
+    again = json.loads((tmp_path / "a.json").read_text())
+    assert again["states"] == document["states"]
+    assert again["cycles"] == document["cycles"]
+
+
+def test_long_histories_are_told_in_short(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cyclic.write_text(CYCLES.replace("repeat = 12  ", "repeat = 100  "))
+    assert main(["check", str(cyclic)]) == 0
+    out = capsys.readouterr().out
+    assert "301 corners" in out
+    assert out.count("x 100") == 3
+    stored = str(tmp_path / "a.h5")
+    assert main(["run", str(cyclic), "-o", stored, "-v"]) == 0
+    captured = capsys.readouterr()
+    assert "... 261 more ..." in captured.out
+    assert "repeat" in captured.err
+    assert captured.err.startswith("fastpin: ")
+
+
+def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = EXAMPLE.replace("nodes = 401", "nodes = 61").replace("# arc =", "arc =")
+    whole, branch, trunk = tmp_path / "whole.toml", tmp_path / "branch.toml", str(tmp_path / "trunk.h5")
+    case.write_text(text)
+    whole.write_text(text.replace("[7.26e5, -7.26e5, 7.26e5]", "[7.26e5, -3e5, 1e5]"))
+    branch.write_text(
+        text.replace("\nP = 2.42e6", "\nP = 2.42e6\nQ = -3e5").replace("[7.26e5, -7.26e5, 7.26e5]", "1e5")
+    )
+    assert main(["run", str(case), "-o", trunk, "--save-after", "2,3"]) == 0
+    documents = []
+    for arguments in ([str(branch), "--start", trunk, "--after", "2"], [str(whole)]):
+        capsys.readouterr()
+        assert main(["run", *arguments, "--json"]) == 0
+        documents.append(json.loads(capsys.readouterr().out)["states"])
+    for one, other in zip(documents[0], documents[1][2:], strict=True):
+        for name in ("peak_shear", "rotation", "dissipation", "contact", "stick", "load"):
+            assert one[name] == other[name]
+    for wrong, words in (
+        (["--start", trunk, "--after", "9"], "--after: must be a corner from 1 to 4"),
+        (["--start", trunk, "--nodes", "99"], "--nodes: is that of the result to go on from"),
+        (["--start", trunk, "-o", trunk], "--output: is the file to start from"),
+    ):
+        assert main(["run", str(branch), *wrong]) == 2
+        assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["run", "CASE", "--save-after", "2"], "--save-after: needs --output"),
+        (["run", "CASE", "--overwrite"], "--overwrite: needs --output"),
+        (["run", "CASE", "--save-after", "5", "-o", "a.h5"], "--save-after: must be corners from 1 to 4"),
+        (["run", "CASE", "--save-after", "x", "-o", "a.h5"], "--save-after: must be corners from 1 to 4"),
+        (["run", "CASE", "--cycles", "c.png"], "--cycles: the history has no cycles"),
+        (["run", "CASE", "--keep", "cycles"], "--keep: the history has no cycles"),
+        (["run", "CASE", "-o", "CASE"], "won't overwrite the case file"),
+        (["run", "CASE", "--start", "CASE"], "not a whole HDF5 file"),
+        (["run", "CASE", "--start", "none.h5"], "there is no such file"),
+        (["resume", "none.h5"], "there is no such file"),
+        (["resume", "CASE"], "not a whole HDF5 file"),
+        (["show", "CASE"], "not a whole HDF5 file"),
+    ],
+)
+def test_options_of_long_histories_are_checked(
+    arguments: list[str],
+    words: str,
+    case: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([str(case) if word == "CASE" else word for word in arguments]) == 2
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("background", [False, True])
+def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool, tmp_path: Path) -> None:
+    """Also where the shell has started it in the background, which makes it deaf to SIGINT."""
+    loads = np.random.default_rng(0).uniform(-7e5, 7e5, 3000)
+    case, stored = tmp_path / "long.toml", tmp_path / "a.h5"
+    text = EXAMPLE.replace("[7.26e5, -7.26e5, 7.26e5]", f"[{', '.join(f'{load:.6g}' for load in loads)}]")
+    case.write_text(text.replace("nodes = 401", "nodes = 201"))
+    command = [sys.executable, "-P", "-m", "fastpin", "run", str(case), "-o", str(stored)]
+    ignore = (lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)) if background else None
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT, preexec_fn=ignore
+    )
+    while not stored.exists() or stored.stat().st_size < 200_000:
+        assert process.poll() is None
+        time.sleep(0.05)
+    if background and sign == signal.SIGINT:
+        process.send_signal(sign)
+        time.sleep(0.3)
+        assert process.poll() is None
+        process.send_signal(signal.SIGTERM)
+    else:
+        process.send_signal(sign)
+    out, said = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert re.fullmatch(
+        rf"fastpin: interrupted after \d+ of 3,001 corners; go on with: fastpin resume {stored}\n", said
+    )
+    assert "path solver, 201 nodes" in out
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith("a.")] == ["a.h5"]
+
+
+def test_an_older_result_is_not_shown_for_a_run_that_never_began(
+    case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from fastpin import arc
+    from fastpin.errors import Interrupted
+
+    def stopped(*_: object) -> object:
+        raise Interrupted
+
+    stored = tmp_path / "a.h5"
+    assert main(["run", str(case), "--nodes", "61", "-o", str(stored)]) == 0
+    before = stored.read_bytes()
+    capsys.readouterr()
+    monkeypatch.setattr(arc, "_touched_arc", stopped)
+    assert main(["run", str(case), "-o", str(stored), "--overwrite"]) == 130
+    captured = capsys.readouterr()
+    assert "no state was reached" in captured.out
+    assert captured.err == "fastpin: interrupted before the first corner\n"
+    assert stored.read_bytes() == before

@@ -71,6 +71,7 @@ def assert_file(path: Path, expected) -> None:
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
     history = PROGRAMS[program]
+    keep = keep if history.longest_cycle or keep != "cycles" else "every 7"
     follow(problem, history, path, nodes=61, between=1, keep=keep)
     expected = solve(problem, history, nodes=61, between=1, keep=keep)
     assert_file(path, expected)
@@ -106,20 +107,21 @@ def test_an_interrupted_run_goes_on(problem, path, corner):
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
+@pytest.mark.parametrize("stops", [6.0, 1.25])
 @pytest.mark.parametrize("program", list(PROGRAMS))
-def test_a_run_interrupted_again_and_again(problem, path, program):
-    history, corner = PROGRAMS[program], 3.0
+def test_a_run_interrupted_again_and_again(problem, path, program, stops):
+    history, corner = PROGRAMS[program][: 12 * int(stops)], 3.0
+    options = {"nodes": 61, "arc": (-3.0, -0.1), "between": 1 if stops < 2.0 else 0}
     with pytest.raises(Interrupted):
-        follow(problem, history, path, nodes=61, progress=StopAt(corner), arc=(-3.0, -0.1))
+        follow(problem, history, path, progress=StopAt(corner), **options)
     while True:
-        corner += 6.0
+        corner += stops
         try:
             resume(path, StopAt(corner))
             break
         except Interrupted:
             continue
-    expected = solve(problem, history, nodes=61, arc=(-3.0, -0.1))
-    assert_file(path, expected)
+    assert_file(path, solve(problem, history, **options))
 
 
 def test_ctrl_c_leaves_a_solution_in_memory_with_what_was_solved(problem):
@@ -169,6 +171,7 @@ def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
     history = LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"M": 2.0}])
     with pytest.raises(NoEquilibriumError) as caught:
         follow(problem, history, path, nodes=61)
+    assert [state.step for state in caught.value.result] == [1]
     found = store.load(path)
     assert len(found) == 2
     assert not found.complete
@@ -180,7 +183,7 @@ def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
     assert np.array_equal(solve(problem, [{"Q": -0.1}], start=found)[-1].shear, expected[-1].shear)
 
 
-def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path, monkeypatch):
+def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path, tmp_path, monkeypatch):
     """The coarse run is made to see the first step only."""
     from fastpin import arc
 
@@ -198,9 +201,13 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
     resume(path)
     assert_file(path, expected)
     with pytest.raises(ArcError):
-        follow(problem, history, path, nodes=61, arc=(first.theta[0], first.theta[-1]))
-    with pytest.raises(ArcError):
+        follow(problem, history, path, nodes=61, arc=(first.theta[0], first.theta[-1]), overwrite=True)
+    with pytest.raises(ArcError, match="give a wider one"):
         resume(path)
+    with pytest.raises(ArcError, match="the result to go on from"):
+        follow(problem, [{"Q": 0.6}], tmp_path / "b.h5", start=store.load(path, after=2))
+    with pytest.raises(ArcError):
+        resume(tmp_path / "b.h5")
 
 
 def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
@@ -294,10 +301,21 @@ def test_without_a_good_checkpoint_a_run_goes_on_from_its_beginning(left, path, 
 def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
     with pytest.raises(InputError, match="unfinished run"):
         follow(problem, RANDOM, path, nodes=61)
+    with pytest.raises(InputError, match="unfinished run"):
+        store.save(left, path)
     follow(problem, RANDOM[:3], path, nodes=61, overwrite=True)
     assert len(store.load(path)) == 3
-    follow(problem, RANDOM[:4], path, nodes=61)  # a finished one
+    for _ in range(2):  # a finished one, and a file of another kind
+        before = path.read_bytes()
+        with pytest.raises(InputError, match="exists already"):
+            follow(problem, RANDOM[:4], path, nodes=61)
+        assert path.read_bytes() == before
+        path.write_text("something else")
+    path.write_text("")
+    follow(problem, RANDOM[:4], path, nodes=61)
     assert len(store.load(path)) == 4
+    with pytest.raises(InputError, match="ordinary file"):
+        follow(problem, RANDOM[:4], "/dev/null", nodes=61)
 
 
 def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, path, problem):
@@ -402,14 +420,24 @@ def test_a_branch_of_a_branch_that_was_interrupted(problem, path, tmp_path):
 
 def test_corners_that_can_not_be_branched_from(problem, path, tmp_path):
     follow(problem, RANDOM[:4], path, nodes=61)
-    for after in (0, 5, -1):
-        with pytest.raises(InputError, match="must be a corner from 1 to 4"):
+    with pytest.raises(InputError, match="must be a corner from 1 to 4"):
+        store.load(path, after=5)
+    for after in (0, -1, 2.5, True):
+        with pytest.raises(InputError, match="whole number"):
             store.load(path, after=after)
-    with pytest.raises(InputError, match="save_after"):
-        follow(problem, RANDOM, tmp_path / "b.h5", save_after=[0])
+    for wrong in ([4], [-5], [1000]):
+        with pytest.raises(InputError, match="must be places from 0 to 3"):
+            store.load(path, states=wrong)
+    with pytest.raises(InputError, match="must be places from 0 to 1"):
+        store.load(path, states=[3], after=2)
+    for wrong in ([0], [42]):
+        with pytest.raises(InputError, match="save_after"):
+            follow(problem, RANDOM, tmp_path / "b.h5", save_after=wrong)
     store.save(solve(problem, RANDOM[:3], nodes=61), path)
-    with pytest.raises(InputError, match="only its end"):
+    with pytest.raises(InputError, match="not written by a run"):
         store.load(path, after=2)
+    with pytest.raises(InputError, match="not written by a run"):
+        resume(path)
     assert len(solve(problem, [{"Q": 0.1}], start=store.load(path))) == 1
 
 

@@ -31,6 +31,10 @@ PROGRAMS = {
     "spectrum": P + q(*RANDOM, 0.3).repeated(5),
     "cycles, then corners": P + (q(0.3, -0.3).repeated(4) + q(0.1, 0.2, 0.1)).repeated(5),
     "loads that come back": P + q(0.2, -0.2).repeated(12) + (q(0.3, -0.3) + q(0.1, -0.1).repeated(5)).repeated(6),
+    "begins inside a period": P
+    + (q(*[0.2, -0.2] * 4) + q(0.2, -0.2, 0.2, -0.2, 0.2, -0.2, 0.3).repeated(2)).repeated(3),
+    "begins before a period": P + (q(*[0.2, -0.2] * 3, 0.2) + q(*[-0.2, 0.2] * 3, -0.2, 0.3).repeated(2)).repeated(3),
+    "minus zero": P + q(*[0.2, 0.0] * 6, -0.0, 0.2, -0.0),
     "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(10),
 }
 
@@ -64,6 +68,7 @@ def known(result: Result) -> list[tuple]:
 @pytest.mark.parametrize("kind", ["held", "free"])
 def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, program, keep):
     problem, history = request.getfixturevalue(kind), PROGRAMS[program]
+    keep = keep if history.longest_cycle or keep != "cycles" else "every 40"
     between = 1 if keep == "all" else 0
     short = solve(problem, history, nodes=61, between=between, keep=keep)
     whole = solve(problem, history, nodes=61, between=between, keep=keep, shortcut=False)
@@ -148,10 +153,26 @@ def test_series_are_told_apart(held):
 
 
 def test_a_cycle_that_began_before_the_history_is_not_known(held):
-    first = solve(held, q(0.0)[:1] + P, nodes=61, arc=(-3.0, -0.1))
-    result = solve(held, q(0.2, -0.2).repeated(3)[1:], start=first)
-    assert math.isnan(result.cycles[0].shear_change) or result.cycles[0].corner - result.cycles[0].length == -1
-    assert not math.isnan(result.cycles[1].shear_change)
+    history = P + q(0.2, -0.2, 0.1).repeated(4)
+    first = solve(held, history[:2], nodes=61, arc=(-3.0, -0.1))
+    cut, second, *_ = solve(held, history[2:], start=first).cycles
+    assert (cut.corner, cut.length) == (1, 3)
+    assert math.isnan(cut.shear_change)
+    assert math.isnan(cut.dissipation)
+    whole = solve(held, history, nodes=61, arc=(-3.0, -0.1)).cycles[1]
+    assert second[3:] == whole[3:]
+    assert (second.corner, second.length) == (whole.corner - 2, 3)
+
+
+def test_states_that_are_seldom_kept_do_not_cost_the_shortcut(held):
+    history = P + q(0.2, -0.2, 0.1).repeated(400)
+    result = solve(held, history, nodes=61, keep="every 500")
+    assert [state.step for state in result] == [499, 999, 1200]
+    assert result.statistics["repeated"] > 1180
+    whole = solve(held, history, grid=result.grid, shortcut=False)
+    for state in result:
+        assert np.array_equal(state.shear, whole[state.step].shear)
+        assert state.dissipation == whole[state.step].dissipation
 
 
 @pytest.mark.parametrize(

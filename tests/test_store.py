@@ -13,6 +13,7 @@ from samples import PAIR, sample_result
 
 from fastpin.errors import InputError
 from fastpin.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
+from fastpin.loading import LoadHistory
 from fastpin.materials import MATERIALS, Material, MaterialPair
 from fastpin.problem import Problem
 from fastpin.state import Cycle, Result, State
@@ -79,7 +80,7 @@ def test_units_versions_and_packing_are_in_the_file(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5") as file:
         assert file["states/pressure"].attrs["unit"] == "Pa"
         assert file["states/rotation"].attrs["unit"] == "rad"
-        assert list(file["states/load"].attrs["unit"][:3]) == ["N/m", "N/m", "N"]
+        assert list(file["states/loads"].attrs["unit"][:3]) == ["N/m", "N/m", "N"]
         assert file["states/pressure"].compression == "gzip"
         assert file["states/status"].dtype == np.int8
         assert file.attrs["version_numpy"] == np.__version__
@@ -171,6 +172,7 @@ def test_some_states_alone(tmp_path: Path) -> None:
 
 def test_cycles_are_kept(tmp_path: Path) -> None:
     result = sample_result()
+    result.history = LoadHistory([{"P": 2.42e6}]).repeated(3)
     cycles = [Cycle(2, 2, 1, 0.5, 0.25, 1e-3, 1e-6, True), Cycle(4, 2, 2, 0.0, 0.0, 1e-4, 0.0, False)]
     save(
         Result(list(result), result.problem, result.history, result.grid, "path", {}, True, None, cycles),
@@ -190,7 +192,7 @@ def test_xarray_reads_the_states_with_and_without_us(tmp_path: Path) -> None:
     assert ours.pressure.attrs["units"] == "Pa"
     assert np.array_equal(ours.pressure.sel(state=1), result[1].pressure)
     assert np.array_equal(ours.theta, result.grid.theta)
-    assert ours["load"].sel(load_name="Q").values.tolist() == [0.0, 4.84e5, -4.84e5]
+    assert ours.loads.sel(load_name="Q").values.tolist() == [0.0, 4.84e5, -4.84e5]
     assert ours.attrs["complete"] is True
     with xarray.open_dataset(path, group="states") as theirs:
         assert set(theirs.variables) == set(ours.variables)
