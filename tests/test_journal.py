@@ -14,7 +14,7 @@ import pytest
 
 from fastpin import journal
 from fastpin.errors import InputError
-from fastpin.journal import JournaledFile, journal_of, open_h5, settled
+from fastpin.journal import JournaledFile, check_free, journal_of, open_h5, settled
 
 SIZE, ARRAYS = 50, 3
 ROWS = np.random.default_rng(0).random((200, SIZE))
@@ -209,6 +209,74 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
     h5.close()
     file.commit()
     file.release()
+
+
+@pytest.fixture
+def torn(tmp_path: Path) -> tuple[Path, bytes, bytes, bytes]:
+    """A file whose process has died in a transaction: its path, what it was, what it is, and the journal."""
+    path = tmp_path / "a.h5"
+    written(path, 5)
+    before = path.read_bytes()
+    file = JournaledFile(path, new=False)
+    h5 = h5py.File(file, "r+")
+    for k in range(ARRAYS):
+        h5[f"array{k}"].resize(6, axis=0)
+        h5[f"array{k}"][5] = ROWS[5]
+    h5.attrs["rows"] = 6
+    h5.flush()
+    changed, kept = path.read_bytes(), journal_of(path).read_bytes()
+    file.abandon()
+    h5.close()
+    file.release()
+    path.write_bytes(changed)
+    journal_of(path).write_bytes(kept)
+    return path, before, changed, kept
+
+
+@pytest.mark.parametrize("rows", [1, 4, 5, 7, 80])
+def test_the_journal_of_another_file_does_no_harm(torn: tuple[Path, bytes, bytes, bytes], rows: int) -> None:
+    path, _, _, kept = torn
+    other = path.with_name("b.h5")
+    written(other, rows)
+    content = other.read_bytes()
+    path.write_bytes(content)
+    assert rows_in(path) == rows
+    assert path.read_bytes() == content
+    assert not journal_of(path).stat().st_size
+    journal_of(path).write_bytes(kept)
+    JournaledFile(path, new=False).release()
+    assert path.read_bytes() == content
+
+
+def test_links_lead_to_the_journal_of_the_file(torn: tuple[Path, bytes, bytes, bytes], tmp_path: Path) -> None:
+    path, before, _, _ = torn
+    (tmp_path / "below").mkdir()
+    link = tmp_path / "below" / "link.h5"
+    link.symlink_to(path)
+    assert journal_of(link) == journal_of(path)
+    assert rows_in(link) == 5
+    assert path.read_bytes() == before
+
+
+def test_file_systems_without_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(journal.fcntl, "flock", refuse)
+    written(tmp_path / "a.h5", 3)
+    assert rows_in(tmp_path / "a.h5") == 3
+    check_free(tmp_path / "a.h5")
+
+
+def test_a_journal_that_can_not_be_written(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 2)
+    journal_of(path).mkdir()
+    for _ in range(2):  # and the lock is given back
+        with pytest.raises(InputError, match=r"a\.h5\.journal: can't be written"):
+            JournaledFile(path, new=False)
+    journal_of(path).rmdir()
+    JournaledFile(path, new=False).release()
 
 
 def test_missing_and_unwritable_files(tmp_path: Path) -> None:

@@ -257,6 +257,40 @@ def test_a_killed_run_has_lost_nothing(tmp_path):
     assert found["states"] == 2 * (1 + 20 * 50)
 
 
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(errno.ENOSPC, "No space left on device")])
+def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatch, error):
+    def fail(*_):
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr(record, "write_statistics", fail)
+        with pytest.raises((KeyboardInterrupt, OSError)):
+            follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
+    assert store.size(path) <= 6
+    resume(path)
+    assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
+
+
+def test_a_run_that_ended_before_it_began(problem, path):
+    path.write_bytes(b"")
+    with pytest.raises(InputError, match="start it again"):
+        resume(path)
+    follow(problem, RANDOM[:3], path, nodes=61)
+    assert len(store.load(path)) == 3
+
+
+def test_links_lead_to_one_run(problem, path, tmp_path):
+    (tmp_path / "below").mkdir()
+    link = tmp_path / "below" / "link.h5"
+    link.symlink_to(path)
+    assert checkpoint_of(link) == checkpoint_of(path)
+    with pytest.raises(Interrupted):
+        follow(problem, RANDOM, link, nodes=61, progress=StopAt(9.0), arc=(-3.0, -0.1))
+    resume(path)
+    assert_file(link, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+    assert link.is_symlink()
+
+
 # -- checkpoints ---------------------------------------------------------------------------------------------
 
 
@@ -341,6 +375,13 @@ def test_only_unfinished_runs_are_gone_on_with(problem, path, tmp_path):
         resume(path)
     with pytest.raises(InputError, match="no such file"):
         resume(tmp_path / "b.h5")
+    with h5py.File(path, "w") as file:
+        file.attrs["run"] = "of another program"
+    with pytest.raises(InputError, match="not a result of fastpin"):
+        resume(path)
+    with pytest.raises(InputError, match="exists already"):
+        follow(problem, RANDOM[:3], path, nodes=61)
+    follow(problem, RANDOM[:3], path, nodes=61, overwrite=True)
     whole = path.read_bytes()
     for content, words in (
         (whole[: len(whole) // 2], "not a whole HDF5 file"),
@@ -364,12 +405,15 @@ def test_two_runs_do_not_write_to_one_file(problem, path):
                 resume(path)
             with pytest.raises(InputError, match="another run is writing"):
                 follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1), overwrite=True)
+            with pytest.raises(InputError, match="another run is writing"):
+                store.save(whole, path)
             seen.append(len(store.load(path)))
 
+    whole = solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1))
     seen: list[int] = []
     follow(problem, RANDOM[:6], path, nodes=61, progress=progress, arc=(-3.0, -0.1))
     assert seen
-    assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
+    assert_file(path, whole)
 
 
 def test_a_run_can_be_looked_at_while_it_goes_on(problem, path, monkeypatch):
@@ -402,6 +446,22 @@ def test_a_branch_goes_on_from_any_corner(problem, path, tmp_path, corner):
     assert result[-1].dissipation == expected[-1].dissipation
     follow(problem, branch, tmp_path / "b.h5", start=trunk)
     assert_same(store.load(tmp_path / "b.h5"), result)
+
+
+def test_corners_to_branch_from_are_not_skipped(problem, path):
+    history = P + q(0.2, -0.2, 0.1, -0.1).repeated(50)
+    wanted = [20, 21, 22, 23, 50, 51, 61, 100, 201]
+    follow(problem, history, path, nodes=61, save_after=wanted, keep="cycles")
+    with h5py.File(path) as file:
+        assert sorted(file["restart"], key=str) == sorted([*map(str, wanted), "start", "latest"])
+        assert all(file["restart"][str(corner)].attrs["corner"] == corner for corner in wanted)
+    found = store.load(path)
+    assert_same(found, solve(problem, history, nodes=61, keep="cycles"))
+    assert found.statistics["repeated"] > 120
+    for corner in (22, 100):
+        branch = solve(problem, [{"Q": 0.25}], start=store.load(path, after=corner))
+        expected = solve(problem, history[:corner] + q(0.25), grid=found.grid)
+        assert np.array_equal(branch[-1].shear, expected[-1].shear)
 
 
 def test_a_branch_of_a_branch_that_was_interrupted(problem, path, tmp_path):
