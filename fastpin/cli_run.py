@@ -1,4 +1,4 @@
-"""``fastpin run`` and ``fastpin resume``: solve, and hand out what was found as table, figures and files."""
+"""``fastpin run``, ``resume`` and ``show``: solve, and hand out what was found as table, figures and files."""
 
 from __future__ import annotations
 
