@@ -56,8 +56,8 @@ def _touched_arc(
             arc = None
         grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = Run(System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress=progress)
-            run.follow(history)
+            run = Run(history, System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress=progress)
+            run.follow()
             margin = 4
         except ArcError:
             assert arc is not None

@@ -8,8 +8,9 @@ import h5py
 import numpy as np
 
 from fastpin.collocation import Configuration
+from fastpin.past import Mark
 from fastpin.repeats import Met, Repeats
-from fastpin.run import Mark, Restart
+from fastpin.run import Restart
 
 _ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in ("dissipation", "work")]
 

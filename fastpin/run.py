@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
-from collections import Counter, deque
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
@@ -19,8 +17,9 @@ from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumErr
 from fastpin.increment import implicit_step
 from fastpin.keep import EVERYTHING, Keep
 from fastpin.loading import CycleKey, LoadHistory, filled, named_load
+from fastpin.past import Logged, Mark, Past
 from fastpin.path import PathStep, StepLostError
-from fastpin.repeats import Repeats
+from fastpin.repeats import Met, Repeats
 from fastpin.state import OPEN, SLIP_POSITIVE, Cycle, State
 
 log = logging.getLogger(__name__)
@@ -35,9 +34,6 @@ FEW_NODES = 8
 
 NEGLIGIBLE = 1e-3
 """Part of a step's force below which a contact narrower than the grid is given up and looked for again."""
-
-MOST_LOGGED = 1024
-"""Corners that are looked back on, or those of the longest cycle."""
 
 MOST_RELEASES = 20
 """Times that this may happen in one step."""
@@ -113,16 +109,6 @@ class Recorder(Protocol):
         """The run stands at a corner, from which it can be gone on."""
 
 
-@dataclass(eq=False)
-class Mark:
-    """The end of a cycle, or the corner with which the first one begins, and the energy dissipated since."""
-
-    corner: int
-    number: int
-    configuration: Configuration
-    dissipation: float = 0.0
-
-
 @dataclass(frozen=True, eq=False)
 class Restart:
     """What is needed to go on from a corner, to the same bits.
@@ -160,39 +146,12 @@ class Restart:
         return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={})
 
 
-@dataclass(eq=False)
-class _Logged:
-    """A corner of the past: what happened on the way to it, and what was kept of it."""
-
-    dissipation: float
-    work: float
-    kept: list[tuple[float, float]]  # dissipation and work, from the corner before, of every state
-    cycles: list[tuple[CycleKey, Cycle]]
-
-
-def _copies(marks: dict[CycleKey, Mark]) -> dict[CycleKey, Mark]:
-    return {key: replace(mark) for key, mark in marks.items()}
-
-
-def _counts(logged: list[_Logged], begin: int) -> dict[CycleKey, int]:
-    """By how much the numbers of the cycles grow in a period that begins at the corner `begin`.
-
-    Those of cycles that begin anew in every period do not.
-    """
-    cycles = [pair for entry in logged for pair in entry.cycles]
-    ended = {key for key, _ in logged[-1].cycles}
-    counts = Counter(key for key, _ in cycles)
-    for key, cycle in cycles:
-        if cycle.number == 1 and (cycle.corner - cycle.length > begin or key not in ended):
-            counts[key] = 0
-    return counts
-
-
 class Run:
     """One history on one grid.
 
     Parameters
     ----------
+    history : LoadHistory
     system : System
     method : {"path", "increment"}
     increments : int
@@ -223,6 +182,7 @@ class Run:
 
     def __init__(
         self,
+        history: LoadHistory,
         system: System,
         method: Method,
         increments: int,
@@ -234,6 +194,7 @@ class Run:
         shortcut: bool = True,
         stops: Collection[int] = (),
     ) -> None:
+        self.history = history
         self.system = system
         self.method = method
         self.increments = increments
@@ -250,7 +211,7 @@ class Run:
         self.now = start.configuration
         self.load = start.load
         self.dissipation, self.work = start.dissipation, start.work
-        self.repeats, self.marks = start.repeats, _copies(start.marks)
+        self.repeats, self.past = start.repeats, Past(history, start.marks)
         self.corner = start.corner
         self.settled = start.configuration  # at the last corner
         self.touched = self.now.closed.copy()
@@ -261,178 +222,117 @@ class Run:
         self.path: PathStep | None = None
         self.memory = Memory(system.grid.size)
         self.path_begin = 0.0
-        self.log: deque[_Logged] = deque()
         counted = ("events", "exchanges", "rebuilds", "increments", "repeated")
         self.statistics = {**dict.fromkeys(counted, 0.0), **start.statistics}
 
-    def follow(self, history: LoadHistory) -> None:
+    def follow(self) -> None:
         """Follow the history from the corner where the run stands to its end."""
-        scales, corners = self.system.scales, len(history)
-        self.log = deque(maxlen=max(MOST_LOGGED, history.longest_cycle))
-        self._begin_cycles(history)
+        corners = len(self.history)
+        self.past.begin_cycles(self.corner - 1, self.now)
         while self.corner < corners:
-            step = self.corner
-            given, ended = history.corner(step)
+            given, ended = self.history.corner(self.corner)
             load = filled(given, self.load)
-            target, before, self.reached = load / scales.loads, self.now.load, 0.0
-            self.log.append(_Logged(0.0, 0.0, [], []))
-            try:
-                for piece in _pieces(before, target):
-                    self._follow_piece(piece, step, corners)
-                met = self.repeats.meet(self.now, bool(ended), step)
-                if met is not None:
-                    dissipation, work = self.now.dissipation, self.now.work
-                    self.now = replace(met.configuration, dissipation=dissipation, work=work)
-                if self.recorder is not None and self.keep.corner(step, corners, bool(ended)):
-                    self._keep(step, 1.0)
-            except SolveError as error:
-                self._leave_path()
-                reached = (before + self.reached * (target - before)) * scales.loads
-                error.step, error.fraction, error.load = step, self.reached, named_load(reached)
-                place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
-                where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
-                error.args = (f"{where}: {error}",)
-                raise
+            met = self._step(load, bool(ended))
             self._close_step(load)
-            periods = self._end_cycles(history, ended)
+            periods = self.past.end_cycles(ended, self.corner, self.now, self.system.scales)
+            self._record_cycles(self.past.log[-1])
             self.corner += 1
             if met is not None and self.shortcut:
-                for period, since in [*periods, (met.period, met.since)]:
-                    self._repeat(history, period, since)
-            self._begin_cycles(history)
-            if self.recorder is not None:
-                self.recorder.corner_reached()
-            if self.progress is not None:
-                self.progress(float(self.corner), corners)
+                for length, since in [*periods, (met.period, met.since)]:
+                    self._repeat(length, since)
+            self.past.begin_cycles(self.corner - 1, self.now)
+            self._stand()
         self.complete = True
 
     def restart(self) -> Restart:
         """To go on from the last corner that was reached."""
+        marks = Past(self.history, self.past.marks).marks  # a copy
         return Restart(
             self.corner, self.load, self.system.scales.force, self.settled, self.dissipation, self.work,
-            self.repeats.copy(same_history=True), _copies(self.marks), dict(self.statistics),
+            self.repeats.copy(same_history=True), marks, dict(self.statistics),
         )  # fmt: skip
+
+    def _step(self, load: np.ndarray, ends_cycle: bool) -> Met | None:
+        """Follow the step to the corner with the load `load` (SI), and keep its states.
+
+        Returns what was met before, if the configuration there is the same.
+        """
+        step, corners, scales = self.corner, len(self.history), self.system.scales
+        target, before, self.reached = load / scales.loads, self.now.load, 0.0
+        self.past.log.append(Logged())
+        try:
+            for piece in _pieces(before, target):
+                self._follow_piece(piece, step, corners)
+            met = self.repeats.meet(self.now, ends_cycle, step)
+            if met is not None:
+                dissipation, work = self.now.dissipation, self.now.work
+                self.now = replace(met.configuration, dissipation=dissipation, work=work)
+            if self.recorder is not None and self.keep.corner(step, corners, ends_cycle):
+                self._keep(step, 1.0)
+        except SolveError as error:
+            self._leave_path()
+            reached = (before + self.reached * (target - before)) * scales.loads
+            error.step, error.fraction, error.load = step, self.reached, named_load(reached)
+            place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
+            where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
+            error.args = (f"{where}: {error}",)
+            raise
+        return met
 
     def _close_step(self, load: np.ndarray) -> None:
         """Book the energies of the step that has come to its corner, under `load`."""
-        logged = self.log[-1]
-        logged.dissipation, logged.work = self.now.dissipation, self.now.work
-        self.dissipation += logged.dissipation
-        self.work += logged.work
-        for mark in self.marks.values():
-            mark.dissipation += logged.dissipation
+        self.past.close_step(self.now.dissipation, self.now.work)
+        self.dissipation += self.now.dissipation
+        self.work += self.now.work
         self.now = self.settled = replace(self.now, dissipation=0.0, work=0.0)
         self.load = load
 
-    def _begin_cycles(self, history: LoadHistory) -> None:
-        """Mark this corner as the beginning of the cycles that begin here."""
-        for key in history.cycles_after(self.corner - 1):
-            if key not in self.marks or self.marks[key].corner != self.corner - 1:
-                self.marks[key] = Mark(self.corner - 1, 0, self.now)
+    def _stand(self) -> None:
+        """Show that a corner has been reached."""
+        if self.recorder is not None:
+            self.recorder.corner_reached()
+        if self.progress is not None:
+            self.progress(float(self.corner), len(self.history))
 
-    def _end_cycles(self, history: LoadHistory, ended: list[CycleKey]) -> list[tuple[int, int]]:
-        """Record what the cycles that end at the present corner have changed.
-
-        Returns
-        -------
-        list of (int, int)
-            Length and beginning of those that led back to the very configuration with which they began.
-        """
-        corner, now, scales = self.corner, self.now, self.system.scales
-        periods = []
-        for key in ended:
-            mark, length = self.marks.get(key), history.cycle_length(key)
-            number, changes = 1, (math.nan, math.nan, math.nan, math.nan)
-            if mark is not None and mark.corner == corner - length:
-                number, then = mark.number + 1, mark.configuration
-                peak = max(float(now.pressure.max()), float(then.pressure.max()), 1e-300)
-                changes = (
-                    float(np.abs(now.pressure - then.pressure).max()) / peak,
-                    float(np.abs(now.shear - then.shear).max()) / peak,
-                    mark.dissipation * scales.energy,
-                    float(now.motion[2] - then.motion[2]) * scales.rotation,
-                )
-                if now.slip is then.slip:
-                    periods.append((length, mark.corner))
-            self.marks[key] = Mark(corner, number, now)
-            cycle = Cycle(corner, length, number, *changes, True)
-            self.log[-1].cycles.append((key, cycle))
-            if self.recorder is not None:
-                self.recorder.add_cycle(cycle)
-        for key in [key for key, mark in self.marks.items() if mark.corner < corner - history.cycle_length(key)]:
-            del self.marks[key]
-        return periods
-
-    def _repeat(self, history: LoadHistory, period: int, since: int) -> None:
+    def _repeat(self, length: int, since: int) -> None:
         """Where the loads ahead are those of the period that ends here, take the record for them.
 
-        The present configuration is that of every so many corners before, back to the corner `since`.
+        The present configuration is that of every `length` corners before, back to the corner `since`.
         """
         now = self.corner - 1
-        length = math.lcm(period, self.keep.every)  # so that the same corners are kept
-        unkept = now - since < length  # go on as far as nothing is kept, then
-        length = period if unkept else length
-        if period == 0 or len(self.log) < length or now - since < length:
+        period = self.past.period(now, length, since, self.keep, self.stops)
+        if period is None:
             return
-        ahead = history.same_ahead(self.corner, length)
-        if unkept:
-            ahead = min(ahead, self.keep.every - 1 - self.corner % self.keep.every)
-        if self.keep.every > 1 or self.keep.which == "cycles":
-            ahead = min(ahead, len(history) - 1 - self.corner)  # the last corner is always kept
-        ahead = min(ahead, min((stop for stop in self.stops if stop > self.corner), default=len(history)) - self.corner)
-        times = ahead // length
-        if times < 1:
-            return
-        logged = [self.log[k - length] for k in range(length)]
-        if unkept:
-            logged = [replace(entry, kept=[]) for entry in logged]
-        if any(cycle.corner - cycle.length < now - length for entry in logged for _, cycle in entry.cycles):
-            return  # a cycle that began before: what it changed will not be repeated
-        if any(mark.number == 0 and mark.corner > now - length for mark in self.marks.values()):
-            return  # one that has begun and not ended
-        log.info("corner %d: the last %d corners repeat %d times and are not solved again", now + 1, length, times)
+        length = len(period.logged)
+        log.info(
+            "corner %d: the last %d corners repeat %d times and are not solved again", now + 1, length, period.times
+        )
         latest = [other for other in self.repeats if other.last > now - length]
-        counts = _counts(logged, now - length)
-        for k in range(times):
-            self._book_again(logged, k + 1, counts)
+        for time in range(1, period.times + 1):
+            self._book_again(self.past.again(period, time, self.corner))
             for other in latest:
                 other.last += length
-            for key, mark in self.marks.items():
-                if mark.corner >= self.corner - length:
-                    mark.corner += length
-                    mark.number += counts.get(key, 0) if mark.number else 0
             self.corner += length
             self.statistics["repeated"] += length
-            if self.recorder is not None:
-                self.recorder.corner_reached()
-            if self.progress is not None:
-                self.progress(float(self.corner), len(history))
+            self._stand()
 
-    def _book_again(self, logged: list[_Logged], time: int, counts: dict[CycleKey, int]) -> None:
-        """The next corners as those that were `logged`, for the `time`-th time; `counts` are the cycles among them."""
+    def _book_again(self, entries: list[Logged]) -> None:
+        """The next corners, which are known."""
         energy, rows = self.system.scales.energy, []
-        for k, entry in enumerate(logged):
+        for step, entry in enumerate(entries, start=self.corner):
             for dissipation, work in entry.kept:
-                rows.append((self.corner + k, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
-            cycles = [
-                (
-                    key,
-                    cycle._replace(corner=cycle.corner + time * len(logged), number=cycle.number + time * counts[key]),
-                )
-                for key, cycle in entry.cycles
-            ]
-            self.log.append(replace(entry, cycles=cycles))
-            if self.recorder is not None:
-                for _, cycle in cycles:
-                    self.recorder.add_cycle(cycle._replace(solved=False))
+                rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
             self.dissipation += entry.dissipation
             self.work += entry.work
-            for mark in self.marks.values():
-                if mark.corner < self.corner - len(logged):
-                    mark.dissipation += entry.dissipation
+            self._record_cycles(entry, solved=False)
         if self.recorder is not None and rows:
             steps, dissipations, works = zip(*rows, strict=True)
             self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works))
+
+    def _record_cycles(self, entry: Logged, solved: bool = True) -> None:
+        if self.recorder is not None:
+            for _, cycle in entry.cycles:
+                self.recorder.add_cycle(cycle._replace(solved=solved))
 
     def _follow_piece(self, piece: _Piece, step: int, steps: int) -> None:
         """One straight piece of the history, from stop to stop."""
@@ -613,6 +513,6 @@ class Run:
         )
         for array in (state.pressure, state.shear, state.gap, state.slip, state.status):
             array.setflags(write=False)  # repeated steps share them
-        self.log[-1].kept.append((now.dissipation, now.work))
+        self.past.log[-1].kept.append((now.dissipation, now.work))
         assert self.recorder is not None
         self.recorder.add(state)

@@ -240,20 +240,21 @@ class Task:
     def reach(self, start: Restart, grid: Grid) -> Restart:
         """Follow the history from a corner to its end, and keep nothing but what is needed to go on from there."""
         with held_back() as asked, _one_thread():
-            run = Run(
-                System.build(self.problem, grid, start.force), self.method, self.increments, self.fractions, None,
-                self.keep, self._progress(asked), start, self.shortcut,
-            )  # fmt: skip
-            run.follow(self.history)
+            system = System.build(self.problem, grid, start.force)
+            run = self._made(system, None, start, self._progress(asked))
+            run.follow()
             return run.restart()
 
     def _run(self, system: System, recorder: Recorder, start: Restart | None, progress: Progress) -> None:
-        run = Run(
-            system, self.method, self.increments, self.fractions, recorder, self.keep, progress, start, self.shortcut,
-            self.stops,
-        )  # fmt: skip
+        run = self._made(system, recorder, start, progress)
         recorder.begin(run)
-        run.follow(self.history)
+        run.follow()
+
+    def _made(self, system: System, recorder: Recorder | None, start: Restart | None, progress: Progress) -> Run:
+        return Run(
+            self.history, system, self.method, self.increments, self.fractions, recorder, self.keep, progress, start,
+            self.shortcut, self.stops,
+        )  # fmt: skip
 
     def _progress(self, asked: Asked) -> Progress:
         """What a run reports to: stops it where somebody asked for it."""
