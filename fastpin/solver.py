@@ -17,7 +17,7 @@ from threadpoolctl import ThreadpoolController
 from fastpin.arc import grids_to_try
 from fastpin.checks import finite, one_of, whole_number
 from fastpin.collocation import System
-from fastpin.errors import ArcError, InputError, Interrupted, SolveError
+from fastpin.errors import CUT_OFF, ArcError, InputError, Interrupted, SolveError
 from fastpin.grid import Grid
 from fastpin.interrupt import Asked, held_back
 from fastpin.keep import Keep
@@ -221,7 +221,7 @@ class Task:
                     if self.arc is not None or given is not None:
                         raise
                     log.info("the contact reaches an end of the arc: once more on a wider one")
-        raise AssertionError("the whole circle has no ends")
+        raise ArcError(CUT_OFF)  # the grid to go on from is none of those that are chosen here and now
 
     def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Follow the history from a corner where another run stood, on its grid."""
