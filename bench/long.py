@@ -83,7 +83,7 @@ def draw(columns: dict[str, np.ndarray]) -> plot.Figure:
     minutes = columns["seconds"] / 60.0
     axes[0, 0].plot(minutes, columns["memory_mb"], **plot.line(0))
     axes[0, 0].set_ylabel("resident memory  [MB]")
-    axes[0, 0].set_ylim(bottom=0.0)
+    axes[0, 0].set_ylim(0.0, 1.2 * columns["memory_mb"].max())
     axes[0, 1].plot(minutes, columns["corners"] / 1e3, **plot.line(0))
     axes[0, 1].plot(minutes, columns["file_mb"], **plot.line(1, 1))
     axes[0, 1].set_ylabel("thousand corners, MB")
@@ -100,7 +100,12 @@ def main() -> None:
     parser.add_argument("--keep", default="corners")
     parser.add_argument("--output", type=Path, help="keep the result here")
     parser.add_argument("--write", action="store_true", help="write bench/results/long.csv and the figure")
+    parser.add_argument("--draw", action="store_true", help="only draw the figure of bench/results/long.csv")
     options = parser.parse_args()
+    if options.draw:
+        table = np.loadtxt(RESULTS / "long.csv", delimiter=",", skiprows=1)
+        plot.draw_with(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
+        return
     cases.steady_state(61)  # compiles
     with tempfile.TemporaryDirectory() as folder:
         path = options.output or Path(folder) / "long.h5"
