@@ -128,8 +128,6 @@ class Past:
         ahead = history.same_ahead(following, length)
         if unkept:
             ahead = min(ahead, keep.every - 1 - following % keep.every)
-        if keep.every > 1 or keep.which == "cycles":
-            ahead = min(ahead, len(history) - 1 - following)  # the last corner is always kept
         ahead = min(ahead, min((stop for stop in stops if stop > following), default=len(history)) - following)
         if ahead < length:
             return None

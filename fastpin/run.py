@@ -309,11 +309,14 @@ class Run:
         )
         latest = [other for other in self.repeats if other.last > now - length]
         for time in range(1, period.times + 1):
-            self._book_again(self.past.again(period, time, self.corner))
+            entries = self.past.again(period, time, self.corner)
+            self._book_again(entries)
             for other in latest:
                 other.last += length
             self.corner += length
             self.statistics["repeated"] += length
+            if self.corner == len(self.history) and self.recorder is not None and not entries[-1].kept:
+                self._keep(self.corner - 1, 1.0)  # the last one is kept in any case
             self._stand()
 
     def _book_again(self, entries: list[Logged]) -> None:

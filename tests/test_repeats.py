@@ -164,6 +164,15 @@ def test_a_cycle_that_began_before_the_history_is_not_known(held):
     assert (second.corner, second.length) == (whole.corner - 2, 3)
 
 
+def test_the_last_cycle_is_not_solved_for_its_last_state(held):
+    history = P + q(*RANDOM, 0.3).repeated(4)
+    whole = solve(held, history, nodes=61, shortcut=False)
+    for keep in ("all", "cycles", f"every {len(RANDOM) + 1}"):
+        result = solve(held, history, grid=whole.grid, keep=keep)
+        assert result.statistics["repeated"] == 2 * (len(RANDOM) + 1)
+        assert_same(Result([result[-1]], *[None] * 6), Result([whole[-1]], *[None] * 6))
+
+
 def test_states_that_are_seldom_kept_do_not_cost_the_shortcut(held):
     history = P + q(0.2, -0.2, 0.1).repeated(400)
     result = solve(held, history, nodes=61, keep="every 500")
