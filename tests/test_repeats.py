@@ -101,12 +101,13 @@ def test_a_result_can_be_gone_on_from_more_than_once(held):
 
 def test_repeated_states_are_exact_copies(held):
     result = solve(held, [{"P": 1.0}, *CYCLE * 8], nodes=101)
-    assert result[-1].pressure is result[-3].pressure
-    assert result[-1].step == result[-3].step + 2
+    assert np.array_equal(result[-1].pressure, result[-3].pressure)
+    shared = [state for state, before in zip(result[2:], result, strict=False) if state.pressure is before.pressure]
+    assert len(shared) == result.statistics["repeated"] > 0
     with pytest.raises(ValueError, match="read-only"):
-        result[-1].pressure[0] = 1.0
-    result[-1].load["P"] = 0.0
-    assert result[-3].load["P"] == 1.0
+        shared[0].pressure[0] = 1.0
+    shared[0].load["P"] = 0.0
+    assert result[shared[0].step - 2].load["P"] == 1.0
 
 
 def test_the_transient_as_numbers(free):
