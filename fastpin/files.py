@@ -24,6 +24,12 @@ def check_writable(path: str | Path) -> None:
         raise InputError(str(path), f"the directory {folder} is not writable")
 
 
+def check_exists(path: Path) -> None:
+    """Raise :class:`InputError` if `path` is no file."""
+    if not path.is_file():
+        raise InputError(str(path), "is a directory, a file is needed" if path.is_dir() else "there is no such file")
+
+
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`; it takes the name `path` when the block ends without an error.

@@ -19,7 +19,7 @@ import numpy as np
 from fastpin.casefile import Case, SolveOptions
 from fastpin.checks import whole_number
 from fastpin.errors import ArcError, InputError, Interrupted, SolveError
-from fastpin.files import check_writable, replacing
+from fastpin.files import check_exists, check_writable, replacing
 from fastpin.grid import Grid
 from fastpin.interrupt import held_back
 from fastpin.journal import JournaledFile
@@ -162,8 +162,7 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
         See :func:`record`.
     """
     path = Path(path)
-    if not path.is_file():
-        raise InputError(str(path), "there is no such file")
+    check_exists(path)
     writer, restart = _reopened(path, progress)
     task = writer.task
     with _writing(writer):

@@ -15,7 +15,7 @@ import numpy as np
 
 from fastpin.checks import whole_number
 from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
+from fastpin.files import check_exists, check_writable, replacing
 from fastpin.grid import Grid
 from fastpin.journal import check_free, open_h5, settled
 from fastpin.keep import Keep
@@ -201,8 +201,7 @@ def opened(path: Path) -> Iterator[Any]:
     InputError
         If the file can't be read, was cut short, or is no result of fastpin; also where its user found it damaged.
     """
-    if not path.is_file():
-        raise InputError(str(path), "there is no such file")
+    check_exists(path)
     with settled(path), open_h5(path) as file:
         check_format(file, str(path))
         try:

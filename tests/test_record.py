@@ -375,6 +375,8 @@ def test_only_unfinished_runs_are_gone_on_with(problem, path, tmp_path):
         resume(path)
     with pytest.raises(InputError, match="no such file"):
         resume(tmp_path / "b.h5")
+    with pytest.raises(InputError, match="is a directory"):
+        resume(tmp_path)
     with h5py.File(path, "w") as file:
         file.attrs["run"] = "of another program"
     with pytest.raises(InputError, match="not a result of fastpin"):
