@@ -156,3 +156,29 @@ def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="must end in"):
         plot_tractions(sample_result(), tmp_path / "a.docx")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_cycles(tmp_path: Path) -> None:
+    from fastpin.plot import plot_cycles, spread
+    from fastpin.state import Cycle, Result
+
+    result = sample_result()
+    with pytest.raises(InputError, match="no repeated blocks"):
+        plot_cycles(result)
+    unknown = float("nan")
+    result.cycles = (
+        Cycle(1, 2, 1, unknown, unknown, unknown, unknown, True),
+        Cycle(3, 2, 2, 1e-3, 1e-2, 1.0, 2e-6, True),
+        Cycle(5, 2, 3, 1e-6, 0.0, 1e-15, 1e-6, True),
+        Cycle(5, 6, 1, 0.5, 0.5, 2.0, 0.0, True),
+    )
+    figure = plot_cycles(Result([], *[getattr(result, n) for n in ("problem", "history", "grid", "method")], {}, True,
+                                None, result.cycles), tmp_path / "a.png", title="Cycles")  # fmt: skip
+    change, lost, turned = figure.axes
+    assert sorted(len(drawn.get_xdata()) for drawn in change.lines) == [1, 1, 3, 3]
+    assert change.get_yscale() == lost.get_yscale() == "log"
+    assert lost.get_ylim()[0] >= 1e-9
+    assert turned.lines[0].get_ydata()[-1] == pytest.approx(3.0)
+    assert turned.get_ylabel().endswith("[urad]")
+    assert (tmp_path / "a.png").exists()
+    assert [spread(count, 3) for count in (0, 1, 2, 5)] == [[], [0], [0, 1], [0, 2, 4]]
