@@ -2,6 +2,7 @@
 
     python bench/sweep.py                                  1,000 runs with 101 nodes, 1 and 2 workers
     python bench/sweep.py --runs 100 --nodes 201 --workers 4
+    python bench/sweep.py --dask                           the same on a dask cluster, one of whose workers is killed
 
 Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)); a sweep's time has the starting
 of its workers in it, which the last column leaves out: it counts from the end of the first run. One compilation is done
@@ -12,10 +13,13 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
+import signal
 import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 import fastpin
@@ -61,13 +65,47 @@ def swept(plan: Plan, workers: int) -> tuple[float, float]:
     return seconds, (ends[-1] - ends[1]) * count / (count - 1)
 
 
+def on_a_cluster(plan: Plan) -> None:
+    """The runs on two workers of a dask cluster, one of which is killed after a fifth of them, and on our own."""
+    from distributed import Client, LocalCluster
+
+    with tempfile.TemporaryDirectory() as folder:
+        theirs, ours = Path(folder) / "theirs", Path(folder) / "ours"
+        with (
+            LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+            Client(cluster) as client,
+        ):
+            victim = next(iter(client.run(os.getpid).values()))
+
+            def progress(ended: int, total: int) -> None:
+                if ended == max(total // 5, 1):
+                    os.kill(victim, signal.SIGKILL)
+
+            began = time.perf_counter()
+            summary = sweep.run(plan, theirs, client.get_executor(), progress=progress)
+            seconds = time.perf_counter() - began
+        sweep.run(plan, ours, workers=2)
+        different = 0
+        for run in plan.runs:
+            pairs = zip(*(store.load(folder / "results" / f"{run}.h5") for folder in (theirs, ours)), strict=True)
+            different += not all(np.array_equal(one.shear, other.shear) for one, other in pairs)
+    print(
+        f"dask, a worker killed  {seconds:8.2f} s; {summary.done} done, {len(summary.failed)} failed, {different} with "
+        "other bits than by workers of our own"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=1000)
     parser.add_argument("--nodes", type=int, default=101)
     parser.add_argument("--workers", type=int, nargs="+", default=[2])
+    parser.add_argument("--dask", action="store_true", help="only see whether a cluster gives the same")
     options = parser.parse_args()
     plan = plan_of(options.runs, options.nodes)
+    if options.dask:
+        on_a_cluster(plan)
+        return
     loop(plan_of(1, options.nodes))
     serial = loop(plan)
     count = len(plan.runs)
