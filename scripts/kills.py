@@ -77,7 +77,7 @@ def differences(one: Path, other: Path) -> list[str]:
 
 
 def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed: int = 0) -> dict[str, float]:
-    """Kill the run `kills` times, each time after up to `longest` seconds of work, then let it end.
+    """Kill the run up to `kills` times, each time after up to `longest` seconds of work, then let it end.
 
     Returns
     -------
@@ -95,8 +95,11 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
                 time.sleep(0.01)
             time.sleep(rng.uniform(0.0, longest))
             process.send_signal(signal.SIGKILL)
-        if process.wait() != -signal.SIGKILL:
-            raise SystemExit(f"the run ended by itself, after {found['kills']:.0f} kills:\n{said.read_text()}")
+        code = process.wait()
+        if code == 0:
+            break  # it has come to its end
+        if code != -signal.SIGKILL:
+            raise SystemExit(f"the run has failed, after {found['kills']:.0f} kills:\n{said.read_text()}")
         found["kills"] += 1
         journal = path.with_name(path.name + ".journal")
         found["transaction"] += journal.stat().st_size > 0
@@ -104,7 +107,8 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
         stored = store.size(path)
         found["lost"] += max(acknowledged - stored, 0)
         found["acknowledged"] = stored
-    work(path, rounds)
+    if store.is_unfinished(path):
+        work(path, rounds)
     undisturbed = folder / "undisturbed.h5"
     work(undisturbed, rounds)
     found["states"] = store.size(path)
