@@ -102,11 +102,13 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
             raise SystemExit(f"the run has failed, after {found['kills']:.0f} kills:\n{said.read_text()}")
         found["kills"] += 1
         journal = path.with_name(path.name + ".journal")
-        found["transaction"] += journal.stat().st_size > 0
+        found["transaction"] += journal.exists() and journal.stat().st_size > 0
         acknowledged = int(re.findall(r"(\d+) states in the file\n", said.read_text())[-1])
         stored = store.size(path)
         found["lost"] += max(acknowledged - stored, 0)
         found["acknowledged"] = stored
+        if not store.is_unfinished(path):
+            break
     if store.is_unfinished(path):
         work(path, rounds)
     undisturbed = folder / "undisturbed.h5"
