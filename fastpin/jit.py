@@ -41,3 +41,9 @@ def inner(function: Callable[..., Any]) -> Callable[..., Any]:
 def blas_address(name: str) -> int:
     """Where a routine of SciPy's own BLAS begins, for calls that leave the interpreter free."""
     return int(get_cython_function_address("scipy.linalg.cython_blas", name))
+
+
+def on_one_thread() -> None:
+    """No more than one thread for compiled code, in this process and those that it starts."""
+    os.environ["NUMBA_NUM_THREADS"] = "1"
+    numba.config.reload_config()

@@ -16,15 +16,15 @@ Every array says its unit. Dimensions are named in the way of netCDF, so that xa
 
 from __future__ import annotations
 
+import functools
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from importlib import metadata
 from typing import Any
 
 import h5py
-import numba
 import numpy as np
-import scipy
 
 from fastpin import __version__
 from fastpin.errors import InputError
@@ -97,9 +97,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
     file.attrs["host"] = platform.node()
-    versions = {"fastpin": __version__, "python": platform.python_version(), "numpy": np.__version__}
-    versions |= {"scipy": scipy.__version__, "numba": numba.__version__, "h5py": h5py.__version__}
-    for name, version in versions.items():
+    for name, version in versions().items():
         file.attrs[f"version_{name}"] = version
     _write_problem(file.create_group("problem"), problem)
     _write_history(file.create_group("history"), problem, history)
@@ -111,6 +109,13 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     cycles, unit = file.create_group("cycles"), units(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
+
+
+@functools.cache
+def versions() -> dict[str, str]:
+    """Versions of fastpin, Python and the libraries."""
+    libraries = {name: metadata.version(name) for name in ("numpy", "scipy", "numba", "h5py")}
+    return {"fastpin": __version__, "python": platform.python_version(), **libraries}
 
 
 def _write_problem(group: h5py.Group, problem: Problem) -> None:

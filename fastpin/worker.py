@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import multiprocessing
 import os
-import platform
 import signal
 import socket
 import threading
@@ -14,16 +13,14 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
-import h5py
-import numba
-import numpy as np
-import scipy
 from threadpoolctl import threadpool_limits
 
 from fastpin import __version__, store
 from fastpin.casefile import Case
 from fastpin.errors import SolveError
+from fastpin.jit import on_one_thread
 from fastpin.keyfigures import key_figures
+from fastpin.layout import versions
 from fastpin.products import in_one_thread
 from fastpin.solver import solve
 from fastpin.state import Result
@@ -63,8 +60,7 @@ def prepare() -> None:
     """Make this process a worker of ours: one thread, deaf to Ctrl-C, and gone when the main process is."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process decides what an interrupt means
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    os.environ["NUMBA_NUM_THREADS"] = "1"
-    numba.config.reload_config()
+    on_one_thread()
     one_thread()
 
 
@@ -111,13 +107,7 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
     except Exception as error:  # whatever goes wrong in one run is its own failure, and the others go on
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return Outcome(run, reason, figures, seconds, started, socket.gethostname(), _versions())
-
-
-@functools.cache
-def _versions() -> dict[str, str]:
-    libraries = {module.__name__: module.__version__ for module in (np, scipy, numba, h5py)}
-    return {"fastpin": __version__, "python": platform.python_version(), **libraries}
+    return Outcome(run, reason, figures, seconds, started, socket.gethostname(), versions())
 
 
 def _end_with_parent() -> None:
