@@ -231,7 +231,7 @@ def _checked(run: str, outcome: Outcome | BaseException, results: Path) -> Outco
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
     """Status and reason of each run; one whose result is gone is waiting again."""
-    present = {path.stem for path in results.glob("*.h5") if _is_hdf5(path)}
+    present = {path.stem for path in results.glob("[!.]*.h5") if _is_hdf5(path)}  # not what is being written
     waiting = WAITING, None
     known = index.statuses()
     found = {run: known.get(run, waiting) for run in points}
@@ -240,8 +240,11 @@ def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[
 
 def _is_hdf5(path: Path) -> bool:
     """Whether a file begins as a result does."""
-    with path.open("rb") as file:
-        return file.read(len(HDF5)) == HDF5
+    try:
+        with path.open("rb") as file:
+            return file.read(len(HDF5)) == HDF5
+    except OSError:
+        return False
 
 
 def _summary(index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0) -> Summary:

@@ -157,6 +157,9 @@ def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None
     assert sweep.status(plan, copy).waiting == 1
     assert sweep.run(plan, copy, Inline()).ended == 1
     assert set(files(copy)) == set(before)
+    (copy / "results" / f"{run}.h5").write_text("x\n")  # nor is another file a result
+    (copy / "results" / f".{run}.1.h5").symlink_to("nowhere")  # what is being written does not count
+    assert sweep.status(plan, copy).waiting == 1
     shutil.rmtree(copy / "results")
     assert sweep.status(plan, copy).waiting == 4
 
