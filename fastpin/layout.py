@@ -145,9 +145,9 @@ def _write_history(group: h5py.Group, problem: Problem, history: LoadHistory) ->
     corners.attrs["columns"] = list(LOADS)
     corners.attrs["unit"] = [unit[LOAD_KIND[name]] for name in LOADS]
     group.create_dataset("ends", data=np.concatenate([block.ends for block in history.blocks]), **_PACKED)
-    blocks = [(len(block.given), block.count, block.cycle, len(block.lengths)) for block in history.blocks]
+    blocks = [(len(block.given), block.count, block.cycle, block.size, len(block.lengths)) for block in history.blocks]
     group["blocks"] = np.array(blocks, dtype=np.int64)
-    group["blocks"].attrs["columns"] = ["corners", "count", "each time is a cycle", "cycles inside"]
+    group["blocks"].attrs["columns"] = ["corners", "count", "each time is a cycle", "corners if cut", "cycles inside"]
     group["cycle_lengths"] = np.array([length for block in history.blocks for length in block.lengths], dtype=np.int64)
 
 
@@ -156,10 +156,10 @@ def read_history(file: h5py.File) -> LoadHistory:
     group = file["history"]
     corners, ends, lengths = group["corners"][()], group["ends"][()], group["cycle_lengths"][()].tolist()
     blocks, row, inner = [], 0, 0
-    for size, count, cycle, cycles in group["blocks"][()].tolist():
+    for rows, count, cycle, size, cycles in group["blocks"][()].tolist():
         own = tuple(lengths[inner : inner + cycles])
-        blocks.append(Block(corners[row : row + size], ends[row : row + size], own, count, bool(cycle)))
-        row, inner = row + size, inner + cycles
+        blocks.append(Block(corners[row : row + rows], ends[row : row + rows], own, count, bool(cycle), size))
+        row, inner = row + rows, inner + cycles
     return LoadHistory.of_blocks(blocks)
 
 

@@ -82,6 +82,16 @@ def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 
 
+def test_a_history_that_begins_inside_a_cycle_goes_on_as_it_was(problem, path):
+    history = (P + q(0.2, -0.2, 0.1).repeated(4))[2:]
+    with pytest.raises(Interrupted):
+        follow(problem, P + history, path, nodes=61, progress=StopAt(1.0), arc=(-3.0, -0.1))
+    resume(path)
+    assert_file(path, solve(problem, P + history, nodes=61, arc=(-3.0, -0.1)))
+    stored = store.load(path).history.blocks
+    assert [(block.count, block.cycle, block.size) for block in stored] == [(1, False, 0), (1, True, 3), (3, True, 0)]
+
+
 def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
     monkeypatch.setattr(record, "PIECE", 7)
     history = PROGRAMS["spectrum"]
