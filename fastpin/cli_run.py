@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from fastpin.state import Result
 
 LARGE_STRAIN = 0.05
-SHOWN = 20
-"""States at the beginning and at the end of a long history that are printed."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -51,8 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
         found: list[Result] = []
         ended = _ended(lambda: found.append(solve(case.problem, case.history, progress=progress, **keywords)))
-    result = found[0] if found else ended.result if isinstance(ended, (SolveError, Interrupted)) else None
-    return _hand_out(case, options, result, ended)
+    return _hand_out(case, options, found[0] if ended is None else ended.result, ended)
 
 
 def resume(options: argparse.Namespace) -> int:
@@ -199,6 +196,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
 def _hand_out_stored(case: Case, options: argparse.Namespace, ended: SolveError | Interrupted | None) -> int:
     """Print and draw what is in the file of a run; of many states no more than that takes is read."""
     from fastpin.plot import MAX_LINES, spread
+    from fastpin.report import shown_rows
     from fastpin.store import load, size
 
     if ended is not None and ended.result is None:  # the file, if there is one, is not of this run
@@ -206,7 +204,7 @@ def _hand_out_stored(case: Case, options: argparse.Namespace, ended: SolveError 
     count = size(options.output)
     if options.json is not None:
         return _hand_out(case, options, load(options.output), ended)
-    picked = set(range(min(SHOWN, count))) | set(range(max(count - SHOWN, 0), count))
+    picked = set(shown_rows(count))
     if options.plot is not None:
         picked |= set(spread(count, MAX_LINES))
     result = load(options.output, states=sorted(picked))

@@ -58,6 +58,9 @@ NUMBER_FIELDS = {
     "energy": "energy",
 }
 OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid")
+STATE_ROWS = (*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals")
+"""Arrays that have a row for every state."""
+
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
 CYCLE_FIELDS = {
     "corner": "",
@@ -276,7 +279,7 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
     for name in NODE_FIELDS:
         if group[name].shape[1:] != (grid.size,):
             raise ValueError(f"states/{name} has shape {group[name].shape}, there are {grid.size} nodes")
-    rows = read_rows(group, [*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals"], picked)
+    rows = read_rows(group, STATE_ROWS, picked)
     states = []
     for k in range(len(rows["step"])):
         per_node = {name: rows[name][k] for name in NODE_FIELDS}

@@ -47,6 +47,11 @@ class Period:
     counts: dict[CycleKey, int]
 
 
+def copies(marks: dict[CycleKey, Mark]) -> dict[CycleKey, Mark]:
+    """Marks that can go on changing by themselves."""
+    return {key: replace(mark) for key, mark in marks.items()}
+
+
 class Past:
     """What a run remembers of the corners before.
 
@@ -66,7 +71,7 @@ class Past:
 
     def __init__(self, history: LoadHistory, marks: dict[CycleKey, Mark]) -> None:
         self.history = history
-        self.marks = {key: replace(mark) for key, mark in marks.items()}
+        self.marks = copies(marks)
         self.log: deque[Logged] = deque(maxlen=max(MOST_LOGGED, history.longest_cycle))
 
     def close_step(self, dissipation: float, work: float) -> None:

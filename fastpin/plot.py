@@ -97,10 +97,15 @@ def plot_tractions(
         raise InputError("states", "there is no state to plot")
     if len(shown) > MAX_LINES:
         shown = [shown[k] for k in spread(len(shown), MAX_LINES)]
+    return _drawn(lambda: _draw(shown, title, width), path, dpi)
+
+
+def _drawn(draw: Callable[[], Figure], path: str | Path | None, dpi: float) -> Figure:
+    """The figure that ``draw()`` returns, drawn in the house style, and saved if there is a path."""
     if path is not None:
         _check_format(Path(path))
     with mpl.rc_context(_STYLE):
-        figure = _draw(shown, title, width)
+        figure = draw()
         if path is not None:
             _save(figure, Path(path), dpi)
     return figure
@@ -134,13 +139,7 @@ def plot_cycles(
     """
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
-    if path is not None:
-        _check_format(Path(path))
-    with mpl.rc_context(_STYLE):
-        figure = _draw_cycles(result, title, width)
-        if path is not None:
-            _save(figure, Path(path), dpi)
-    return figure
+    return _drawn(lambda: _draw_cycles(result, title, width), path, dpi)
 
 
 def _draw_cycles(result: Result, title: str, width: float) -> Figure:
@@ -200,9 +199,7 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
 
 def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
     """Save the figure that ``draw(curves)`` returns, drawn in the house style."""
-    _check_format(Path(path))
-    with mpl.rc_context(_STYLE):
-        _save(draw(curves), Path(path), dpi)
+    _drawn(lambda: draw(curves), path, dpi)
 
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:

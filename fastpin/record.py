@@ -25,12 +25,12 @@ from fastpin.interrupt import held_back
 from fastpin.journal import JournaledFile
 from fastpin.keep import Keep
 from fastpin.layout import (
+    STATE_ROWS,
     Rows,
     append,
     check_format,
     count,
     cycle_rows,
-    plain,
     read_grid,
     read_history,
     read_problem,
@@ -45,7 +45,7 @@ from fastpin.restart import read_restart, write_restart
 from fastpin.run import Method, Progress, Restart, Run
 from fastpin.solver import Task, check_start
 from fastpin.state import Cycle, Result, State
-from fastpin.store import is_unfinished, load, opened
+from fastpin.store import is_unfinished, load, opened, stored_task
 
 log = logging.getLogger(__name__)
 
@@ -185,13 +185,13 @@ def stored_case(path: str | Path) -> Case:
         See :func:`fastpin.store.load`.
     """
     with opened(Path(path)) as file:
-        given = {name: plain(value) for name, value in file["solver"].attrs.items()}
-        options: dict[str, Any] = {name: given[name] for name in ("method", "increments", "keep") if name in given}
+        solver = file["solver"].attrs
+        options: dict[str, Any] = {"nodes": read_grid(file).size, "method": solver["method"]}
         if "run" in file.attrs:
-            options["arc"] = tuple(given["arc"].tolist()) if "arc" in given else None
-            options |= {"between": tuple(given["fractions"].tolist()[:-1]), "shortcut": bool(given["shortcut"])}
-        options["nodes"] = read_grid(file).size
-        return Case(read_problem(file), read_history(file), SolveOptions(**options), given.get("title", ""))
+            task = stored_task(file)
+            options |= {"increments": task.increments, "keep": str(task.keep), "arc": task.arc}
+            options |= {"between": tuple(task.fractions.tolist()[:-1]), "shortcut": task.shortcut}
+        return Case(read_problem(file), read_history(file), SolveOptions(**options), str(solver.get("title", "")))
 
 
 @contextmanager
@@ -291,11 +291,10 @@ class _Writer:
         size = len(steps)
         if self._copied is None or len(self._copied["step"]) != size:
             self._commit()
-            names = [name for name in self._h5["states"] if name in rows_of([])]
             begin = self._at[0] - size
             for first in range(0, size, PIECE):
                 last = min(first + PIECE, size)
-                rows = read_rows(self._h5["states"], names, slice(begin + first, begin + last))
+                rows = read_rows(self._h5["states"], STATE_ROWS, slice(begin + first, begin + last))
                 self._put_again(rows, steps[first:last], dissipation[first:last], work[first:last])
                 self._copied = rows if size <= PIECE else None
         else:
@@ -432,7 +431,7 @@ def _reopened(path: Path, progress: Progress | None) -> tuple[_Writer, Restart]:
                 raise InputError(str(path), "was not written by a run, there is nothing to go on with")
             if h5.attrs["complete"]:
                 raise InputError(str(path), "holds a finished run, there is nothing to go on with")
-            task = _stored_task(h5, progress)
+            task = replace(stored_task(h5), progress=progress)
             options = h5["solver"].attrs
             writer = _Writer(path, task, str(options["title"]))
             writer.chosen_arc = bool(options["arc_chosen"])
@@ -446,25 +445,6 @@ def _reopened(path: Path, progress: Progress | None) -> tuple[_Writer, Restart]:
     except BaseException:
         file.release()
         raise
-
-
-def _stored_task(h5: h5py.File, progress: Progress | None) -> Task:
-    """What the run of a file was asked for, on its grid."""
-    options = {name: plain(value) for name, value in h5["solver"].attrs.items()}
-    return Task(
-        problem=read_problem(h5),
-        history=read_history(h5),
-        nodes=options["nodes"],
-        method=options["method"],
-        increments=options["increments"],
-        arc=tuple(options["arc"].tolist()) if "arc" in options else None,
-        grid=read_grid(h5),
-        fractions=options["fractions"],
-        keep=Keep.of(options["keep"]),
-        shortcut=bool(options["shortcut"]),
-        progress=progress,
-        stops=frozenset(options["save_after"].tolist()),
-    )
 
 
 def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Restart:

@@ -146,8 +146,7 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
     last = np.zeros(len(LOADS))
     begin = 1
     for block in history.blocks:
-        size = len(block.given)
-        shown = range(size) if size <= _MAX_ROWS else [*range(_MAX_ROWS // 2), *range(size - _MAX_ROWS // 2, size)]
+        shown = shown_rows(len(block.given))
         values = LoadHistory.from_array(block.given).values(initial=last)
         numbers += [f"{begin + k}" for k in shown]
         counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in shown]
@@ -159,7 +158,7 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
     columns += _load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
     columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
-    return table(columns, len(history) - sum(block.corners - len(block.given) for block in history.blocks) - len(loads))
+    return table(columns, sum(len(block.given) for block in history.blocks) - len(loads))
 
 
 def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
@@ -240,14 +239,19 @@ def _load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> lis
     return columns
 
 
+def shown_rows(count: int) -> list[int]:
+    """The rows of a table of `count` that are printed: all of a short one, of a long one its beginning and its end."""
+    half = _MAX_ROWS // 2
+    return list(range(count)) if count <= _MAX_ROWS else [*range(half), *range(count - half, count)]
+
+
 def table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
     """Lines of text, no more than so many; `hidden` rows in the middle are not even in the columns."""
     count = len(columns[0][2])
     middle = min(count, _MAX_ROWS) // 2
     hidden += max(count - _MAX_ROWS, 0)
     if count > _MAX_ROWS:
-        kept = [*range(_MAX_ROWS // 2), *range(count - _MAX_ROWS // 2, count)]
-        columns = [(name, unit, [cells[k] for k in kept]) for name, unit, cells in columns]
+        columns = [(name, unit, [cells[k] for k in shown_rows(count)]) for name, unit, cells in columns]
     widths = [max(len(cell) for cell in (name, unit, *cells)) for name, unit, cells in columns]
     lines = [[name for name, _, _ in columns], [unit for _, unit, _ in columns]]
     lines += [[cells[k] for _, _, cells in columns] for k in range(len(columns[0][2]))]

@@ -17,7 +17,7 @@ from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumErr
 from fastpin.increment import implicit_step
 from fastpin.keep import EVERYTHING, Keep
 from fastpin.loading import CycleKey, LoadHistory, filled, named_load
-from fastpin.past import Logged, Mark, Past
+from fastpin.past import Logged, Mark, Past, copies
 from fastpin.path import PathStep, StepLostError
 from fastpin.repeats import Met, Repeats
 from fastpin.state import OPEN, SLIP_POSITIVE, Cycle, State
@@ -246,10 +246,9 @@ class Run:
 
     def restart(self) -> Restart:
         """To go on from the last corner that was reached."""
-        marks = Past(self.history, self.past.marks).marks  # a copy
         return Restart(
             self.corner, self.load, self.system.scales.force, self.settled, self.dissipation, self.work,
-            self.repeats.copy(same_history=True), marks, dict(self.statistics),
+            self.repeats.copy(same_history=True), copies(self.past.marks), dict(self.statistics),
         )  # fmt: skip
 
     def _step(self, load: np.ndarray, ends_cycle: bool) -> Met | None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,6 @@ import numpy as np
 from fastpin.checks import whole_number
 from fastpin.errors import InputError
 from fastpin.files import check_exists, check_writable, replacing
-from fastpin.grid import Grid
 from fastpin.journal import check_free, open_h5, settled
 from fastpin.keep import Keep
 from fastpin.layout import (
@@ -36,7 +36,6 @@ from fastpin.layout import (
     write_statistics,
 )
 from fastpin.loading import LoadHistory
-from fastpin.problem import Problem
 from fastpin.restart import read_restart, write_restart
 from fastpin.run import Restart
 from fastpin.solver import Task
@@ -113,7 +112,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         restarts = file.get("restart", {})
         found = count(file["states"])
         if after is not None:
-            task, restart = _way_to(path, file, problem, grid, history, after)
+            task, restart = _way_to(path, file, history, after)
             history, complete = history[:after], True
             found = int(np.searchsorted(file["states/step"][()], after))
         elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
@@ -212,9 +211,7 @@ def opened(path: Path) -> Iterator[Any]:
             raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
 
 
-def _way_to(
-    path: Path, file: h5py.File, problem: Problem, grid: Grid, history: LoadHistory, after: int
-) -> tuple[Task, Restart]:
+def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tuple[Task, Restart]:
     """The history up to a corner, and the latest restart on the way there."""
     whole_number("after", after, 1)
     reached = max((int(group.attrs["corner"]) for group in file.get("restart", {}).values()), default=0)
@@ -227,12 +224,26 @@ def _way_to(
     if "run" not in file.attrs or not stored:
         raise InputError("after", f"{path} was not written by a run: it can't be gone on from")
     start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
+    return replace(stored_task(file), history=history[:after], shortcut=True, stops=frozenset()), start
+
+
+def stored_task(file: h5py.File) -> Task:
+    """What the run of a file was asked for, on its grid."""
     options = {name: plain(value) for name, value in file["solver"].attrs.items()}
-    task = Task(
-        problem, history[:after], grid.size, options["method"], options["increments"], None, grid,
-        options["fractions"], Keep.of(options["keep"]), True, None,
-    )  # fmt: skip
-    return task, start
+    return Task(
+        problem=read_problem(file),
+        history=read_history(file),
+        nodes=options["nodes"],
+        method=options["method"],
+        increments=options["increments"],
+        arc=tuple(options["arc"].tolist()) if "arc" in options else None,
+        grid=read_grid(file),
+        fractions=options["fractions"],
+        keep=Keep.of(options["keep"]),
+        shortcut=bool(options["shortcut"]),
+        progress=None,
+        stops=frozenset(options["save_after"].tolist()),
+    )
 
 
 def _first_line(error: Exception) -> str:
