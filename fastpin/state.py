@@ -87,7 +87,7 @@ class State:
 
         A contact round the whole circle is one interval of length 2 pi.
         """
-        return zones.intervals(self.grid, self.status != OPEN, self.pressure)
+        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_exponents, self._sticking)
 
     @cached_property
     def stick(self) -> list[Interval]:
@@ -96,7 +96,9 @@ class State:
         Nodes that stick but have come to |T| = mu N at this very load count as slipping.
         """
         closed = self.status != OPEN
-        return zones.stick_intervals(self.grid, self._sticking, self._reserve, closed, self.contact)
+        return zones.stick_intervals(
+            self.grid, self._sticking, self._reserve, closed, self.contact, self._stick_exponents
+        )
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:
@@ -125,13 +127,30 @@ class State:
 
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
-        return zones.smooth_peak(self.grid, self.pressure) if self.in_contact else (0.0, math.nan)
+        return zones.pressure_peak(self.grid, self.pressure, self._tilt != 0.0) if self.in_contact else (0.0, math.nan)
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
-        return zones.shear_peak(self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick)
+        return zones.shear_peak(
+            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick, self._tilt
+        )
+
+    @cached_property
+    def _tilt(self) -> float:
+        """By how much friction between unlike bodies moves the exponents of edges and borders off a half, (T26)."""
+        return math.atan(self.problem.friction * self.problem.pair.dundurs()[1]) / math.pi
+
+    def _contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
+        """With which the pressure falls to zero at the ends of the contact of the nodes `run`, (T21)."""
+        first, last = self.status[run[[0, -1]]]
+        return 0.5 - self._tilt * (first % 2) * first, 0.5 + self._tilt * (last % 2) * last
+
+    def _stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
+        """With which mu N - |T| falls to zero at the ends of the stick zone of the nodes `run`, (T26)."""
+        before, after = np.sign(self.shear[[run[0] - 1, (run[-1] + 1) % self.shear.size]])
+        return 0.5 - self._tilt * float(before), 0.5 + self._tilt * float(after)
 
     @cached_property
     def _reserve(self) -> np.ndarray:

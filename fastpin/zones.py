@@ -1,22 +1,29 @@
-"""Contact edges, stick-slip borders and peaks, read between nodes.
-
-A quantity that falls to zero like the square root of the distance to an edge has a square that is linear there: the
-square is extrapolated to zero from the nodes inside. The outermost nodes came into the zone last and are not used.
-"""
+"""Contact edges, stick-slip borders and peaks, read between the nodes with the fits of edges.py."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
 
+from fastpin import edges
 from fastpin.grid import Grid
 
 Interval = tuple[float, float]
 
-MISFIT = 0.01
-"""Largest deviation from the extrapolated parabola, in parts of its largest value."""
+NEAR = 12
+"""Node distances from a border within which the largest shear of unlike bodies belongs to its cusp."""
+
+
+TIE = 1e-9
+"""Relative difference below which two peaks are equal; the one at the larger angle is taken."""
+
+
+def square_root(run: np.ndarray) -> tuple[float, float]:
+    """Exponents with which a quantity falls to zero at the ends of the zone of the nodes `run`: like bodies."""
+    return 0.5, 0.5
 
 
 def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
@@ -34,8 +41,18 @@ def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
     return parts
 
 
-def intervals(grid: Grid, mask: np.ndarray, quantity: np.ndarray) -> list[Interval]:
-    """Intervals of the zones in `mask`, at whose ends `quantity` (>= 0 inside) falls to zero."""
+def intervals(
+    grid: Grid,
+    mask: np.ndarray,
+    quantity: np.ndarray,
+    exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
+    kinds: np.ndarray | None = None,
+) -> list[Interval]:
+    """Intervals of the zones in `mask`, at whose ends `quantity` (>= 0 inside) falls to zero with these exponents.
+
+    Where `kinds` (n,) changes, inside a zone, the quantity may have a kink.
+    """
+    kinds = mask if kinds is None else kinds
     if mask.all() and grid.closed:
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
@@ -43,14 +60,28 @@ def intervals(grid: Grid, mask: np.ndarray, quantity: np.ndarray) -> list[Interv
     zones = []
     for run in runs(grid, mask):
         theta = _unrolled(grid, run)
-        start = _edge(theta, quantity[run], theta[0] - (grid.theta[run[0]] - left[run[0]]))
-        stop = _edge(theta[::-1], quantity[run][::-1], theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
+        outside = theta[0] - (grid.theta[run[0]] - left[run[0]]), theta[-1] + (right[run[-1]] - grid.theta[run[-1]])
+        at_start, at_stop = exponents(run)
+        back = run[::-1]
+        start = edges.edge(theta, quantity[run], at_start, outside[0], _alike(kinds[run]))
+        stop = edges.edge(theta[::-1], quantity[back], at_stop, outside[1], _alike(kinds[back]))
         zones.append((start, stop))
     return zones
 
 
+def _alike(kinds: np.ndarray) -> int:
+    """How many of the first values are the same."""
+    other = kinds != kinds[0]
+    return int(np.argmax(other)) if other.any() else kinds.size
+
+
 def stick_intervals(
-    grid: Grid, sticking: np.ndarray, reserve: np.ndarray, closed: np.ndarray, contact: list[Interval]
+    grid: Grid,
+    sticking: np.ndarray,
+    reserve: np.ndarray,
+    closed: np.ndarray,
+    contact: list[Interval],
+    exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
 ) -> list[Interval]:
     """Intervals of the stick zones, where `reserve` = mu N - |T| falls to zero or the contact ends.
 
@@ -58,10 +89,10 @@ def stick_intervals(
     contact: a slip zone without a node is none.
     """
     if closed.all() and grid.closed:
-        return intervals(grid, sticking, reserve)
+        return intervals(grid, sticking, reserve, exponents)
     zones = []
     outer = list(zip(runs(grid, closed), contact, strict=True))
-    for run, (start, stop) in zip(runs(grid, sticking), intervals(grid, sticking, reserve), strict=True):
+    for run, (start, stop) in zip(runs(grid, sticking), intervals(grid, sticking, reserve, exponents), strict=True):
         for nodes, (first, last) in outer:
             if run[0] in nodes:
                 turn = 2.0 * math.pi * round((0.5 * (first + last) - 0.5 * (start + stop)) / (2.0 * math.pi))
@@ -76,31 +107,6 @@ def _unrolled(grid: Grid, run: np.ndarray) -> np.ndarray:
     theta = grid.theta[run].copy()
     theta[np.r_[False, np.cumsum(np.diff(run) < 0) > 0]] += 2.0 * math.pi
     return theta
-
-
-def _edge(theta: np.ndarray, quantity: np.ndarray, outside: float) -> float:
-    """Where `quantity` squared reaches zero, near the outermost node theta[0]; `outside` is the next node.
-
-    Nodal values are off by a part that dies out away from the edge, in a few nodes: the parabola is fitted to a
-    window that moves inwards and widens with the square root of the number of nodes. Too small zones end halfway.
-    """
-    halfway = 0.5 * float(theta[0] + outside)
-    root = math.sqrt(0.5 * theta.size)
-    first = max(2, round(0.3 * root))
-    last = first + max(4, round(root))
-    if theta.size < last + 2:
-        return halfway
-    spacing = float(theta[1] - theta[0])
-    x = (theta[first:last] - theta[0]) / spacing
-    square = quantity[first:last] ** 2
-    parabola = np.polyfit(x, square, 2)
-    if np.abs(np.polyval(parabola, x) - square).max() > MISFIT * square.max():
-        return halfway  # kinks left by earlier borders: no shape to extrapolate
-    places = np.roots(parabola)
-    places = places[np.isreal(places)].real
-    low = (outside - float(theta[0])) / spacing
-    places = places[(places >= 1.25 * low) & (places <= 1.0)]
-    return float(theta[0]) + spacing * float(max(places.max(), low)) if places.size else halfway
 
 
 def complement(
@@ -138,31 +144,25 @@ def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[
     return [(float(borders[k]), float(borders[k + 1]), int(signs[first[k]])) for k in range(first.size)]
 
 
-def smooth_peak(grid: Grid, values: np.ndarray) -> tuple[float, float]:
-    """Largest value and its place, from the parabola through the largest nodal value and its neighbours."""
-    top = int(np.argmax(values))
-    return _parabola(grid, values, top)
+# --- peaks ----------------------------------------------------------------------------------------------------
 
 
-def _parabola(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float]:
-    """Top of the parabola through node `top` and its neighbours; the node itself where the values have a kink."""
-    n = grid.size
-    at_node = float(values[top]), float(grid.theta[top])
-    if not grid.closed and not 2 <= top <= n - 3:
-        return at_node
-    left, right = grid.knots()
-    near = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
-    slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(near)]
-    bends = [abs(after - before) for before, after in pairwise(slopes)]
-    if bends[1] > 3.0 * min(bends[0], bends[2]):
-        return at_node
-    before, after = left[top] - grid.theta[top], right[top] - grid.theta[top]
-    curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
-    slope = slopes[2] - curvature * after
-    if curvature >= 0.0:
-        return at_node
-    place = min(max(-0.5 * slope / curvature, before), after)
-    return at_node[0] + float(slope * place + curvature * place**2), at_node[1] + float(place)
+def pressure_peak(grid: Grid, pressure: np.ndarray, coupled: bool = False) -> tuple[float, float]:
+    """Largest pressure and its place.
+
+    Where friction couples pressure and shear (unlike bodies) the pressure has a corner where the pin first touched.
+    """
+    top = int(np.argmax(pressure))
+    value, place, smooth = _smooth_peak(grid, pressure, top)
+    if smooth or not coupled:
+        return value, place
+    best = None
+    for node in range(top - 2, top + 3):
+        nodes, x = _around(grid, pressure > 0.0, node % grid.size)
+        found = edges.corner(x, pressure[nodes]) if nodes.size else None
+        if found is not None and found.value >= value and (best is None or found.error < best[0]):
+            best = found.error, found.value, float(grid.theta[node % grid.size])
+    return best[1:] if best is not None else (value, place)
 
 
 def shear_peak(
@@ -172,34 +172,103 @@ def shear_peak(
     sticking: np.ndarray,
     friction: float,
     stick: list[Interval],
+    tilt: float = 0.0,
 ) -> tuple[float, float]:
     """Shear traction of largest magnitude, with its sign, and its place.
 
-    The shear peaks either smoothly inside a zone, or in a cusp at a stick-slip border, where it is mu N.
+    The shear peaks smoothly inside a zone; in a cusp at a stick-slip border, where it is mu N, or for unlike bodies a
+    little beyond it; or in a cusp where such a border once was. `tilt` is arctan(mu beta_D)/pi, see (T26).
     """
-    top = int(np.argmax(np.abs(shear)))
+    magnitude = np.abs(shear)
+    top = int(np.flatnonzero(magnitude >= (1.0 - TIE) * magnitude.max())[-1])
     sign = 1.0 if shear[top] >= 0.0 else -1.0
-    best, place = float(np.abs(shear[top])), float(grid.theta[top])
+    best, place = float(magnitude[top]), float(grid.theta[top])
+    smooth = True
     neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
     if np.all(neighbours == neighbours[0]):
-        best, place = _parabola(grid, np.abs(shear), top)
+        best, place, smooth = _smooth_peak(grid, magnitude, top)
+    spacing = float(grid.weights[top])
+    near = False
     for interval in stick:
-        for border in interval:
-            offset = np.abs(np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
-            node = int(np.argmin(offset))
-            if abs(node - top) in (0, 1, grid.size - 1):  # the cusp next to the largest nodal value
-                bound = friction * _interpolated(grid, pressure, node, border)
-                if bound > best:
-                    best, place = bound, border
+        for border, outwards in zip(interval, (-1.0, 1.0), strict=True):
+            offset = outwards * math.remainder(float(grid.theta[top]) - border, 2.0 * math.pi) / spacing
+            near = near or abs(offset) <= 2.0
+            found = None
+            if tilt != 0.0 and -2.0 <= offset <= NEAR:
+                nodes, x = _around(grid, pressure > 0.0, top)
+                order = slice(None) if outwards > 0.0 else slice(None, None, -1)
+                bound = friction * pressure[nodes[order]]
+                found = edges.border_peak(outwards * x[order] + offset, bound, 0.5 + outwards * sign * tilt)
+            if found is not None and abs(found.place - offset) <= 3.0:
+                best, place = found.value, border + outwards * spacing * found.place
+            elif abs(offset) <= 1.5:
+                at_border = friction * _interpolated(grid, pressure, border)
+                if at_border > best:
+                    best, place = at_border, border
+    if not smooth and not near:
+        found_cusp = _old_cusp(grid, sticking, magnitude, top, sign * tilt)
+        if found_cusp is not None:
+            best, place = found_cusp
     return sign * best, place
 
 
-def _interpolated(grid: Grid, values: np.ndarray, node: int, angle: float) -> float:
-    """Quadratic interpolation at `angle` from `node` and its two neighbours."""
+def _old_cusp(
+    grid: Grid, sticking: np.ndarray, magnitude: np.ndarray, top: int, tilt: float
+) -> tuple[float, float] | None:
+    """Height and place of a cusp inside a stick zone; None if the nodes do not tell it better than their largest."""
+    nodes, x = _around(grid, sticking, top)
+    if nodes.size < 3:
+        return None
+    drop = magnitude[top] - min(magnitude[top - 1], magnitude[(top + 1) % grid.size])
+    best = None
+    for outwards in (1.0, -1.0):
+        order = slice(None) if outwards > 0.0 else slice(None, None, -1)
+        found = edges.cusp(outwards * x[order], magnitude[nodes[order]], 0.5 + outwards * tilt)
+        if found is not None and found.error < drop and (best is None or found.error < best[0]):
+            best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
+    return None if best is None else best[1:]
+
+
+def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
+    """The run of `mask` with `node` in it, and how far its nodes are from that one, in node distances, increasing."""
+    for run in runs(grid, mask):
+        at = np.flatnonzero(run == node)
+        if at.size:
+            if run.size == grid.size and grid.closed:
+                run = np.roll(run, run.size // 2 - at[0])
+            theta = _unrolled(grid, run)
+            spacing = float(grid.weights[node])
+            return run, (theta - theta[np.flatnonzero(run == node)[0]]) / spacing
+    return np.zeros(0, dtype=int), np.zeros(0)
+
+
+def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float, bool]:
+    """Top of the parabola through node `top` and its neighbours, and whether the values are smooth there.
+
+    Where the values have a kink the node itself.
+    """
+    n = grid.size
+    at_node = float(values[top]), float(grid.theta[top])
+    if not grid.closed and not 2 <= top <= n - 3:
+        return *at_node, True
     left, right = grid.knots()
-    near = [node - 1, node, (node + 1) % grid.size]
-    x = np.array([left[node] - grid.theta[node], 0.0, right[node] - grid.theta[node]])
-    if not grid.closed and node in (0, grid.size - 1):
-        return float(values[node])
-    offset = math.remainder(angle - grid.theta[node], 2.0 * math.pi)
-    return float(np.polyval(np.polyfit(x, values[near], 2), offset))
+    near = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
+    slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(near)]
+    bends = [abs(after - before) for before, after in pairwise(slopes)]
+    smooth = max(bends) <= 3.0 * min(bends)
+    if bends[1] > 3.0 * min(bends[0], bends[2]):
+        return *at_node, smooth
+    before, after = left[top] - grid.theta[top], right[top] - grid.theta[top]
+    curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
+    slope = slopes[2] - curvature * after
+    if curvature >= 0.0:
+        return *at_node, smooth
+    place = min(max(-0.5 * slope / curvature, before), after)
+    return at_node[0] + float(slope * place + curvature * place**2), at_node[1] + float(place), smooth
+
+
+def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
+    """Quadratic interpolation at `angle` from the three nearest nodes."""
+    offsets = np.remainder(grid.theta - angle + math.pi, 2.0 * math.pi) - math.pi
+    near = np.argpartition(np.abs(offsets), 2)[:3]
+    return float(np.polyval(np.polyfit(offsets[near], values[near], 2), 0.0))

@@ -1,0 +1,342 @@
+"""Where a traction falls to zero, and how high its cusps and corners are, fitted between the nodes.
+
+Beside a contact edge N = x^a (c0 + c1 x + ...), with the distance x from the edge; beside a stick-slip border the same
+holds inside the stick zone for mu N - |T|. The exponent a is 1/2, or a little off it where bodies are unlike: (T21),
+(T26). What nodes have there is off by two parts: one that changes sign from node to node and is gone after some four of
+them, and one that falls like x^(a - 2). The first is left out, the second is fitted with the rest.
+
+How many nodes can be taken, and how many terms, depends on what else is near: other borders, and kinks that earlier
+ones have left. So a small set of windows and shapes is tried, and the fit with the smallest standard error is taken.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+SPARE = 4
+"""Nodes of a window beyond the unknowns, at least."""
+
+EDGE_WINDOWS = ((2, 6), (2, 8), (2, 11), (2, 15), (2, 21), (6, 8), (6, 11), (6, 15), (6, 21), (6, 30), (6, 42), (6, 60),
+                (6, 84), (6, 120))  # fmt: skip
+"""Nodes beside an edge that are left out, and nodes of a window to try."""
+
+EDGE_NEAREST = (2, 6)  # the window that has to agree with the others, on a parabola
+EDGE_AGREEMENT = 0.12
+"""Largest difference from the place that the nearest nodes give, in node distances."""
+
+EDGE_NEAREST_ERROR = 0.3
+"""Largest standard error with which that place is taken where no other fit agrees with it."""
+
+EDGE_INSIDE = 0.25
+"""How far inside the outermost node an edge may be found, in node distances."""
+
+EDGE_LEAST = 10
+"""Nodes that may be used of a zone with so many or a little more; of a larger one the outer half."""
+
+EDGE_DEGREES = (1, 2, 3, 4)
+EDGE_LONG = 15
+"""Nodes from which on a straight line is not tried."""
+
+EDGE_ERROR = 0.1
+"""Largest standard error of an edge, in node distances; with a larger one it is put halfway between two nodes."""
+
+HALF_WIDTHS = (8, 12, 18, 27, 40, 60)
+"""Nodes on either side of a cusp, a border or a corner, in the windows to try."""
+
+CUSP_SHAPES = ((2, 2, False), (3, 2, False), (4, 3, True))
+"""Degree of the polynomial, terms of the cusp, and whether the part that falls like x^(a - 2) is fitted too."""
+
+CUSP_REACH = 2.0  # node distances from the largest nodal value
+CUSP_PLACES = 33
+BORDER_SHAPES = ((3, 1), (3, 2), (4, 2), (4, 3))  # degree of the polynomial, terms of the cusp
+BORDER_SKIPPED = (1, 2, 4)
+BORDER_ERROR = 3e-3
+"""Largest standard error of the bound at a border, relative to its largest value."""
+
+CORNER_DEGREES = (1, 2, 3, 4)
+CORNER_SKIPPED = (2, 4)
+CORNER_BEND = 10.0
+"""Least change of slope in a node distance, in standard errors."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A fitted peak: its value, the standard error of that, and its place in node distances from a given point."""
+
+    value: float
+    error: float
+    place: float
+
+
+def standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
+    """Standard error of a fitted number, a little enlarged where few nodes are left over."""
+    spare = residual.size - unknowns
+    return math.sqrt(float(residual @ residual) / spare) * amplification * (1.0 + 10.0 / spare)
+
+
+# --- edges ----------------------------------------------------------------------------------------------------
+
+
+def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: float, alike: int) -> float:
+    """Where `quantity` falls to zero like a distance to the power `exponent`, near the outermost node theta[0].
+
+    Parameters
+    ----------
+    theta, quantity : ndarray, shape (n,)
+        The nodes of a zone from the outermost one inwards, in either direction, and values there, >= 0.
+    exponent : float
+    outside : float
+        Angle of the next node outwards, where the quantity is zero.
+    alike : int
+        How many nodes there are to the next border inside the zone, where the quantity has a kink.
+
+    Returns
+    -------
+    float
+        An angle not beyond `outside`; halfway to it where no shape can be made out.
+    """
+    halfway = 0.5 * float(theta[0] + outside)
+    most = max(theta.size // 2, min(theta.size - 1, EDGE_LEAST))
+    if alike >= sum(EDGE_NEAREST):
+        most = min(most, alike)
+    if most < sum(EDGE_NEAREST):
+        return halfway
+    spacing = float(theta[1] - theta[0])
+    low = (outside - float(theta[0])) / spacing
+    x = np.round((theta[:most] - theta[0]) / spacing + 0.5, 9)  # from halfway between nodes that are equally spaced
+    powered = np.abs(quantity[:most]) ** (1.0 / exponent)
+    first, nodes = EDGE_NEAREST
+    nearest, error = _edge_fit(x[first : first + nodes], powered[first : first + nodes], 2, False)
+    nearest -= 0.5
+    least, place = EDGE_ERROR, 0.5 * low
+    if error <= EDGE_NEAREST_ERROR and 1.25 * low <= nearest <= EDGE_INSIDE:
+        place = max(nearest, low)
+    for first, nodes in EDGE_WINDOWS:
+        if first + nodes > most:
+            continue
+        window, values = x[first : first + nodes], powered[first : first + nodes]
+        for degree in EDGE_DEGREES:
+            for decaying in (False, True):
+                if nodes < degree + 1 + decaying + SPARE or (degree == 1 and nodes >= EDGE_LONG):
+                    continue
+                root, error = _edge_fit(window, values, degree, decaying)
+                offset = root - 0.5
+                agrees = abs(offset - nearest) <= EDGE_AGREEMENT and 1.25 * low <= offset <= EDGE_INSIDE
+                if agrees and error < least:
+                    least, place = error, max(offset, low)
+    return float(theta[0]) + spacing * place
+
+
+def _edge_fit(window: np.ndarray, values: np.ndarray, degree: int, decaying: bool) -> tuple[float, float]:
+    """Where a fit has its root, and the standard error of that."""
+    design = _edge_design(window.tobytes(), degree, decaying)
+    root, slope = _root([float(c) for c in design.series @ values])
+    if slope == 0.0:
+        return root, math.inf
+    residual = design.columns @ (design.inverse @ values) - values
+    return root, standard_error(residual, degree + 1 + decaying, design.amplification) / abs(slope)
+
+
+@dataclass(frozen=True, eq=False)
+class _EdgeDesign:
+    columns: np.ndarray
+    inverse: np.ndarray
+    series: np.ndarray  # of the nodal values: the coefficients of the polynomial's powers
+    amplification: float
+
+
+@functools.lru_cache(maxsize=1024)
+def _edge_design(window: bytes, degree: int, decaying: bool) -> _EdgeDesign:
+    """Least squares at the distances `window`: a polynomial, and perhaps a part that falls like 1/distance."""
+    x = np.frombuffer(window)
+    basis = [np.polynomial.Chebyshev.basis(k, domain=(x[0], x[-1])) for k in range(degree + 1)]
+    columns = np.column_stack([polynomial(x) for polynomial in basis] + [x[0] / x] * decaying)
+    inverse = np.linalg.pinv(columns)
+    powers = np.zeros((degree + 1, columns.shape[1]))
+    for k, polynomial in enumerate(basis):
+        powers[: k + 1, k] = polynomial.convert(kind=np.polynomial.Polynomial).coef
+    series = powers @ inverse
+    return _EdgeDesign(columns, inverse, series, float(np.linalg.norm(series[0])))
+
+
+def _root(series: list[float]) -> tuple[float, float]:
+    """Root of a power series near 0, by Newton's method, and the slope there."""
+    place, slope = 0.0, 0.0
+    for _ in range(4):
+        value = slope = 0.0
+        for coefficient in reversed(series):
+            slope = slope * place + value
+            value = value * place + coefficient
+        if slope == 0.0:
+            break
+        place -= value / slope
+    return place, slope
+
+
+# --- peaks ----------------------------------------------------------------------------------------------------
+
+
+def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | None:
+    """Largest value on the slip side of a border, beside which the bound mu N has a cusp.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Distances of the nodes from the border in node distances, increasing; positive where they slip.
+    bound : ndarray, shape (n,)
+        mu N at these nodes.
+    exponent : float
+        Of the cusp: bound = p(x) on the stick side and p(x) + x^exponent q(x) on the slip side, p and q smooth.
+    """
+    best, shape = None, (np.zeros(0), 0, 0)
+    for half in HALF_WIDTHS:
+        if x[0] > 0.5 - half or x[-1] < half - 0.5:
+            break
+        for skipped in BORDER_SKIPPED:
+            taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
+            for degree, terms in BORDER_SHAPES:
+                unknowns = degree + 1 + terms
+                if np.count_nonzero(taken) < unknowns + SPARE:
+                    continue
+                columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
+                inverse = np.linalg.pinv(columns)
+                coefficients = inverse @ bound[taken]
+                residual = columns @ coefficients - bound[taken]
+                error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
+                if best is None or error < best.error:
+                    best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
+    if best is None or best.error > BORDER_ERROR * float(bound.max()):
+        return None
+    t = np.linspace(0.0, 1.0, 401)  # the square roots of the distances: most of them are at the border
+    coefficients, degree, terms = shape
+    fitted = _cusp_columns(-(t**2), exponent, degree, terms) @ coefficients
+    top = int(np.argmax(fitted))
+    if top == 0:
+        return Peak(float(fitted[0]), best.error, 0.0)
+    if top == t.size - 1:
+        return None
+    shift, value = _vertex(*fitted[top - 1 : top + 2])
+    return Peak(value, best.error, best.place * (t[top] + shift * t[1]) ** 2)
+
+
+def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
+    """Columns y^k, and |y|^(exponent + k) where y is negative."""
+    cusp_side = np.maximum(-y, 0.0)
+    return np.column_stack([y**k for k in range(degree + 1)] + [cusp_side ** (exponent + k) for k in range(terms)])
+
+
+def _vertex(before: float, middle: float, after: float) -> tuple[float, float]:
+    """Place and value of the extreme of a parabola through equally spaced values, from the middle one."""
+    bend = before - 2.0 * middle + after
+    shift = 0.5 * (before - after) / bend if bend != 0.0 else 0.0
+    return shift, middle - 0.25 * (before - after) * shift
+
+
+def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
+    """A cusp that a border has left behind: values = p(x) beyond it and p(x) - |x - place|^exponent q(x) before it.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Distances of the nodes from the one with the largest value, in node distances, increasing.
+    values : ndarray, shape (n,)
+    exponent : float
+
+    Returns
+    -------
+    Peak or None
+        None if no cusp is found within two nodes of the largest value.
+    """
+    best: Peak | None = None
+    for half in HALF_WIDTHS:
+        if x[0] > 0.5 - half or x[-1] < half - 0.5:
+            break
+        skipped = 2 if half == HALF_WIDTHS[0] else 4
+        taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
+        window, wanted = np.round(x[taken], 9), values[taken]
+        for shape in CUSP_SHAPES:
+            unknowns = shape[0] + 1 + shape[1] + shape[2] + 1
+            if window.size < unknowns + SPARE:
+                continue
+            place = _cusp_place(window, wanted, shape, exponent)
+            if place is None:
+                continue
+            columns = _left_cusp(window, place, shape, exponent)
+            coefficients = np.linalg.pinv(columns) @ wanted
+            step = 1e-3
+            moved = _left_cusp(window, place + step, shape, exponent) - _left_cusp(
+                window, place - step, shape, exponent
+            )
+            inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / (2.0 * step)]))
+            residual = columns @ coefficients - wanted
+            error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
+            if best is None or error < best.error:
+                best = Peak(float(coefficients[0]), error, place)
+    return best
+
+
+def _left_cusp(x: np.ndarray, place: float, shape: tuple[int, int, bool], exponent: float) -> np.ndarray:
+    degree, terms, decaying = shape
+    y = (x - place) / x[-1]
+    columns = _cusp_columns(y, exponent, degree, terms)
+    if decaying:
+        before = y < 0.0
+        falling = np.where(before, np.maximum(np.abs(x - place), 1.0) ** (exponent - 2.0), 0.0)
+        columns = np.column_stack([columns, falling])
+    return columns
+
+
+def _cusp_place(window: np.ndarray, values: np.ndarray, shape: tuple[int, int, bool], exponent: float) -> float | None:
+    """The place that leaves the smallest misfit; None if that is at an end of the places to try."""
+    orthogonal = _cusp_bases(window.tobytes(), shape, exponent)
+    left = values - np.einsum("pmk,pk->pm", orthogonal, np.einsum("pmk,m->pk", orthogonal, values))
+    misfit = np.einsum("pm,pm->p", left, left)
+    lowest = int(np.argmin(misfit))
+    if lowest in (0, CUSP_PLACES - 1):
+        return None
+    shift, _ = _vertex(*misfit[lowest - 1 : lowest + 2])
+    return CUSP_REACH * (2.0 * (lowest + shift) / (CUSP_PLACES - 1) - 1.0)
+
+
+@functools.lru_cache(maxsize=256)
+def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> np.ndarray:
+    """Orthonormal columns for every place to try, shape (places, nodes, unknowns)."""
+    x = np.frombuffer(window)
+    places = np.linspace(-CUSP_REACH, CUSP_REACH, CUSP_PLACES)
+    return np.linalg.qr(np.array([_left_cusp(x, place, shape, exponent) for place in places]))[0]
+
+
+def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
+    """A corner at x = 0, between two smooth branches that fall on both sides.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Distances of the nodes from the corner in node distances, increasing.
+    values : ndarray, shape (n,)
+    """
+    best: Peak | None = None
+    for half in HALF_WIDTHS:
+        if x[0] > 0.5 - half or x[-1] < half - 0.5:
+            break
+        for skipped in CORNER_SKIPPED:
+            taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
+            y, wanted = x[taken] / half, values[taken]
+            for degree in CORNER_DEGREES:
+                unknowns = 2 * degree + 1
+                if y.size < unknowns + SPARE:
+                    continue
+                columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
+                inverse = np.linalg.pinv(columns)
+                coefficients = inverse @ wanted
+                error = standard_error(columns @ coefficients - wanted, unknowns, float(np.linalg.norm(inverse[0])))
+                bend = -coefficients[degree + 1] / half  # of the slope, half of it, in a node distance
+                if bend > max(abs(coefficients[1]) / half, CORNER_BEND * error) and (
+                    best is None or error < best.error
+                ):
+                    best = Peak(float(coefficients[0]), error, 0.0)
+    return best
