@@ -45,13 +45,18 @@ EDGE_ERROR = 0.1
 """Largest standard error of an edge, in node distances; with a larger one it is put halfway between two nodes."""
 
 HALF_WIDTHS = (8, 12, 18, 27, 40, 60)
-"""Nodes on either side of a cusp, a border or a corner, in the windows to try."""
+"""Nodes on either side of a border or a corner, in the windows to try."""
 
-CUSP_SHAPES = ((2, 2, False), (3, 2, False), (4, 3, True))
+CUSP_WINDOWS = ((8, 2), (12, 4), (18, 4), (27, 6), (40, 6), (60, 6), (90, 6))
+"""The same of a cusp, and the nodes beside it that are left out."""
+
+CUSP_SHAPES = ((2, 2, False), (3, 2, False), (4, 3, True), (5, 4, True))
 """Degree of the polynomial, terms of the cusp, and whether the part that falls like x^(a - 2) is fitted too."""
 
 CUSP_REACH = 2.0  # node distances from the largest nodal value
 CUSP_PLACES = 33
+CUSP_STEPS = 2  # of the Gauss-Newton method, from the best of these places
+CUSP_STEP = 1e-4
 BORDER_SHAPES = ((3, 1), (3, 2), (4, 2), (4, 3))  # degree of the polynomial, terms of the cusp
 BORDER_SKIPPED = (1, 2, 4)
 BORDER_ERROR = 3e-3
@@ -59,8 +64,8 @@ BORDER_ERROR = 3e-3
 
 CORNER_DEGREES = (1, 2, 3, 4)
 CORNER_SKIPPED = (2, 4)
-CORNER_BEND = 10.0
-"""Least change of slope in a node distance, in standard errors."""
+CORNER_BEND = 50.0
+"""Least slope on either side over a node distance, in standard errors: only a corner that is at the node has it."""
 
 
 @dataclass(frozen=True)
@@ -252,10 +257,9 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
         None if no cusp is found within two nodes of the largest value.
     """
     best: Peak | None = None
-    for half in HALF_WIDTHS:
+    for half, skipped in CUSP_WINDOWS:
         if x[0] > 0.5 - half or x[-1] < half - 0.5:
             break
-        skipped = 2 if half == HALF_WIDTHS[0] else 4
         taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
         window, wanted = np.round(x[taken], 9), values[taken]
         for shape in CUSP_SHAPES:
@@ -265,14 +269,13 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
             place = _cusp_place(window, wanted, shape, exponent)
             if place is None:
                 continue
-            columns = _left_cusp(window, place, shape, exponent)
-            coefficients = np.linalg.pinv(columns) @ wanted
-            step = 1e-3
-            moved = _left_cusp(window, place + step, shape, exponent) - _left_cusp(
-                window, place - step, shape, exponent
-            )
-            inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / (2.0 * step)]))
-            residual = columns @ coefficients - wanted
+            for _ in range(CUSP_STEPS):
+                columns = _left_cusp(window, place, shape, exponent)
+                coefficients = np.linalg.pinv(columns) @ wanted
+                moved = _left_cusp(window, place + CUSP_STEP, shape, exponent) - columns
+                inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / CUSP_STEP]))
+                residual = columns @ coefficients - wanted
+                place -= float(inverse[-1] @ residual)
             error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
             if best is None or error < best.error:
                 best = Peak(float(coefficients[0]), error, place)
@@ -334,7 +337,7 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
                 inverse = np.linalg.pinv(columns)
                 coefficients = inverse @ wanted
                 error = standard_error(columns @ coefficients - wanted, unknowns, float(np.linalg.norm(inverse[0])))
-                bend = -coefficients[degree + 1] / half  # of the slope, half of it, in a node distance
+                bend = -coefficients[degree + 1] / half
                 if bend > max(abs(coefficients[1]) / half, CORNER_BEND * error) and (
                     best is None or error < best.error
                 ):

@@ -254,9 +254,9 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
     left, right = grid.knots()
     near = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
     slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(near)]
-    bends = [abs(after - before) for before, after in pairwise(slopes)]
-    smooth = max(bends) <= 3.0 * min(bends)
-    if bends[1] > 3.0 * min(bends[0], bends[2]):
+    bends = [before - after for before, after in pairwise(slopes)]
+    smooth = 0.0 < max(bends) <= 3.0 * min(bends)
+    if abs(bends[1]) > 3.0 * min(abs(bends[0]), abs(bends[2])):
         return *at_node, smooth
     before, after = left[top] - grid.theta[top], right[top] - grid.theta[top]
     curvature = (slopes[2] - slopes[1]) / (after - before)  # values = values[top] + slope x + curvature x^2
