@@ -1,4 +1,5 @@
-"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper``, ``sweep``, ``merge``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper``, ``sweep``, ``merge``,
+``verify``.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -16,7 +17,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from fastpin import __version__, cli_sweep
+from fastpin import __version__, cli_sweep, cli_verify
 from fastpin.errors import CaseFileError, FastpinError, InputError
 from fastpin.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_OK, EXIT_PIPE, bar, fail
 
@@ -27,8 +28,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0; 1 when the loads could not be followed to their end or a file could not be written;
-        2 for input that can't be used; 130 when interrupted.
+        Exit code: 0; 1 when the loads could not be followed to their end, a check of the installation has failed or
+        a file could not be written; 2 for input that can't be used; 130 when interrupted.
     """
     try:
         options = _parser().parse_args(_joined(sys.argv[1:] if arguments is None else list(arguments)))
@@ -132,6 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     figures.set_defaults(command=_paper)
 
     cli_sweep.add(commands)
+    cli_verify.add(commands)
     return parser
 
 

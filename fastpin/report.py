@@ -333,7 +333,7 @@ def summary(
         "states": [] if result is None else [_state_summary(state) for state in result],
         "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
     }
-    return _plain(document)
+    return plain(document)
 
 
 def _block_summary(block: Block) -> dict[str, Any]:
@@ -375,12 +375,12 @@ def _degrees(angle: float | None) -> float | None:
     return None if angle is None or not math.isfinite(angle) else from_bottom(angle)
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """`value` with numpy's numbers as Python's, tuples as lists and None for what JSON can't say."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

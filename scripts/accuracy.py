@@ -6,20 +6,21 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 
-from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, analytic, integral_equations, solve
+from fastpin import Problem, analytic, solve
+from fastpin.comparison import (
+    BOTTOM,
+    FRETTING,
+    LIKE,
+    UNLIKE,
+    FiniteElements,
+    cattaneo_mindlin_differences,
+    residuals_away,
+)
 from fastpin.sliding import solve_sliding
-
-BOTTOM = -0.5 * math.pi
-SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
-TITANIUM_ALUMINIUM = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
-FIXED_CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}]
-REFERENCE = Path(__file__).parents[1] / "tests" / "reference"
 
 
 def order(sizes: list[int], errors: list[float]) -> float:
@@ -44,7 +45,7 @@ def closed_form(sizes: list[int]) -> None:
         for load_parameter, wide in cases:
             exact = analytic.persson_half_angle(load_parameter)
             arc = (BOTTOM - wide[0] * exact, BOTTOM + wide[1] * exact)
-            problem = Problem.from_load_parameter(SIMILAR, load_parameter, 0.0)
+            problem = Problem.from_load_parameter(LIKE, load_parameter, 0.0)
             state = solve(problem, [{"P": 1.0}], nodes=nodes, arc=arc)[-1]
             edge += [state.contact[0][1] - BOTTOM - exact, state.contact[0][0] - BOTTOM + exact]
             peak.append(state.peak_pressure / analytic.persson_pressure(0.0, exact) - 1.0)
@@ -63,10 +64,8 @@ def with_friction(sizes: list[int]) -> None:
     print("L_p = 0.5, after P, +0.275, -0.275. N and T in F/R.")
     rows = []
     for nodes in sizes:
-        one = solve(Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=nodes)[-1]
-        two = solve(Problem.from_load_parameter(SIMILAR, 0.5, 0.55, "centre", "fixed"), FIXED_CYCLE[:3], nodes=nodes)[
-            -1
-        ]
+        one = solve(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=nodes)[-1]
+        two = solve(Problem.from_load_parameter(LIKE, 0.5, 0.55, "centre", "fixed"), FRETTING[:3], nodes=nodes)[-1]
         rows.append(
             [
                 nodes,
@@ -88,39 +87,22 @@ def finite_elements() -> None:
         "\nOn the finite elements' own nodes; integrals in parts of int N. *Away*: without six nodes on either side of"
     )
     print("each contact edge, and of each border between stick and slip, old or new.")
-    rows = []
-    for name, problem, width in (
-        ("frictionless", Problem.from_load_parameter(SIMILAR, 0.05, 0.0, "body"), 1.4),
-        ("monotonic", Problem.from_load_parameter(SIMILAR, 0.1, 0.4, "body"), 1.3),
-        ("fretting_fixed_rotation", Problem.from_load_parameter(SIMILAR, 0.5, 0.55, "centre", "fixed"), 1.0),
-    ):
-        text = (REFERENCE / f"fem_{name}.csv").read_text().splitlines()
-        data = list(csv.DictReader(line for line in text if not line.startswith("#")))
-        values = {key: np.array([float(row[key]) for row in data]) for key in data[0]}
-        h = math.pi / 720.0
-        theta = values["theta"][0] + h * np.round((values["theta"] - values["theta"][0]) / h)
-        inside = np.abs(theta - BOTTOM) < width
-        history = FIXED_CYCLE if name.startswith("fretting") else FIXED_CYCLE[:1]
-        result = solve(problem, history, grid=Grid(theta[inside]))
-        borders: set[int] = set()
-        for state, suffix in zip(result, ("P", "plusQ", "minusQ", "plusQ2"), strict=False):
-            borders |= {int(i) for i in np.flatnonzero(np.diff(state.status))}
-            away = np.ones(theta[inside].size, dtype=bool)
-            for i in borders:
-                away[max(i - 5, 0) : i + 7] = False
-            normal = np.abs(state.pressure - values[f"N_{suffix}"][inside])
-            shear = np.abs(state.shear - values[f"T_{suffix}"][inside])
-            total = values[f"N_{suffix}"].sum()
-            peak = abs(state.pressure.max() / values[f"N_{suffix}"].max() - 1.0)
-            sums = [normal.sum(), normal[away].sum(), shear.sum(), shear[away].sum()]
-            rows.append([f"{name}, {suffix}", *[float(s / total) for s in sums], float(peak)])
+    rows: list[list[object]] = []
+    for name in ("frictionless", "monotonic", "fretting_fixed_rotation"):
+        model = FiniteElements.read(name)
+        states = solve(model.problem, model.history, grid=model.grid)
+        for label, state, pressure, one in zip(
+            ("P", "plusQ", "minusQ", "plusQ2"), states, model.pressure, model.differences(states), strict=False
+        ):
+            peak = abs(float(state.pressure.max() / pressure.max()) - 1.0)
+            rows.append([f"{name}, {label}", one.normal, one.normal_away, one.shear, one.shear_away, peak])
     table(["case, state", "int dN", "away", "int dT", "away", "peak N"], rows)
 
 
 def increments(counts: list[int]) -> None:
     print("\n## Increments against the path")
     print("\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, 301 nodes; increments that grow linearly.")
-    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body")
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body")
     arc = (BOTTOM - 1.25, BOTTOM + 1.25)
     exact = solve(problem, [{"P": 1.0}], nodes=301, arc=arc)[-1]
     rows, errors = [], []
@@ -138,15 +120,11 @@ def half_plane(nodes: int) -> None:
     print(f"\nSimilar materials, held, mu = 0.5, Q = 0.6 mu P, {nodes} nodes; int |dT| / int mu N against L_p.")
     rows, parameters, loading = [], [2.0, 20.0, 200.0, 2000.0], []
     for parameter in parameters:
-        problem = Problem.from_load_parameter(SIMILAR, parameter, 0.5, "centre", "fixed")
+        problem = Problem.from_load_parameter(LIKE, parameter, 0.5, "centre", "fixed")
         result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}], nodes=nodes)
         half, top = analytic.hertz_half_angle(parameter), analytic.hertz_peak_pressure(parameter)
         row: list[object] = [f"{parameter:g}", result[0].peak_pressure / top - 1.0]
-        branches = [(0.6, None, "loading"), (-0.6, 0.6, "unloading"), (0.6, 0.6, "reloading")]
-        for state, (now, most, branch) in zip(result[1:], branches, strict=True):
-            x = state.theta - BOTTOM
-            shear = -analytic.cattaneo_mindlin_shear(x, half, top, 0.5, now, most, branch)
-            row.append(float(np.abs(state.shear - shear).sum() / (0.5 * state.pressure.sum())))
+        row += cattaneo_mindlin_differences(result[1:], 0.6)
         loading.append(row[2])
         start, stop = result[1].stick[0]
         rows.append([*row, f"{0.5 * (stop - start) / half:.5f}"])
@@ -159,7 +137,7 @@ def full_sliding(terms: list[int], sizes: list[int]) -> None:
     print("\nEq. (58) on its own, mu = 0.4, L_p = 0.1, Q = 0.4 P; differences from twice as many terms as in the last")
     print("row. Like bodies, and Ti-6Al-4V in aluminium.")
     load = {"P": 1.0, "Q": 0.4}
-    problems = [Problem.from_load_parameter(pair, 0.1, 0.4) for pair in (SIMILAR, TITANIUM_ALUMINIUM)]
+    problems = [Problem.from_load_parameter(pair, 0.1, 0.4) for pair in (LIKE, UNLIKE)]
     exact = [solve_sliding(problem, load, terms=2 * terms[-1]) for problem in problems]
     rows: list[list[object]] = []
     for count in terms:
@@ -174,7 +152,7 @@ def full_sliding(terms: list[int], sizes: list[int]) -> None:
     rows = []
     for nodes in sizes:
         row = [nodes]
-        for pair in (SIMILAR, TITANIUM_ALUMINIUM):
+        for pair in (LIKE, UNLIKE):
             problem = Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
             true = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
             state = solve(problem, [{"P": 1.0}, {"Q": 1.0}], nodes=nodes)[-1]
@@ -189,17 +167,12 @@ def singular_equations(sizes: list[int]) -> None:
     print("\n## The singular integral equations (46), (47)")
     print("\nLargest residual, in units of F beta*, of Ti-6Al-4V in aluminium as above, with Cauchy matrices built on")
     print("their own, inside the contact and away from edges and borders (0.085 rad).")
-    problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.1, 0.4, "body")
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body")
     rows, first, second = [], [], []
     for nodes in sizes:
         state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
-        one, two = integral_equations.residuals(
-            problem, 1.0, state.grid, state.pressure, state.shear, state.slip, state.rotation
-        )
-        x = np.abs(state.theta - BOTTOM)
-        away = (x < 1.05) & (np.abs(x - 0.4356) > 0.085)
-        first.append(float(np.abs(one[away]).max()))
-        second.append(float(np.abs(two[away]).max()))
+        for largest, one in zip((first, second), residuals_away(state, 0.085), strict=True):
+            largest.append(one)
         rows.append([nodes, first[-1], second[-1]])
     table(["nodes", "(46)", "(47)"], rows)
     print(f"\nOrders: {order(sizes, first):.2f} and {order(sizes, second):.2f}.")

@@ -6,33 +6,26 @@ import numpy as np
 import pytest
 
 from fastpin import Problem, analytic, solve
+from fastpin.comparison import cattaneo_mindlin_differences
 
 FRICTION, RATIO = 0.5, 0.6
 
 
-def cattaneo_mindlin_differences(pair, load_parameter, nodes):
+def half_plane_errors(pair, load_parameter, nodes):
     """int |dT| / int mu N after +Q, -Q and +Q again, stick ratio, and the peak pressure over Hertz's minus 1."""
     problem = Problem.from_load_parameter(pair, load_parameter, FRICTION, "centre", "fixed")
     Q = RATIO * FRICTION
     result = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}, {"Q": Q}], nodes=nodes)
     half = analytic.hertz_half_angle(load_parameter)
     peak = analytic.hertz_peak_pressure(load_parameter)
-    differences = []
-    branches = [(RATIO, None, "loading"), (-RATIO, RATIO, "unloading"), (RATIO, RATIO, "reloading")]
-    for state, (now, most, branch) in zip(result[1:], branches, strict=True):
-        x = state.theta + 0.5 * np.pi
-        # the traction on the pin opposes Q and theta runs along +x at the bottom
-        shear = -analytic.cattaneo_mindlin_shear(x, half, peak, FRICTION, now, most, branch)
-        differences.append(
-            (state.grid.weights @ np.abs(state.shear - shear)) / (FRICTION * state.grid.weights @ state.pressure)
-        )
+    differences = cattaneo_mindlin_differences(result[1:], RATIO)
     start, stop = result[1].stick[0]
     return differences, 0.5 * (stop - start) / half, result[0].peak_pressure / peak - 1.0
 
 
 def test_differences_fall_with_the_load_parameter(similar):
     parameters = [20.0, 200.0, 2000.0]
-    found = [cattaneo_mindlin_differences(similar, value, 301) for value in parameters]
+    found = [half_plane_errors(similar, value, 301) for value in parameters]
     for branch in range(3):
         shear = [differences[branch] for differences, _, _ in found]
         assert shear[1] < 0.03

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fastpin import Grid, Material, MaterialPair, Problem, analytic, solve
+from fastpin import InputError, Material, MaterialPair, Problem, analytic, solve
+from fastpin.comparison import FiniteElements
 
 BOTTOM = -0.5 * math.pi
 CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}, {"Q": -0.275}]
@@ -141,63 +140,43 @@ def test_hub_at_the_papers_datum_is_the_default(similar):
 # --- finite elements ----------------------------------------------------------------------------------------
 
 
-def finite_elements(name):
-    text = (Path(__file__).parent / "reference" / name).read_text().splitlines()
-    rows = list(csv.DictReader(line for line in text if not line.startswith("#")))
-    return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+def against(name):
+    """States, their differences from the finite elements, and the relative differences in peak pressure."""
+    model = FiniteElements.read(name)
+    states = solve(model.problem, model.history, grid=model.grid)
+    peaks = [abs(s.pressure.max() / N.max() - 1.0) for s, N in zip(states, model.pressure, strict=True)]
+    return model, states, model.differences(states), peaks
 
 
-def on_their_nodes(table, half_width):
-    """The finite-element nodes themselves, without the rounding of the file."""
-    theta = table["theta"][0] + math.pi / 720.0 * np.round((table["theta"] - table["theta"][0]) * 720.0 / math.pi)
-    return Grid(theta[np.abs(theta - BOTTOM) < half_width])
-
-
-def differences(state, table, suffix):
-    """int |dN|, int |dT| in parts of int N, and the relative difference in peak pressure."""
-    width = math.pi / 720.0
-    pressure = np.interp(table["theta"], state.theta, state.pressure, 0.0, 0.0)
-    shear = np.interp(table["theta"], state.theta, state.shear, 0.0, 0.0)
-    total = width * table[f"N_{suffix}"].sum()
-    return (
-        width * np.abs(pressure - table[f"N_{suffix}"]).sum() / total,
-        width * np.abs(shear - table[f"T_{suffix}"]).sum() / total,
-        abs(state.pressure.max() / table[f"N_{suffix}"].max() - 1.0),
-    )
-
-
-def test_finite_elements_without_friction(similar):
-    table = finite_elements("fem_frictionless.csv")
-    problem = Problem.from_load_parameter(similar, 0.05, 0.0, "body")
-    normal, _, peak = differences(solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.4))[-1], table, "P")
-    assert normal < 5e-4
+def test_finite_elements_without_friction():
+    _, _, (difference,), (peak,) = against("frictionless")
+    assert difference.normal < 5e-4
+    assert difference.shear == 0.0
     assert peak < 2e-5
 
 
-def test_finite_elements_monotonic(similar):
-    table = finite_elements("fem_monotonic.csv")
-    problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
-    state = solve(problem, [{"P": 1.0}], grid=on_their_nodes(table, 1.3))[-1]
-    normal, tangential, peak = differences(state, table, "P")
-    assert normal < 1.5e-4
-    assert tangential < 1.1e-3
+def test_finite_elements_monotonic():
+    _, _, (difference,), (peak,) = against("monotonic")
+    assert difference.normal < 1.5e-4
+    assert difference.shear < 1.1e-3
     assert peak < 5e-5
 
 
-def test_finite_elements_fretting(similar):
+def test_finite_elements_fretting():
     """The stated errors are 5e-4, 2e-3 and 1.5e-4; docs/accuracy.md says where the rest comes from."""
-    table = finite_elements("fem_fretting_fixed_rotation.csv")
-    problem = Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
-    result = solve(problem, CYCLE[:4], grid=on_their_nodes(table, 1.0))
-    for state, suffix in zip(result, ("P", "plusQ", "minusQ", "plusQ2"), strict=True):
-        normal, tangential, peak = differences(state, table, suffix)
-        assert normal < (8e-4 if suffix == "minusQ" else 5e-4)
-        assert tangential < (2.5e-3 if suffix == "plusQ2" else 2e-3)
-        assert peak < 1.7e-4
-        theta = table["theta"]
-        integral = math.pi / 720.0 * table[f"T_{suffix}"].sum()
-        assert -state.resultants["M"] == pytest.approx(integral, abs=3e-5)
-        assert theta.size > state.theta.size
+    model, states, differences, peaks = against("fretting_fixed_rotation")
+    for k, (state, difference) in enumerate(zip(states, differences, strict=True)):
+        assert difference.normal < (8e-4 if k == 2 else 5e-4)
+        assert difference.shear < (2.5e-3 if k == 3 else 2e-3)
+        assert difference.normal_away < 5e-4
+        assert difference.shear_away < 2e-3
+        assert peaks[k] < 1.7e-4
+        assert -state.resultants["M"] == pytest.approx(math.pi / 720.0 * model.shear[k].sum(), abs=3e-5)
+
+
+def test_finite_elements_that_there_are_not():
+    with pytest.raises(InputError, match=r"name: must be one of frictionless, .*, not 'spheres'"):
+        FiniteElements.read("spheres")
 
 
 # --- rigid limits -------------------------------------------------------------------------------------------

@@ -1,0 +1,356 @@
+"""A check of an installation: what the solver finds against closed forms, other methods and what must hold.
+
+:func:`verify` takes seconds. docs/accuracy.md says what each row checks and where its tolerance comes from.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin import analytic
+from fastpin.comparison import (
+    BOTTOM,
+    FRETTING,
+    LIKE,
+    UNLIKE,
+    FiniteElements,
+    cattaneo_mindlin_differences,
+    residuals_away,
+)
+from fastpin.materials import MATERIALS, Material, MaterialPair
+from fastpin.problem import Problem
+from fastpin.sliding import solve_sliding
+from fastpin.solver import solve
+from fastpin.state import Result, State
+
+NODES = 401
+"""Nodes of all cases but those on the nodes of finite elements."""
+
+STATED = 1.2
+"""What the finite-element model's stated errors, which are "about", are multiplied by."""
+
+TOLERANCES: dict[str, dict[str, float]] = {
+    "like": {"peak N": 1e-5, "half-angle": 2e-4},
+    "alpha* = 0": {"peak N": 8e-6, "half-angle": 1e-4},
+    "coupled": {"peak N": 1e-5, "half-angle": 9e-4},
+    "elements, frictionless": {"int |dN|": STATED * 5e-4, "peak N": 2e-5},
+    "elements, monotonic": {"int |dN|": STATED * 1e-4, "int |dT|": STATED * 1e-3, "peak N": STATED * 5e-5},
+    "elements, fretting": {
+        "int |dN|": STATED * 5e-4,
+        "int |dN|, -Q": 9e-4,  # measured, not stated: two or three nodes at the contact edges
+        "int |dT|": STATED * 2e-3,
+        "peak N": STATED * 1.5e-4,
+    },
+    "half-plane": {"peak N": 5e-6, "int |dT|": 2e-3, "stick ratio": 3e-5},
+    "sliding": {"peak N": 8e-6, "moment": 7e-6, "end": 2e-4, "end, unlike bodies": 1e-3},
+    "equations": {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
+    "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
+    "energy": {"work": 1.5e-5},
+    "parts": {"differing numbers": 0.0},
+    "conditions": {"largest residual": 1.4e-14},
+}
+"""Largest differences that pass, by key of the topic and quantity; "quantity, case" is for that case alone."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One row.
+
+    Attributes
+    ----------
+    topic, case, quantity : str
+        What is compared; no quantity where the case ended in an error.
+    reference, ours : float or None
+        The two values, dimensionless (R = F = beta* = 1, angles in rad); None where the difference is of whole
+        functions.
+    difference, tolerance : float or None
+        Not negative, in `unit`; None where the case ended in an error.
+    unit : str
+        "relative" (to the reference), or what `difference` is in parts of.
+    message : str
+        The error in which the case ended.
+    """
+
+    topic: str
+    case: str
+    quantity: str = ""
+    reference: float | None = None
+    ours: float | None = None
+    difference: float | None = None
+    tolerance: float | None = None
+    unit: str = ""
+    message: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the difference is a number within the tolerance."""
+        return self.difference is not None and self.tolerance is not None and self.difference <= self.tolerance
+
+
+def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
+    """Compare the solver with its references.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Called as ``progress(done, total)`` before each case.
+
+    Returns
+    -------
+    list of Check
+        In the order of the topics. A case that ends in an error is a row that has not passed, and the others follow.
+    """
+    solving = _Solving()
+    checks: list[Check] = []
+    cases = [(key, title, name, rows) for key, (title, topic) in TOPICS.items() for name, rows in topic.items()]
+    for done, (key, title, name, rows) in enumerate(cases):
+        if progress is not None:
+            progress(done, len(cases))
+        try:
+            for row in rows(solving):
+                checks.append(row.check(title, name, TOLERANCES[key]))
+        except Exception as error:  # whatever goes wrong is what this installation does
+            checks.append(Check(title, name, message=" ".join(f"{type(error).__name__}: {error}".split())))
+    return checks
+
+
+class _Solving:
+    """The solver, and the largest residual of all the states that it has returned."""
+
+    def __init__(self) -> None:
+        self.states = 0
+        self.largest = 0.0
+
+    def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
+        result = solve(problem, history, **{"nodes": NODES, **options})
+        self.states += len(result)
+        self.largest = float(np.max([self.largest, *[one for state in result for one in state.residuals.values()]]))
+        return result
+
+
+class _Row(NamedTuple):
+    quantity: str
+    difference: float
+    unit: str
+    reference: float | None = None
+    ours: float | None = None
+    case: str = ""
+
+    def check(self, topic: str, name: str, tolerances: dict[str, float]) -> Check:
+        case = self.case or name
+        tolerance = tolerances.get(f"{self.quantity}, {case}", tolerances[self.quantity])
+        return Check(topic, case, self.quantity, self.reference, self.ours, self.difference, tolerance, self.unit)
+
+
+Rows = Iterator[_Row]
+
+
+def _value(quantity: str, ours: float, reference: float, case: str = "") -> _Row:
+    return _Row(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
+
+
+def _angle(quantity: str, ours: float, reference: float) -> _Row:
+    return _Row(quantity, abs(ours - reference), "rad", reference, ours)
+
+
+def _half_width(interval: tuple[float, float]) -> float:
+    return 0.5 * (interval[1] - interval[0])
+
+
+# -- closed forms and other methods --------------------------------------------------------------------------
+
+
+def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, solving: _Solving) -> Rows:
+    (state,) = solving(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}])
+    half = float(analytic.persson_half_angle(load_parameter, mismatch))
+    yield _value("peak N", state.peak_pressure, float(analytic.persson_pressure(0.0, half)))
+    yield _angle("half-angle", _half_width(state.contact[0]), half)
+
+
+def _coupled(pair: MaterialPair, load_parameter: float, solving: _Solving) -> Rows:
+    problem = Problem.from_load_parameter(pair, load_parameter, 0.0)
+    (state,) = solving(problem, [{"P": 1.0}])
+    series = solve_sliding(problem, {"P": 1.0})
+    yield _value("peak N", state.peak_pressure, series.peak_pressure)
+    yield _angle("half-angle", _half_width(state.contact[0]), _half_width(series.contact))
+
+
+def _finite_elements(name: str, solving: _Solving) -> Rows:
+    model = FiniteElements.read(name)
+    states = solving(model.problem, model.history, grid=model.grid)
+    cases = ("P", "+Q", "-Q", "+Q again")[: len(states)]
+    differences = model.differences(states)
+    for case, state, pressure, difference in zip(cases, states, model.pressure, differences, strict=True):
+        yield _Row("int |dN|", difference.normal, "int N", case=case)
+        if not model.problem.frictionless:
+            yield _Row("int |dT|", difference.shear, "int N", case=case)
+        yield _value("peak N", float(state.pressure.max()), float(pressure.max()), case)
+
+
+def _half_plane(solving: _Solving) -> Rows:
+    load_parameter, friction, ratio = 2e5, 0.5, 0.6
+    half = float(analytic.hertz_half_angle(load_parameter))
+    pushed, *fretted = solving(
+        Problem.from_load_parameter(LIKE, load_parameter, friction, "centre", "fixed"),
+        [{"P": 1.0}, {"Q": ratio * friction}, {"Q": -ratio * friction}, {"Q": ratio * friction}],
+        arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half),
+    )
+    yield _value("peak N", pushed.peak_pressure, float(analytic.hertz_peak_pressure(load_parameter)), "P")
+    differences = cattaneo_mindlin_differences(fretted, ratio)
+    exact = float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted, differences, strict=True):
+        yield _Row("int |dT|", difference, "int mu N", case=case)
+        stick = _half_width(state.stick[0]) / _half_width(state.contact[0])
+        yield _value("stick ratio", stick, exact, case)
+
+
+def _sliding(pair: MaterialPair, solving: _Solving) -> Rows:
+    problem = Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
+    state = solving(problem, [{"P": 1.0}, {"Q": 1.0}])[-1]
+    series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
+    yield _value("peak N", state.peak_pressure, series.peak_pressure)
+    yield _value("moment", state.resultants["M"], series.moment)
+    for ours, reference in zip(state.contact[0], series.contact, strict=True):
+        yield _angle("end", ours, reference)
+
+
+def _singular_equations(solving: _Solving) -> Rows:
+    (state,) = solving(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}])
+    first, second = residuals_away(state, 0.085)
+    yield _Row("(46)", first, "F beta*")
+    yield _Row("(47)", second, "F beta*")
+
+
+def _singular_equations_with_stress(solving: _Solving) -> Rows:
+    problem = Problem.from_load_parameter(UNLIKE, 0.3, 0.5, "centre")
+    state = solving(problem, [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}])[-1]
+    yield _Row("(47)", residuals_away(state, 0.15)[1], "F beta*")
+
+
+# -- what must hold ------------------------------------------------------------------------------------------
+
+_FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")
+_HELD = Problem.from_load_parameter(UNLIKE, 0.5, 0.55, "centre", "fixed")
+
+
+def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
+    """Turning Q round mirrors the state: theta to -pi - theta; shear and slip change sign."""
+    turned = [{name: -value if name == "Q" else value for name, value in corner.items()} for corner in FRETTING]
+    arc = (BOTTOM - half_arc, BOTTOM + half_arc)
+    one, two = (solving(problem, history, arc=arc) for history in (FRETTING, turned))
+    peak = max(state.peak_pressure for state in one)
+    slip = max(float(np.abs(state.slip).max()) for state in one)
+
+    def worst(difference: Callable[[State, State], np.ndarray]) -> float:
+        return float(np.max([np.abs(difference(here, there)) for here, there in zip(one, two, strict=True)]))
+
+    yield _Row("N", worst(lambda here, there: here.pressure - there.pressure[::-1]) / peak, "peak N")
+    yield _Row("T", worst(lambda here, there: here.shear + there.shear[::-1]) / peak, "peak N")
+    yield _Row("slip", worst(lambda here, there: here.slip + there.slip[::-1]) / slip, "largest slip")
+
+
+def _energy(problem: Problem, solving: _Solving) -> Rows:
+    """The work of the loads against what is stored and dissipated, of the worst state."""
+    rows = [
+        _value("work", state.work, state.energy + state.dissipation)
+        for state in solving(problem, [*FRETTING, {"P": 0.5, "Q": 0.1}])
+    ]
+    yield max(rows, key=lambda row: row.difference if math.isfinite(row.difference) else math.inf)
+
+
+def _split(problem: Problem, solving: _Solving) -> Rows:
+    """A history cut in two, the second part going on from the first, against the whole."""
+    whole = solving(problem, FRETTING)
+    first = solving(problem, FRETTING[:2], grid=whole.grid)
+    second = solving(problem, FRETTING[2:], start=first)
+    differing = sum(
+        int(np.count_nonzero(one != other))
+        for here, there in zip(whole, [*first, *second], strict=True)
+        for one, other in zip(_numbers(here), _numbers(there), strict=True)
+    )
+    yield _Row("differing numbers", float(differing), "", 0.0, float(differing))
+
+
+def _numbers(state: State) -> list[np.ndarray]:
+    arrays = [state.pressure, state.shear, state.gap, state.slip, state.status]
+    values = [state.dx, state.dy, state.rotation, state.dissipation, state.work, state.energy]
+    return [*arrays, np.array(values)]
+
+
+def _conditions(solving: _Solving) -> Rows:
+    """Signorini, Coulomb and equilibrium, recomputed from the matrices, of all states that were met above."""
+    largest = solving.largest if solving.states else math.nan
+    yield _Row("largest residual", largest, "relative", case=f"all {solving.states} states")
+
+
+Cases = dict[str, Callable[[_Solving], Rows]]
+
+_RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
+_SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
+_COUPLED = {"Ti-6Al-4V in Al": UNLIKE, "rigid pin": _RIGID_PIN, "soft pin": _SOFT_PIN}
+
+TOPICS: dict[str, tuple[str, Cases]] = {
+    "like": (
+        "Without friction, like bodies: Persson",
+        {f"L_p = {value:g}": partial(_frictionless, LIKE, value, 0.0) for value in (0.01, 0.1, 0.5, 2.0)},
+    ),
+    "alpha* = 0": (
+        "Without friction, unlike bodies with alpha* = 0: Ciavarella and Decuzzi",
+        {
+            f"L_p = {value:g}, alpha = {alpha:g}": partial(
+                _frictionless, MaterialPair.from_dundurs(alpha, 0.0, nu_pin=0.3), value, -alpha
+            )
+            for alpha in (-0.2, 0.5)
+            for value in (0.05, 0.5)
+        },
+    ),
+    "coupled": (
+        "Without friction, unlike bodies: Eq. (58) by Jacobi polynomials",
+        {
+            f"L_p = {value:g}, {name}": partial(_coupled, pair, value)
+            for name, pair in _COUPLED.items()
+            for value in (0.05, 0.5)
+        },
+    ),
+    "elements, frictionless": (
+        "Finite elements, without friction, L_p = 0.05",
+        {"P": partial(_finite_elements, "frictionless")},
+    ),
+    "elements, monotonic": (
+        "Finite elements, first load, mu = 0.4, L_p = 0.1",
+        {"P": partial(_finite_elements, "monotonic")},
+    ),
+    "elements, fretting": (
+        "Finite elements, fretting with held rotation, mu = 0.55, L_p = 0.5",
+        {"P, Q": partial(_finite_elements, "fretting_fixed_rotation")},
+    ),
+    "half-plane": ("Half-planes, L_p = 2e5: Hertz, Cattaneo, Mindlin", {"P, Q": _half_plane}),
+    "sliding": (
+        "Full sliding, mu = 0.3, L_p = 0.5: Eq. (58) by Jacobi polynomials",
+        {"like bodies": partial(_sliding, LIKE), "unlike bodies": partial(_sliding, UNLIKE)},
+    ),
+    "equations": (
+        "Residuals of the singular integral equations (46), (47)",
+        {"P": _singular_equations, "Q and remote stress": _singular_equations_with_stress},
+    ),
+    "mirror": (
+        "A history with -Q in place of Q: the mirror image",
+        {"free rotation": partial(_mirror, _FREE, 1.75), "held rotation": partial(_mirror, _HELD, 1.2)},
+    ),
+    "energy": (
+        "Work of the loads: energy stored and dissipated",
+        {"free rotation": partial(_energy, _FREE), "held rotation": partial(_energy, _HELD)},
+    ),
+    "parts": (
+        "A history in two parts: the same bits as in one",
+        {"free rotation": partial(_split, _FREE), "held rotation": partial(_split, _HELD)},
+    ),
+    "conditions": ("Contact conditions and equilibrium", {"all states": _conditions}),
+}
+"""Title of each topic and its cases by name; the keys are those of :data:`TOLERANCES`."""

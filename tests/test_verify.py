@@ -1,0 +1,273 @@
+"""``fastpin verify``: it passes here, its tolerances are close, and it fails where something is wrong."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fastpin import ConvergenceError, analytic, cli_verify, comparison, kernels, solver, verify
+from fastpin.cli import main
+from fastpin.verify import TOLERANCES, TOPICS, Check
+
+MOST_SLACK = 3.0
+ROUNDING = {"mirror", "conditions", "parts"}
+STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting"}
+
+
+@pytest.fixture(scope="module")
+def checks() -> list[Check]:
+    return verify.verify()
+
+
+@pytest.fixture
+def only(monkeypatch: pytest.MonkeyPatch) -> object:
+    """Leave out all topics but some."""
+
+    def choose(*keys: str) -> None:
+        monkeypatch.setattr(verify, "TOPICS", {key: TOPICS[key] for key in keys})
+
+    return choose
+
+
+def rows_of(checks: list[Check], key: str) -> Iterator[Check]:
+    return (check for check in checks if check.topic == TOPICS[key][0])
+
+
+def table_lines(capsys: pytest.CaptureFixture[str]) -> list[str]:
+    return capsys.readouterr().out.splitlines()
+
+
+# -- it passes -----------------------------------------------------------------------------------------------
+
+
+def test_all_passes(checks: list[Check]) -> None:
+    assert [check for check in checks if not check.passed] == []
+    assert len(checks) > 60
+    assert {check.topic for check in checks} == {title for title, _ in TOPICS.values()}
+
+
+def test_every_tolerance_is_used(checks: list[Check]) -> None:
+    assert list(TOLERANCES) == list(TOPICS)
+    for key, tolerances in TOLERANCES.items():
+        names = {name for check in rows_of(checks, key) for name in (check.quantity, f"{check.quantity}, {check.case}")}
+        assert set(tolerances) <= names
+
+
+@pytest.mark.parametrize("key", [key for key in TOPICS if key not in ROUNDING | STATED])
+def test_tolerances_of_discretisation_errors_are_not_slack(checks: list[Check], key: str) -> None:
+    """No more than three times the largest difference of the rows that they are for."""
+    largest: dict[tuple[str, float], float] = {}
+    for check in rows_of(checks, key):
+        assert check.difference is not None
+        assert check.tolerance is not None
+        name = check.quantity, check.tolerance
+        largest[name] = max(largest.get(name, 0.0), check.difference)
+    for (quantity, tolerance), difference in largest.items():
+        assert tolerance <= MOST_SLACK * difference, quantity
+
+
+def test_values_and_their_difference_agree(checks: list[Check]) -> None:
+    for check in checks:
+        if check.reference is None or check.ours is None:
+            assert check.ours is check.reference is None
+            continue
+        size = check.reference if check.unit == "relative" else 1.0
+        assert check.difference == pytest.approx(abs((check.ours - check.reference) / size), rel=1e-9, abs=1e-15)
+
+
+def test_a_table_in_columns(checks: list[Check]) -> None:
+    lines = cli_verify.table(checks).splitlines()
+    assert max(map(len, lines)) <= 120
+    head = next(line for line in lines if "tolerance" in line)
+    rows = [line for line in lines if line.endswith(" ok")]
+    assert len(rows) == len(checks)
+    for title in ("difference", "tolerance"):
+        stop = head.index(title) + len(title)
+        for row in rows:
+            assert row[stop - 1] != " "
+            assert row[stop : stop + 2] == "  "
+    assert len({len(row) for row in rows}) == 1
+    assert lines.count(TOPICS["like"][0]) == 1
+
+
+def test_the_document_shows_this_table(checks: list[Check]) -> None:
+    """But for what rounding may change: the values and their differences."""
+    document = (Path(__file__).parents[1] / "docs" / "accuracy.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"```text\n(.*?)\n```", document, re.DOTALL)
+    expected = cli_verify.table(checks).splitlines()
+    head = next(line for line in expected if "tolerance" in line)
+    values = slice(head.index("reference") - 1, head.index("tolerance"))
+    lines = shown.splitlines()
+    assert f"{len(checks)} of {len(checks)} within tolerance" in lines.pop()
+    assert lines.pop() == ""
+    for line, true in zip(lines, expected, strict=True):
+        assert line[: values.start] == true[: values.start]
+        assert line[values.stop :] == true[values.stop :]
+
+
+def test_progress() -> None:
+    calls: list[tuple[int, int]] = []
+
+    def stop(done: int, total: int) -> None:
+        calls.append((done, total))
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        verify.verify(stop)
+    total = sum(len(cases) for _, cases in TOPICS.values())
+    assert calls == [(0, total), (1, total), (2, total)]
+
+
+# -- it fails ------------------------------------------------------------------------------------------------
+
+
+def test_a_wrong_closed_form_is_seen(only, monkeypatch, capsys) -> None:
+    only("like", "parts")
+    exact = analytic.persson_pressure
+    monkeypatch.setattr(analytic, "persson_pressure", lambda *given: exact(*given) * (1.0 + 2e-5))
+    assert main(["verify"]) == 1
+    lines = table_lines(capsys)
+    failed = [line for line in lines if "FAILED" in line]
+    assert len(failed) == 4
+    assert all("peak N" in line for line in failed)
+    assert lines[-1].startswith("6 of 10 within tolerance, ")
+
+
+@pytest.mark.parametrize("name", ["fill_operator", "fill_cauchy"])
+def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str) -> None:
+    """A ten-thousandth too large."""
+    only("equations")
+    exact = getattr(kernels, name)
+
+    def wrong(*given):
+        returned = exact(*given)
+        given[-1][...] *= 1.0001
+        return returned
+
+    monkeypatch.setattr(kernels, name, wrong)
+    assert not all(check.passed for check in verify.verify())
+    assert main(["verify"]) == 1
+
+
+def test_a_wrong_reference_is_seen(only, monkeypatch, capsys) -> None:
+    only("elements, monotonic")
+    read = comparison.FiniteElements.read
+
+    def moved(name: str) -> comparison.FiniteElements:
+        model = read(name)
+        model.pressure[:] = np.roll(model.pressure, 1, axis=1)
+        return model
+
+    monkeypatch.setattr(verify.FiniteElements, "read", moved)
+    assert main(["verify"]) == 1
+    assert [line.split()[-1] for line in table_lines(capsys) if " int |d" in line] == ["FAILED", "ok"]
+
+
+def test_a_part_that_is_off_by_rounding_is_seen(only, monkeypatch) -> None:
+    only("parts")
+    exact = solver.solve
+
+    def rounded(problem, history, **options):
+        if "start" in options:
+            history = [{"Q": history[0]["Q"] * (1.0 + 1e-15)}, *history[1:]]
+        return exact(problem, history, **options)
+
+    monkeypatch.setattr(verify, "solve", rounded)
+    checks = verify.verify()
+    assert not any(check.passed for check in checks)
+    assert all(check.ours is not None and check.ours > 100.0 for check in checks)
+
+
+def test_what_is_no_number_does_not_pass(only, monkeypatch, capsys, tmp_path) -> None:
+    only("half-plane", "conditions")
+    monkeypatch.setattr(analytic, "cattaneo_mindlin_shear", lambda x, *_: math.nan * x)
+    assert main(["verify", "--json", str(tmp_path / "checks.json")]) == 1
+    assert len([line for line in table_lines(capsys) if "nan" in line and "FAILED" in line]) == 3
+    document = json.loads((tmp_path / "checks.json").read_text())
+    assert [one["difference"] for one in document["checks"] if one["quantity"] == "int |dT|"] == [None] * 3
+
+
+def test_an_error_is_a_row_that_fails_and_the_others_are_made(only, monkeypatch, capsys) -> None:
+    only("like", "conditions")
+    exact = solver.solve
+
+    def refusing(problem, *given, **options):
+        if problem.clearance == 0.1:
+            raise ConvergenceError("the statuses\ndo not settle")
+        return exact(problem, *given, **options)
+
+    monkeypatch.setattr(verify, "solve", refusing)
+    assert main(["verify"]) == 1
+    lines = table_lines(capsys)
+    (failed,) = [line for line in lines if "FAILED" in line]
+    assert " ".join(failed.split()) == "L_p = 0.1 FAILED: ConvergenceError: the statuses do not settle"
+    assert "all 3 states" in "\n".join(lines)
+    assert lines[-1].startswith("7 of 8 within tolerance, ")
+
+
+def test_reference_files_that_are_not_there_are_seen(only, monkeypatch, capsys, tmp_path) -> None:
+    only("elements, frictionless", "elements, monotonic")
+    monkeypatch.setattr(comparison, "REFERENCE", tmp_path)
+    assert main(["verify"]) == 1
+    lines = table_lines(capsys)
+    assert len([line for line in lines if "FAILED: FileNotFoundError" in line]) == 2
+    assert lines[-1].startswith("0 of 2 within tolerance, ")
+
+
+def test_without_any_state_the_conditions_do_not_pass(only) -> None:
+    only("conditions")
+    (check,) = verify.verify()
+    assert not check.passed
+
+
+# -- what is handed out --------------------------------------------------------------------------------------
+
+
+def test_json_instead_of_the_table(only, capsys) -> None:
+    only("like")
+    assert main(["verify", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["passed"] is True
+    assert document["cores"] >= 1
+    assert document["versions"]["fastpin"] == document["fastpin"]
+    assert len(document["checks"]) == 8
+    first = document["checks"][0]
+    assert first["passed"] is True
+    assert first["unit"] == "relative"
+    assert first["difference"] <= first["tolerance"] == TOLERANCES["like"]["peak N"]
+
+
+def test_json_beside_the_table(only, capsys, tmp_path) -> None:
+    only("like")
+    file = tmp_path / "checks.json"
+    assert main(["verify", "--json", str(file)]) == 0
+    assert table_lines(capsys)[-1].startswith("8 of 8 within tolerance, ")
+    assert json.loads(file.read_text())["passed"] is True
+
+
+def test_a_file_that_cannot_be_written_is_found_before_the_work(monkeypatch, capsys, tmp_path) -> None:
+    monkeypatch.setattr(verify, "verify", None)
+    assert main(["verify", "--json", str(tmp_path / "no" / "checks.json")]) == 2
+    assert "does not exist" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_after_it(only, monkeypatch, capsys, tmp_path) -> None:
+    only("conditions")
+    file = tmp_path / "checks.json"
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert main(["verify", "--json", str(file)]) == 1
+    captured = capsys.readouterr()
+    assert "0 of 1 within tolerance" in captured.out
+    assert "can't write" in captured.err
+    assert not file.exists()
