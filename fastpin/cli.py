@@ -1,4 +1,4 @@
-"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper``, ``sweep``, ``merge``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper`` and others.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -99,6 +99,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument(
         "--no-shortcut", dest="shortcut", action="store_false", default=None, help="solve cycles that repeat again"
+    )
+    run.add_argument(
+        "--error-bars", action="store_true", help="also solve on half as many intervals, for error bars (not with -o)"
     )
     run.add_argument("--start", metavar="FILE", type=Path, help="go on from the end of this result, with these loads")
     run.add_argument("--after", metavar="N", type=int, help="with --start: from its corner N instead")
