@@ -16,7 +16,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from fastpin import __version__, cli_sweep
+from fastpin import __version__, cli_converge, cli_sweep
 from fastpin.errors import CaseFileError, FastpinError, InputError
 from fastpin.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_OK, EXIT_PIPE, bar, fail
 
@@ -134,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     figures.set_defaults(command=_paper)
 
+    cli_converge.add(commands)
     cli_sweep.add(commands)
     return parser
 
