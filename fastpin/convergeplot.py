@@ -57,7 +57,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     for index, panel in enumerate(axes.flat):
         panel.set_visible(index < len(names))
         if index + COLUMNS >= len(names):
-            panel.set_xlabel("nodes, increments")
+            panel.set_xlabel("nodes; increments a step")
     for name, panel in zip(names, axes.flat, strict=False):
         _draw_panel(panel, found[name])
     for panel in axes[:, 0]:
@@ -107,7 +107,10 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Shown]]
         )
     panel.margins(x=0.12, y=0.08)
     low, high = panel.get_ylim()
+    low = min(low, high / 30.0)  # a decade at least
+    panel.yaxis.set_minor_formatter(NullFormatter())
     panel.set_ylim(low, high * (high / low) ** (0.14 * len(words) + 0.04))  # room for the words
-    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    first, last = panel.get_xlim()
+    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if last > 12.0 * first else (1.0, 2.0, 5.0)))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     panel.xaxis.set_minor_formatter(NullFormatter())
