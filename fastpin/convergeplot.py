@@ -110,7 +110,7 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Shown]]
     low = min(low, high / 30.0)  # a decade at least
     panel.yaxis.set_minor_formatter(NullFormatter())
     panel.set_ylim(low, high * (high / low) ** (0.14 * len(words) + 0.04))  # room for the words
-    first, last = panel.get_xlim()
-    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if last > 12.0 * first else (1.0, 2.0, 5.0)))
+    left, right = panel.get_xlim()
+    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if right > 12.0 * left else (1.0, 2.0, 5.0)))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     panel.xaxis.set_minor_formatter(NullFormatter())
