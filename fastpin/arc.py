@@ -112,12 +112,18 @@ def _outline(values: np.ndarray) -> np.ndarray:
     return values[sorted(chosen)]
 
 
+def first_direction(values: np.ndarray) -> float | None:
+    """Where on the hole the first force of a history points, rad; None without a force."""
+    loaded = np.flatnonzero(np.hypot(values[:, 0], values[:, 1]))
+    return math.atan2(-values[loaded[0], 0], values[loaded[0], 1]) if loaded.size else None
+
+
 def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:
     """How far to shift nodes from `start` on, at most half a spacing, for one to lie where the first force points."""
-    loaded = np.flatnonzero(np.hypot(values[:, 0], values[:, 1]))
-    if loaded.size == 0:
+    direction = first_direction(values)
+    if direction is None:
         return 0.0
-    place = (math.atan2(-values[loaded[0], 0], values[loaded[0], 1]) - start) / spacing
+    place = (direction - start) / spacing
     return (place - round(place)) * spacing
 
 

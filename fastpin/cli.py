@@ -1,5 +1,4 @@
-"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper``, ``sweep``, ``merge``,
-``verify``.
+"""The command line: ``fastpin example``, ``check``, ``run``, ``resume``, ``show``, ``paper`` and others.
 
 Everything else is imported when it is needed: help and wrong options are answered without NumPy, checks without
 the solver.
@@ -17,7 +16,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from fastpin import __version__, cli_sweep, cli_verify
+from fastpin import __version__, cli_converge, cli_sweep, cli_verify
 from fastpin.errors import CaseFileError, FastpinError, InputError
 from fastpin.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_OK, EXIT_PIPE, bar, fail
 
@@ -101,6 +100,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--no-shortcut", dest="shortcut", action="store_false", default=None, help="solve cycles that repeat again"
     )
+    run.add_argument(
+        "--error-bars", action="store_true", help="also solve on half as many intervals, for error bars (not with -o)"
+    )
     run.add_argument("--start", metavar="FILE", type=Path, help="go on from the end of this result, with these loads")
     run.add_argument("--after", metavar="N", type=int, help="with --start: from its corner N instead")
     run.add_argument(
@@ -132,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     figures.set_defaults(command=_paper)
 
+    cli_converge.add(commands)
     cli_sweep.add(commands)
     cli_verify.add(commands)
     return parser

@@ -11,8 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError, Interrupted, SolveError
-from fastpin.files import check_writable, replacing
-from fastpin.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, bar, check_figure, fail
+from fastpin.terminal import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_OK,
+    bar,
+    check_outputs,
+    fail,
+    write_files,
+    write_text,
+)
 
 if TYPE_CHECKING:
     from fastpin.casefile import Case
@@ -32,6 +40,8 @@ def run(options: argparse.Namespace) -> int:
     _check_combination(case, options)
     start = _start(options)
     keywords = {**case.options.keywords(), **({} if start is None else {"start": start})}
+    if options.error_bars:
+        keywords["error_bars"] = True
     with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
         progress = _progress(shown)
         if options.output is not None:
@@ -127,6 +137,9 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
             raise InputError(f"--{name.replace('_', '-')}", "needs --output FILE")
+    for name in ("output", "start"):
+        if options.error_bars and getattr(options, name) is not None:
+            raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
     if options.start is not None and options.nodes is not None:
         raise InputError("--nodes", "is that of the result to go on from (--start)")
     if case.options.keep == "cycles" and not case.history.longest_cycle:
@@ -175,19 +188,7 @@ def _start(options: argparse.Namespace) -> Result | None:
 def _check_outputs(options: argparse.Namespace) -> None:
     """Find out before the work what could not be written after it."""
     names = {"--json": options.json, "--plot": options.plot, "--cycles": options.cycles, "--output": options.output}
-    chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
-    seen: dict[Path, str] = {}
-    for name, path in chosen.items():
-        # "fastpin run --json case.toml" takes the case file for the output.
-        case = getattr(options, "case", None)
-        if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
-            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
-        if name in ("--plot", "--cycles"):
-            check_figure(name, path)
-        check_writable(path)
-        other = seen.setdefault(path.resolve(), name)
-        if other != name:
-            raise InputError(name, f"writes the same file as {other}: {path}")
+    check_outputs(names, getattr(options, "case", None))
 
 
 # -- what was found ------------------------------------------------------------------------------------------
@@ -247,7 +248,7 @@ def _hand_out(
         if options.json == "-":
             sys.stdout.write(document)
         else:
-            writers.append((options.json, lambda path: _write_text(path, document)))
+            writers.append((options.json, lambda path: write_text(path, document)))
     if result is not None and len(result):
         reached = result
         writers.append((options.plot, lambda path: _plot(reached, path, case.title)))
@@ -256,14 +257,7 @@ def _hand_out(
         writers.append((options.cycles, lambda path: _plot_cycles(with_cycles, path, case.title)))
     elif options.cycles is not None:
         code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-    for path, write in writers:
-        if path is None:
-            continue
-        try:
-            write(Path(path))
-        except (OSError, InputError) as trouble:  # the other files are written all the same
-            code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
-    return code
+    return write_files(writers) or code
 
 
 def _reached(result: Result) -> int:
@@ -289,11 +283,6 @@ def _print_states(case: Case, result: Result | None, hidden: int) -> None:
     names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
     known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
     print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
-
-
-def _write_text(path: Path, text: str) -> None:
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
 
 
 def _plot(states: Sequence[Any], path: Path, title: str) -> None:

@@ -5,23 +5,25 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fastpin.report import from_bottom, interval_from_bottom
+from fastpin.quantities import QUANTITIES
+from fastpin.report import in_degrees, interval_from_bottom
 from fastpin.state import Interval, Result
+
+_PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
+_OTHERS = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
+
+
+def _kind(name: str) -> str:
+    kind = QUANTITIES[name].kind
+    return "angle" if kind == "width" else kind
+
 
 KEY_FIGURES: dict[str, str] = {
     "states": "",
-    "peak_pressure": "traction",
-    "peak_pressure_angle": "angle",
-    "peak_shear": "traction",
-    "peak_shear_angle": "angle",
+    **{name: _kind(name) for name in _PEAKS},
     "contact_start": "angle",
     "contact_stop": "angle",
-    "contact_width": "angle",
-    "stick_width": "angle",
-    "rotation": "rotation",
-    "dx": "displacement",
-    "dy": "displacement",
-    "dissipation": "energy",
+    **{name: _kind(name) for name in _OTHERS},
     "max_pressure": "traction",
     "max_shear": "traction",
     "residual": "",
@@ -30,9 +32,10 @@ KEY_FIGURES: dict[str, str] = {
 """Names of the key figures and their kinds: a key of :func:`fastpin.report.units`, "angle" (deg), "" for a number.
 
 * ``states``, ``nodes``: numbers of states and of nodes.
-* ``peak_pressure`` to ``dissipation``: of the last state. ``peak_shear`` has its sign. Angles count from the bottom of
-  the hole; ``contact_start`` and ``contact_stop`` are the ends of the widest contact interval, ``contact_width`` and
-  ``stick_width`` sums over all. ``dissipation`` is the total since the beginning.
+* ``peak_pressure`` to ``dissipation``: of the last state, see :data:`fastpin.quantities.QUANTITIES`. ``peak_shear``
+  has its sign. Angles count from the bottom of the hole; ``contact_start`` and ``contact_stop`` are the ends of the
+  widest contact interval, ``contact_width`` and ``stick_width`` sums over all. ``dissipation`` is the total since the
+  beginning.
 * ``max_pressure``, ``max_shear``: largest peak pressure and largest magnitude of the peak shear of all states.
 * ``residual``: the largest residual of all states.
 """
@@ -50,34 +53,24 @@ def key_figures(result: Result) -> dict[str, Any]:
     last = result[-1]
     start, stop = _widest(last.contact)
     figures |= {
-        "peak_pressure": last.peak_pressure,
-        "peak_pressure_angle": _degrees(last.peak_pressure_angle),
-        "peak_shear": last.peak_shear,
-        "peak_shear_angle": _degrees(last.peak_shear_angle),
+        **{name: in_degrees(name, QUANTITIES[name].of(last)) for name in (*_PEAKS, *_OTHERS)},
         "contact_start": start,
         "contact_stop": stop,
-        "contact_width": _width(last.contact),
-        "stick_width": _width(last.stick),
-        "rotation": last.rotation,
-        "dx": last.dx,
-        "dy": last.dy,
-        "dissipation": last.dissipation,
         "max_pressure": max(state.peak_pressure for state in result),
         "max_shear": max(abs(state.peak_shear) for state in result),
         "residual": max(max(state.residuals.values(), default=0.0) for state in result),
     }
-    return {name: value if value is None or isinstance(value, int) else float(value) for name, value in figures.items()}
+    return {name: _number(value) for name, value in figures.items()}
 
 
-def _degrees(angle: float) -> float | None:
-    return from_bottom(angle) if math.isfinite(angle) else None
+def _number(value: Any) -> int | float | None:
+    """A number that SQLite takes; None for NaN, the angle of a peak that is not there."""
+    if value is None or isinstance(value, int):
+        return value
+    return float(value) if math.isfinite(value) else None
 
 
 def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
     if not intervals:
         return None, None
     return interval_from_bottom(*max(intervals, key=lambda interval: interval[1] - interval[0]))
-
-
-def _width(intervals: list[Interval]) -> float:
-    return math.degrees(sum(stop - start for start, stop in intervals))

@@ -39,7 +39,8 @@ FORMAT = "fastpin result"
 FORMAT_VERSION = 2
 
 # Kind of quantity (a key of report.units, or "" for a plain number) of every field of a state that is stored
-# as an array. The rest of State is treated one by one below; a test sees to it that nothing is forgotten.
+# as an array. The rest of State is treated one by one below; coarse states, of which error bars are made, are not
+# stored. A test sees to it that nothing is forgotten.
 NODE_FIELDS = {
     "pressure": "traction",
     "shear": "traction",
@@ -57,7 +58,7 @@ NUMBER_FIELDS = {
     "work": "energy",
     "energy": "energy",
 }
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid")
+OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "coarse")
 STATE_ROWS = (*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals")
 """Arrays that have a row for every state."""
 

@@ -15,6 +15,7 @@ from fastpin import __version__
 from fastpin.loading import LOADS, Block, LoadHistory, named_load
 from fastpin.materials import Material
 from fastpin.problem import Problem
+from fastpin.quantities import QUANTITIES, quantity
 from fastpin.state import periodic_from, series
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ _DIMENSIONLESS = {
 }
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 _MAX_ROWS = 40
+_DEGREE = math.degrees(1.0)
 
 
 def units(problem: Problem) -> dict[str, str]:
@@ -68,6 +70,19 @@ def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
     """An interval in rad as degrees from the bottom; the stop may exceed 180."""
     first = from_bottom(start)
     return first, first + math.degrees(stop - start)
+
+
+def in_degrees(name: str, value: float) -> float:
+    """A quantity as it is reported: angles from the bottom of the hole and widths in degrees, all else as it is."""
+    kind = quantity(name).kind
+    if kind == "angle":
+        return from_bottom(value) if math.isfinite(value) else math.nan
+    return math.degrees(value) if kind == "width" else value
+
+
+def bar_in_degrees(name: str, bar: float) -> float:
+    """The error bar of a quantity as it is reported."""
+    return math.degrees(bar) if quantity(name).kind in ("angle", "width") else bar
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
@@ -91,6 +106,13 @@ def load_point(state: State) -> float:
 def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
     """Names of the loads that are not zero throughout."""
     return [name for name in LOADS if any(load.get(name, 0.0) != 0.0 for load in loads)]
+
+
+def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
+    """The loads that are not zero, with their units."""
+    unit = units(problem)
+    acting = acting_loads([load])
+    return ", ".join(f"{name} = {_quantity(load[name], unit[LOAD_KIND[name]], 5)}" for name in acting) or "no load"
 
 
 # -- text ----------------------------------------------------------------------------------------------------
@@ -162,31 +184,42 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
 
 
 def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
-    """The states as a table with one line each; `hidden` is how many have been left out of their middle."""
+    """The states as a table with one line each; `hidden` is how many have been left out of their middle.
+
+    Error bars, where there are any, stand behind +-; that of an interval is the larger one of its ends, ? means none.
+    """
     unit = units(problem)
 
-    def column(
-        name: str, kind: str, values: list[float], digits: int = 5, size: float = 0.0
-    ) -> tuple[str, str, list[str]]:
+    def column(name: str, digits: int = 5, natural: float = 0.0) -> tuple[str, str, list[str]]:
+        each = QUANTITIES[name]
+        values = [each.of(state) for state in states]
         # What is zero but for rounding, against the column and a natural size, is shown as zero.
-        noise = 1e-9 * max(size, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
+        noise = 1e-9 * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
         cleaned = [0.0 if abs(value) <= noise else value for value in values]
-        factor, label = scaled(cleaned, unit[kind])
-        return name, label, [f"{value * factor:.{digits}g}" for value in cleaned]
+        factor, label = scaled(cleaned, unit[each.kind])
+        bars = [_bar(state, factor, name) for state in states]
+        return (
+            each.label,
+            label,
+            [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)],
+        )
+
+    def angles(name: str) -> tuple[str, str, list[str]]:
+        return "at", "deg", [_angle(QUANTITIES[name].of(state)) + _bar(state, _DEGREE, name) for state in states]
 
     strain = problem.pair.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
     columns = [("load point", "", [_point(state) for state in states])]
     columns += _load_columns(problem, [state.load for state in states])
     columns += [
-        column("peak N", "traction", [state.peak_pressure for state in states]),
-        ("at", "deg", [_angle(state.peak_pressure_angle) for state in states]),
-        column("peak T", "traction", [state.peak_shear for state in states]),
-        ("at", "deg", [_angle(state.peak_shear_angle) for state in states]),
-        ("contact", "deg", [_intervals(state.contact) for state in states]),
-        ("stick", "deg", [_intervals(state.stick) for state in states]),
-        column("rotation", "rotation", [state.rotation for state in states], 4, strain),
-        column("dissipated", "energy", [state.dissipation for state in states], 4, energy),
+        column("peak_pressure"),
+        angles("peak_pressure_angle"),
+        column("peak_shear"),
+        angles("peak_shear_angle"),
+        ("contact", "deg", [_intervals(state, "contact") for state in states]),
+        ("stick", "deg", [_intervals(state, "stick") for state in states]),
+        column("rotation", 4, strain),
+        column("dissipation", 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
     return table(columns, hidden)
@@ -269,14 +302,21 @@ def _angle(angle: float | None) -> str:
     return "-" if angle is None or not math.isfinite(angle) else f"{from_bottom(angle):z.2f}"
 
 
-def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
-    if not intervals:
-        return "none"
+def _bar(state: State, factor: float, *names: str) -> str:
+    """The error bar, the larger one of several quantities, to be written after them; nothing where there is none."""
+    bars = [(state.error_bars or {}).get(name, math.nan) for name in names]
+    if any(math.isnan(bar) for bar in bars):
+        return ""
+    return f" +-{factor * max(bars):.2g}" if math.isfinite(max(bars)) else " +-?"
+
+
+def _intervals(state: State, zone: str) -> str:
     parts = []
-    for start, stop in intervals:
+    for number, (start, stop) in enumerate(getattr(state, zone), start=1):
         first, last = interval_from_bottom(start, stop)
-        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:z.2f} to {last:z.2f}")
-    return ", ".join(parts)
+        bar = _bar(state, _DEGREE, f"{zone}_{number}_start", f"{zone}_{number}_stop")
+        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:z.2f} to {last:z.2f}{bar}")
+    return ", ".join(parts) or "none"
 
 
 def _quantity(value: float, unit: str, digits: int = 6) -> str:
@@ -347,32 +387,22 @@ def _material_summary(material: Material) -> dict[str, Any]:
 
 
 def _state_summary(state: State) -> dict[str, Any]:
+    resultants, bars = state.resultants, state.error_bars
     return {
         "load_point": load_point(state),
         "step": state.step,
         "fraction": state.fraction,
         "load": state.load,
         "in_contact": state.in_contact,
-        "peak_pressure": state.peak_pressure,
-        "peak_pressure_angle": _degrees(state.peak_pressure_angle),
-        "peak_shear": state.peak_shear,
-        "peak_shear_angle": _degrees(state.peak_shear_angle),
+        **{name: in_degrees(name, each.of(state)) for name, each in QUANTITIES.items() if name not in resultants},
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
-        "dx": state.dx,
-        "dy": state.dy,
-        "rotation": state.rotation,
-        "dissipation": state.dissipation,
-        "work": state.work,
         "energy": state.energy,
-        "resultants": state.resultants,
+        "resultants": resultants,
         "residuals": state.residuals,
+        "error_bars": bars and {name: bar_in_degrees(name, bar) for name, bar in bars.items()},
     }
-
-
-def _degrees(angle: float | None) -> float | None:
-    return None if angle is None or not math.isfinite(angle) else from_bottom(angle)
 
 
 def plain(value: Any) -> Any:

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from fastpin.arc import grids_to_try
+from fastpin.arc import first_direction, grids_to_try
 from fastpin.checks import finite, one_of, whole_number
 from fastpin.collocation import System
+from fastpin.errorbars import LEAST_COARSE, halved
 from fastpin.errors import CUT_OFF, ArcError, InputError, Interrupted, SolveError
-from fastpin.grid import Grid
+from fastpin.grid import LEAST_NODES, Grid
 from fastpin.interrupt import Asked, held_back
 from fastpin.keep import Keep
 from fastpin.loading import LoadHistory, check_loads
@@ -42,6 +43,7 @@ def solve(
     progress: Progress | None = None,
     keep: str | Keep = "all",
     shortcut: bool = True,
+    error_bars: bool = False,
 ) -> Result:
     """Follow a load history and return the contact's states at its corners.
 
@@ -75,6 +77,9 @@ def solve(
     shortcut : bool
         Where the contact has become periodic under loads that repeat, take the states from the period before instead of
         solving them again. They are the same to the last bit.
+    error_bars : bool
+        Also follow the history on a grid with half the intervals, which gives every state its ``error_bars`` and the
+        result its ``coarse``. The states are otherwise the same to the last bit. `start` must have been solved so, too.
 
     Returns
     -------
@@ -96,9 +101,17 @@ def solve(
     """
     if start is not None:
         check_start(problem, start)
+    if error_bars:
+        _check_halves(nodes, grid, start)
     task = Task.checked(
         problem, history, nodes, method, increments, arc, grid, between, Keep.of(keep), shortcut, progress
     )
+    result = _solved(task, start)
+    return _with_coarse(task, start, result) if error_bars else result
+
+
+def _solved(task: Task, start: Result | None) -> Result:
+    """Follow the history of a task, from no load or from the end of another result."""
     kept = Kept()
     began = time.perf_counter()
     try:
@@ -111,6 +124,34 @@ def solve(
             ended.result = kept.result(task, time.perf_counter() - began)
         raise
     return kept.result(task, time.perf_counter() - began)
+
+
+def _check_halves(nodes: int, grid: Grid | None, start: Result | None) -> None:
+    """Raise :class:`InputError` if there can be no error bars."""
+    if start is not None and (start.coarse is None or start.coarse.restart is None):
+        raise InputError("error_bars", "the result to go on from was solved without them: it has no coarse grid")
+    if start is None:
+        size = whole_number("nodes", nodes, LEAST_NODES) if grid is None else grid.size
+        if (size + 1) // 2 < LEAST_COARSE:
+            least = 2 * LEAST_COARSE - 1
+            raise InputError("nodes", f"must be at least {least} for error bars, which half as many take, not {size}")
+
+
+def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
+    """The result with error bars; where the coarse grid has none to give, what is raised holds it without."""
+    if start is None:
+        grid, begin = halved(result.grid, first_direction(task.history.distinct())), None
+    else:
+        assert start.coarse is not None
+        grid, begin = start.coarse.grid, start.coarse
+    try:
+        coarse = _solved(replace(task, arc=None, grid=grid), begin)
+    except (SolveError, Interrupted) as ended:
+        ended.result = result
+        if isinstance(ended, SolveError):
+            ended.args = (f"{ended} (on the coarse grid of {grid.size} nodes that the error bars take)",)
+        raise
+    return result.with_coarse(coarse)
 
 
 class Kept:
@@ -203,12 +244,11 @@ class Task:
 
     def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
         """Follow the history from no load, on the first grid that is wide enough, of those `beyond` one that is not."""
-        values = self.history.distinct()
-        force = reference_force(self.problem, values)
+        force = reference_force(self.problem, self.history.distinct())
         with held_back() as asked, _one_thread():
             progress = self._progress(asked)
             given = None if beyond is not None else self.grid
-            for chosen in _grids(self.problem, values, force, self.nodes, self.arc, given, progress):
+            for chosen in replace(self, grid=given).grids(progress):
                 if beyond is not None:
                     if np.allclose(chosen.theta, beyond.theta, rtol=0.0, atol=1e-9):
                         beyond = None
@@ -222,6 +262,12 @@ class Task:
                         raise
                     log.info("the contact reaches an end of the arc: once more on a wider one")
         raise ArcError(CUT_OFF)  # the grid to go on from is none of those that are chosen here and now
+
+    def grids(self, progress: Progress | None = None) -> Iterator[Grid]:
+        """The given grid, or those to try one after the other until the contact stays clear of the ends."""
+        values = self.history.distinct()
+        force = reference_force(self.problem, values)
+        yield from _grids(self.problem, values, force, self.nodes, self.arc, self.grid, progress)
 
     def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Follow the history from a corner where another run stood, on its grid."""

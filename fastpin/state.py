@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 
-from fastpin import zones
+from fastpin import errorbars, zones
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory
 from fastpin.problem import Problem
@@ -55,6 +55,8 @@ class State:
     residuals : dict of str to float
         Largest violation, recomputed from the matrices: "gap" and "slip" relative to the largest displacement,
         "cone" and "equilibrium" relative to the largest traction and the load.
+    coarse : State or None
+        The same load on a grid with half the intervals; only where error bars were asked for.
     """
 
     step: int
@@ -75,6 +77,16 @@ class State:
     residuals: dict[str, float]
     problem: Problem = field(repr=False)
     grid: Grid = field(repr=False)
+    coarse: State | None = field(default=None, repr=False)
+
+    @cached_property
+    def error_bars(self) -> dict[str, float] | None:
+        """By how much the quantities of :data:`fastpin.quantities.QUANTITIES` and the ends of zones may be off.
+
+        In the units of the quantities, angles in rad; see :func:`fastpin.errorbars.bars`. None where they were not
+        asked for (``solve(..., error_bars=True)``).
+        """
+        return None if self.coarse is None else errorbars.bars(self, self.coarse)
 
     @property
     def in_contact(self) -> bool:
@@ -246,6 +258,8 @@ class Result(Sequence[State]):
         What each cycle of the history has changed, in order; empty where the history has no blocks that are repeated.
     restart : Restart
         For ``solve(..., start=result)``.
+    coarse : Result or None
+        The same history on a grid with half the intervals, where error bars were asked for.
     """
 
     def __init__(
@@ -269,6 +283,20 @@ class Result(Sequence[State]):
         self.complete = complete
         self.restart = restart
         self.cycles = tuple(cycles)
+        self.coarse: Result | None = None
+
+    def with_coarse(self, coarse: Result) -> Result:
+        """This result with error bars, from the states of the same history on a coarser grid."""
+        states = []
+        for state, other in zip(self, coarse, strict=True):
+            assert (state.step, state.fraction) == (other.step, other.fraction)
+            states.append(replace(state, coarse=other))
+        result = Result(
+            states, self.problem, self.history, self.grid, self.method, self.statistics, self.complete, self.restart,
+            self.cycles,
+        )  # fmt: skip
+        result.coarse = coarse
+        return result
 
     @overload
     def __getitem__(self, index: int) -> State: ...

@@ -48,7 +48,7 @@ ALL = slice(None)
 
 
 def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
-    """Write a result to an HDF5 file, whole or not at all.
+    """Write a result to an HDF5 file, whole or not at all. Error bars are not kept.
 
     Parameters
     ----------

@@ -1,12 +1,14 @@
-"""What all commands share: exit codes, messages, the progress bar, names of figures."""
+"""What all commands share: exit codes, messages, the progress bar, output files."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from fastpin.errors import InputError
+from fastpin.files import check_writable, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
@@ -36,3 +38,38 @@ def check_figure(option: str, path: Path) -> None:
     """Raise :class:`InputError` naming the option if a file's name is not that of a figure."""
     if path.suffix.lower() not in FIGURE_FORMATS:
         raise InputError(option, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
+
+
+def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> None:
+    """Find out before the work what could not be written after it: files by their options, "-" for standard output."""
+    chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
+    seen: dict[Path, str] = {}
+    for name, path in chosen.items():
+        # "fastpin run --json case.toml" takes the case file for the output.
+        if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
+            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
+        if name in ("--plot", "--cycles"):
+            check_figure(name, path)
+        check_writable(path)
+        other = seen.setdefault(path.resolve(), name)
+        if other != name:
+            raise InputError(name, f"writes the same file as {other}: {path}")
+
+
+def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], None]]]) -> int:
+    """Write the files that are asked for, and return the exit code; where one can't be written, the others are."""
+    code = EXIT_OK
+    for path, write in writers:
+        if path is None:
+            continue
+        try:
+            write(Path(path))
+        except (OSError, InputError) as trouble:
+            code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
+    return code
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

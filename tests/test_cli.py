@@ -119,6 +119,8 @@ def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.Cap
         (["merge", "--help"], []),
         (["verify", "--help"], []),
         (["verify", "--json", "no/where.json"], []),
+        (["converge", "--help"], []),
+        (["converge", "CASE", "--nodes", "x"], []),
         (["run", "--colour"], []),
         (["sweep", "CASE", "--shard", "3/2"], []),
         (["sweep", "CASE"], ["numpy"]),

@@ -1,0 +1,116 @@
+"""Figures of convergence studies: distances to the limit against nodes and increments."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from fastpin.convergence import Convergence
+from fastpin.convergetable import Shown, reported
+from fastpin.plot import Line, draw_with, key, line, panels
+from fastpin.quantities import QUANTITIES
+from fastpin.report import named_loads, scaled
+
+MOST_PANELS = 9
+COLUMNS = 3
+ORDER_OF_PANELS = (
+    "peak_pressure", "peak_shear", "shear_magnitude", "contact_1_start", "contact_1_stop", "stick_1_start",
+    "stick_1_stop", "rotation", "dissipation", "dx", "dy", "pressure_integral",
+)  # fmt: skip
+"""What is drawn first; then come all others."""
+
+_GUIDES: dict[int, Line] = {1: {"color": "0.6", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
+           2: {"color": "0.6", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.0}}  # fmt: skip
+_STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
+_NAMES = {"path": "path solver, against nodes", "increment": "increment solver, against increments a step"}
+
+
+def plot_convergence(
+    convergence: Convergence, path: str | Path, corner: int | None = None, title: str = "", dpi: float = 160.0
+) -> None:
+    """Save a figure of one corner, the last one unless given: up to nine panels, a quantity each.
+
+    The distance of the values to the limit of their sequence falls with the number of nodes, or of increments, as a
+    power where an order is observed (filled marks; the order is written in the panel). Where none is, the distance is
+    that to the last value (open marks). A dash at the last count is the error bar. Guides have the orders 1 and 2. What
+    is exact to rounding, or can't be compared, has no panel.
+    """
+    chosen = max(convergence.loads) if corner is None else corner
+    draw_with(lambda study: _draw(study, chosen, title), convergence, path, dpi)
+
+
+def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
+    found: dict[str, dict[str, tuple[tuple[int, ...], Shown]]] = {}
+    for study in convergence.studies:
+        for row in reported(study, convergence.problem, corner):
+            if row.verdict in ("observed", "not observed"):
+                found.setdefault(row.name, {})[study.method] = study.counts, row
+    names = [name for name in (*ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
+    names = list(dict.fromkeys(names))[:MOST_PANELS]
+    rows = max(1, math.ceil(len(names) / COLUMNS))
+    figure, axes = panels(rows, COLUMNS, height=2.0, width=7.6)
+    for index, panel in enumerate(axes.flat):
+        panel.set_visible(index < len(names))
+        if index + COLUMNS >= len(names):
+            panel.set_xlabel("nodes; increments a step")
+    for name, panel in zip(names, axes.flat, strict=False):
+        _draw_panel(panel, found[name])
+    for panel in axes[:, 0]:
+        panel.set_ylabel("| value \N{MINUS SIGN} limit |")
+    methods = list(dict.fromkeys(method for each in found.values() for method in each))
+    guides: list[tuple[str, Line]] = [(f"order {order}", style) for order, style in _GUIDES.items()]
+    open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"}
+    bar: Line = {"color": "0.3", "linestyle": "none", "marker": "_", "markersize": 9.0, "markeredgewidth": 1.6}
+    key(
+        figure,
+        [(_NAMES[method], {**_STYLES[method], "markersize": 4.0}) for method in methods],
+        [("no order observed: to the last value", open_marks), ("error bar of the last value", bar)],
+        guides,
+    )
+    loads = named_loads(convergence.problem, convergence.loads[corner])
+    figure.suptitle(f"{title}\ncorner {corner}: {loads}" if title else f"corner {corner}: {loads}", fontsize=9.5)
+    return figure
+
+
+def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Shown]]) -> None:
+    rows = [row for _, row in sequences.values()]
+    largest = max(float(np.ptp(row.values)) for row in rows)
+    factor, unit = (1.0, "deg") if rows[0].unit == "deg" else scaled([largest], rows[0].unit)
+    panel.set_title(f"{rows[0].label}  [{unit}]".replace("beta*", "β*"), fontsize=8.5)
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    words = []
+    for method, (counts, row) in sequences.items():
+        style = _STYLES[method]
+        seen = row.verdict == "observed"
+        away = factor * np.abs(np.subtract(row.values, row.limit if seen else row.values[-1]))
+        away[away == 0.0] = np.nan
+        filled = "full" if seen else "none"
+        panel.plot(counts, away, markersize=3.6, fillstyle=filled, **style)
+        panel.plot(
+            counts[-1:], [factor * row.bar], marker="_", markersize=9.0, markeredgewidth=1.6, color=style["color"]
+        )
+        words.append((f"order {row.order:.1f}" if seen else "no order", style["color"]))
+        if np.isfinite(away).any():
+            first = int(np.flatnonzero(np.isfinite(away))[0])
+            span = np.array([counts[first], counts[-1]], dtype=float)
+            for order, guide in _GUIDES.items():
+                panel.plot(span, away[first] * (counts[first] / span) ** order, zorder=0, **guide)
+    for place, (word, colour) in enumerate(words):
+        panel.text(
+            0.98, 0.98 - 0.11 * place, word, color=colour, fontsize=8.0, ha="right", va="top", transform=panel.transAxes
+        )
+    panel.margins(x=0.12, y=0.08)
+    low, high = panel.get_ylim()
+    low = min(low, high / 30.0)  # a decade at least
+    panel.yaxis.set_minor_formatter(NullFormatter())
+    panel.set_ylim(low, high * (high / low) ** (0.14 * len(words) + 0.04))  # room for the words
+    left, right = panel.get_xlim()
+    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if right > 12.0 * left else (1.0, 2.0, 5.0)))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    panel.xaxis.set_minor_formatter(NullFormatter())

@@ -1,0 +1,150 @@
+"""Error bars of a state from the same load on a grid with half the intervals.
+
+The bar of a quantity is Roache's grid convergence index of two grids, for an assumed order of one
+(:func:`fastpin.extrapolate.pair_bar`), and a floor for what happens to be the same on both grids. The constants below
+are all there is to choose; ``scripts/error_bars.py`` counts how often the bars hold (docs/convergence.md).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fastpin.extrapolate import pair_bar
+from fastpin.grid import Grid
+from fastpin.quantities import QUANTITIES, compared, intervals, quantity, size, values
+
+if TYPE_CHECKING:
+    from fastpin.state import State
+
+ORDER = 1.0
+"""The order that is assumed: edges have 1 to 1.5, integrals and smooth peaks 2, peaks beside old kinks 1."""
+
+PEAK_FLOORS = 1.0, 0.2
+"""Of a peak that is read at a node, and between nodes, in parts of what the traction falls by from there to the lower
+one of the two nodes beside it."""
+
+PLACE_FLOOR = 0.5
+"""Of an angle, and of each end of the intervals of a width, in parts of the node distance."""
+
+FLOORS = {
+    "shear_magnitude": 4.0,
+    "force": 0.6,
+    "moment": 0.3,
+    "rotation": 0.15,
+    "displacement": 0.1,
+    "energy": 0.06,
+}
+"""Of all else, by name or kind, in parts of its size (:func:`fastpin.quantities.size`) over the square of the number of
+nodes in contact. int |T| has kinks at earlier borders and where the sign changes."""
+
+ROUNDING = 1e-11
+"""What is the same on both grids to so small a part of its size is so by symmetry or equilibrium, and has no floor."""
+
+MAY_BE_EXACT = ("force", "moment", "rotation", "displacement")
+"""Kinds of which this is true. Places that are read at nodes of both grids agree without being exact."""
+
+LEAST_COARSE = 51
+"""Nodes of the coarse grid."""
+
+BESIDE = 2
+"""Nodes at each end of the coarse arc beyond the fine one: a coarse contact may be wider."""
+
+
+def halved(grid: Grid, direction: float | None) -> Grid:
+    """The grid with half the intervals: every second node, among them the one nearest to the angle `direction`.
+
+    Equal spacings become twice as large, also where the number of intervals is odd: an arc then ends beyond that of
+    `grid`, which changes nothing, for the nodes there are open. Other grids keep their first and last node.
+    """
+    n = grid.size
+    if not grid.uniform:
+        ends = grid.theta[-1:] if not grid.closed else grid.theta[:1]
+        return Grid(np.union1d(grid.theta[::2], ends), grid.closed)
+    parity = 0 if direction is None else int(np.argmin(_apart(grid.theta, direction))) % 2
+    if grid.closed:
+        return Grid.circle((n + 1) // 2, float(grid.theta[parity]))
+    spacing = float(grid.theta[-1] - grid.theta[0]) / (n - 1)
+    first, last = -parity, n - 1 + (n - 1 + parity) % 2
+    room = math.floor((2.0 * math.pi / spacing - (last - first)) / 4.0 - 0.5)  # at each end, in coarse nodes
+    if room < 0:
+        last -= 2
+    beside = 2 * max(0, min(BESIDE, room))
+    first, last = first - beside, last + beside
+    start = float(grid.theta[0]) + spacing * first
+    return Grid.arc(start, start + spacing * (last - first), (last - first) // 2 + 1)
+
+
+def bars(state: State, coarse: State) -> dict[str, float]:
+    """Error bars of all quantities of a state, in their units, angles in rad.
+
+    The true value, that of ever finer grids, lies within a bar in some 95 of 100 cases. NaN belongs to a quantity that
+    is NaN, inf to one that the coarse grid has nothing to compare with: the ends of zones that are not as many there.
+    The angle of a peak that is as high elsewhere, within its bar, has a bar that reaches there.
+
+    Parameters
+    ----------
+    state, coarse : State
+        At the same load, `coarse` on a grid with about twice the node distance.
+    """
+    mine, theirs = values(state), compared(state, coarse)
+    found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
+    for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
+        others = _as_high(state, traction, abs(mine[name]), found[name])
+        place = mine[f"{name}_angle"]
+        if others.size and math.isfinite(place):
+            away = _apart(state.theta[others], place)
+            known = found[f"{name}_angle"]
+            found[f"{name}_angle"] = max(float(away.max()), known if math.isfinite(known) else 0.0)
+    return found
+
+
+def _bar(name: str, value: float, other: float, state: State) -> float:
+    if math.isnan(value):
+        return math.nan
+    if math.isnan(other):
+        return math.inf
+    rounding = ROUNDING * size(name, state)
+    if abs(value - other) <= rounding and quantity(name).kind in MAY_BE_EXACT:
+        return rounding
+    return pair_bar(value, other, ORDER) + _floor(name, state)
+
+
+def _floor(name: str, state: State) -> float:
+    """What a bar is at least, where the values of the two grids are no guide."""
+    closed = max(1, int(np.count_nonzero(state.pressure)))
+    kind = quantity(name).kind
+    if name in ("peak_pressure", "peak_shear"):
+        traction = state.pressure if name == "peak_pressure" else np.abs(state.shear)
+        top = int(np.argmax(traction))
+        beside = traction[[top - 1, (top + 1) % traction.size]]
+        peak = abs(QUANTITIES[name].of(state))
+        floor = PEAK_FLOORS[peak > (1.0 + 1e-12) * float(traction[top])]
+        return floor * (peak - float(beside.min()))
+    if kind in ("angle", "width"):
+        ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
+        return PLACE_FLOOR * ends * size(name, state) / closed
+    return FLOORS.get(name, FLOORS[kind]) * size(name, state) / closed**2
+
+
+def _ends(state: State, zone: str) -> int:
+    """The number of ends that the width of a zone depends on; where there is no zone there may be one between nodes."""
+    return 2 * len(intervals(state, zone)) if getattr(state, zone) else 2
+
+
+def _as_high(state: State, traction: np.ndarray, peak: float, bar: float) -> np.ndarray:
+    """Nodes where a traction has another largest value that may be the peak."""
+    before, after = np.roll(traction, 1), np.roll(traction, -1)
+    if not state.grid.closed:
+        before[0] = after[-1] = 0.0
+    tops = (traction > 0.0) & (traction >= before) & (traction >= after) & (traction >= peak - 2.0 * bar)
+    top, n = int(np.argmax(traction)), traction.size
+    tops[[top - 1, top, (top + 1) % n]] = False
+    return np.flatnonzero(tops)
+
+
+def _apart(angles: np.ndarray, angle: float) -> np.ndarray:
+    """How far angles are from another one, the short way round."""
+    return np.abs(np.remainder(angles - angle + math.pi, 2.0 * math.pi) - math.pi)

@@ -1,0 +1,128 @@
+"""How often error bars hold: random cases against a reference on eight times as many intervals.
+
+``python scripts/error_bars.py [--cases 40] [--first 0]`` prints two tables as Markdown, for docs/convergence.md; some
+five minutes. The first is about the bars of two grids, the second about those of studies of four grids, 101 to 801
+nodes. The reference is on the same arc. What it is off itself, the difference to a grid with half its intervals, is
+added to every error (*surely held*: the bar covers that, too) or taken off it (*surely broken*).
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import math
+
+import numpy as np
+from tqdm import tqdm
+
+from fastpin import Grid, LoadHistory, Material, MaterialPair, Problem, State, solve
+from fastpin.extrapolate import estimate
+from fastpin.quantities import QUANTITIES, compared, size, values
+
+NODES = 201
+TIMES = (2, 4, 8)
+"""How many times as many intervals the finer grids have; the last one is the reference."""
+
+EXACT = 1e-9
+"""Errors that are smaller in parts of the quantity's size are rounding, and not counted."""
+
+Found = dict[str, list[tuple[float, float, float]]]
+
+
+def random_case(seed: int) -> tuple[Problem, LoadHistory]:
+    """A random problem and history.
+
+    Like materials in two cases of five, else stiffness ratios 0.1 to 10; L_p 1e-3 to 2, no friction in one of ten, else
+    mu 0.05 to 1; three ways to hold the pin; Q up to 0.7 mu P (without friction 0.35 P), in one of three monotonic,
+    else cyclic; some are partly unloaded in the end.
+    """
+    rng = np.random.default_rng(seed)
+    plane = "strain" if rng.random() < 0.5 else "stress"
+    pin = Material(1.0, rng.uniform(0.2, 0.4))
+    like = rng.random() < 0.4
+    plate = pin if like else Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.2, 0.45))
+    load_parameter = 10.0 ** rng.uniform(-3.0, math.log10(2.0))
+    friction = 0.0 if rng.random() < 0.1 else rng.uniform(0.05, 1.0)
+    pin_load, rotation = (("body", "free"), ("centre", "free"), ("centre", "fixed"))[rng.integers(3)]
+    problem = Problem.from_load_parameter(MaterialPair(pin, plate, plane), load_parameter, friction, pin_load, rotation)
+    pull = friction or 0.5
+    if rng.random() < 0.3:
+        corners = [{"P": 1.0, "Q": pull * rng.uniform(-0.7, 0.7)}]
+        least = 0.3 if rng.random() < 0.5 else 1.0
+    else:
+        amplitude = pull * rng.uniform(0.1, 0.7)
+        corners = [{"P": 1.0}, {"Q": amplitude}, {"Q": -amplitude}, {"Q": amplitude}]
+        least = 0.75 if rng.random() < 0.3 else 1.0
+    if least < 1.0:
+        corners.append({"P": rng.uniform(least, 1.0)})
+    return problem, LoadHistory(corners)
+
+
+def refined(grid: Grid, times: int) -> Grid:
+    """The same arc or circle with so many times the intervals."""
+    if grid.closed:
+        return Grid.circle(times * grid.size, float(grid.theta[0]))
+    return Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), times * (grid.size - 1) + 1)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=40)
+    parser.add_argument("--first", type=int, default=0)
+    options = parser.parse_args()
+    pairs: Found = collections.defaultdict(list)
+    studies: Found = collections.defaultdict(list)
+    without: collections.Counter[str] = collections.Counter()
+    states = 0
+    for seed in tqdm(range(options.first, options.first + options.cases), disable=None, delay=2.0):
+        problem, history = random_case(seed)
+        result = solve(problem, history, nodes=NODES, error_bars=True)
+        finer = [solve(problem, history, grid=refined(result.grid, times)) for times in TIMES]
+        for state, *better in zip(result, *finer, strict=True):
+            states += 1
+            assert state.coarse is not None
+            count(state, [compared(state, other) for other in (state.coarse, state, *better)], pairs, studies, without)
+    print(f"{options.cases} cases, {states} states, {NODES} nodes\n")
+    print("| quantity | values | held, % | surely held, % | surely broken, % | bar / error, median | no bar |")
+    print("|---|--:|--:|--:|--:|--:|--:|")
+    for group, rows in pairs.items():
+        error, unsure, bar = np.array(rows).T
+        parts = [np.mean(error <= bar), np.mean(error + unsure <= bar), np.mean(error - unsure > bar)]
+        shown = " | ".join(f"{100.0 * part:.1f}" for part in parts)
+        print(f"| {group} | {error.size} | {shown} | {np.median(bar / error):.1f} | {without[group]} |")
+    print("\n| quantity | values | order observed, % | held where it is, % | where not, % | bar / error, median |")
+    print("|---|--:|--:|--:|--:|--:|")
+    for group, rows in [*studies.items(), ("all", [row for each in studies.values() for row in each])]:
+        error, bar, seen = np.array(rows).T
+        held, observed = error <= bar, seen == 1.0
+        known = f"{100.0 * np.mean(held[observed]):.1f}" if observed.any() else "-"
+        other = f"{100.0 * np.mean(held[~observed]):.1f}" if not observed.all() else "-"
+        share, tight = 100.0 * np.mean(observed), np.median(bar / error)
+        print(f"| {group} | {error.size} | {share:.0f} | {known} | {other} | {tight:.1f} |")
+
+
+def count(
+    state: State,
+    sequence: list[dict[str, float]],
+    pairs: Found,
+    studies: Found,
+    without: collections.Counter[str],
+) -> None:
+    """Add errors, their own uncertainty and bars of the quantities of a state; `sequence` has them on all grids."""
+    bars, true = state.error_bars, sequence[-1]
+    assert bars is not None
+    for name, value in values(state).items():
+        group = name if name in QUANTITIES else f"{name.split('_')[0]} ends"
+        rounding, error = EXACT * size(name, state), abs(value - true[name])
+        unsure = abs(sequence[-2][name] - true[name])
+        if math.isinf(bars[name]) or math.isnan(unsure):
+            without[group] += not math.isnan(value)
+        elif error > rounding:
+            pairs[group].append((error, unsure, bars[name]))
+        found = estimate((8.0, 4.0, 2.0, 1.0), [each[name] for each in sequence[:-1]], rounding)
+        if found.verdict in ("observed", "not observed") and unsure > rounding:
+            studies[group].append((unsure, found.bar, float(found.verdict == "observed")))
+
+
+if __name__ == "__main__":
+    main()

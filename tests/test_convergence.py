@@ -1,0 +1,287 @@
+"""Convergence studies: what they say of cases whose answer is known, and what they refuse."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import fastpin.convergence
+from fastpin import Grid, LoadHistory, MaterialPair, NoEquilibriumError, Problem, Result, analytic, solve
+from fastpin.casefile import EXAMPLE
+from fastpin.cli import main
+from fastpin.convergence import Convergence, Series, StudyInterrupted, converge
+from fastpin.convergetable import COLUMNS, text
+from fastpin.errors import ArcError, InputError
+
+BOTTOM = -0.5 * math.pi
+CORNERS: list[dict[str, float]] = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}]
+GRIDS = (51, 101, 201)
+
+
+@pytest.fixture(scope="module")
+def problem(similar: MaterialPair) -> Problem:
+    return Problem.from_load_parameter(similar, 0.5, 0.5, "centre")
+
+
+@pytest.fixture(scope="module")
+def study(problem: Problem) -> Convergence:
+    return converge(problem, CORNERS, GRIDS, (5, 10, 20), increment_nodes=51)
+
+
+def series(study: Convergence, name: str, corner: int = 3, method: int = 0) -> Series:
+    return next(each for each in study.studies[method].series if (each.name, each.corner) == (name, corner))
+
+
+# -- studies -------------------------------------------------------------------------------------------------
+
+
+def test_a_smooth_peak_is_of_second_order(similar: MaterialPair) -> None:
+    frictionless = Problem.from_load_parameter(similar, 0.1, 0.0)
+    half = analytic.persson_half_angle(0.1)
+    exact = analytic.persson_pressure(0.0, half)
+    found = converge(frictionless, [{"P": 1.0}], (101, 201, 401, 801), arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half))
+    peak = series(found, "peak_pressure", 1).estimate
+    assert peak.verdict == "observed"
+    assert peak.order == pytest.approx(2.0, abs=0.3)
+    assert abs(peak.limit - exact) < abs(series(found, "peak_pressure", 1).values[-1] - exact)
+    for each in found.studies[0].series:
+        true = {"peak_pressure": exact, "contact_1_stop": BOTTOM + half, "contact_width": 2.0 * half}.get(each.name)
+        if true is not None:
+            assert abs(each.values[-1] - true) <= each.estimate.bar
+
+
+def test_what_balance_and_symmetry_make_exact_has_no_order(study: Convergence) -> None:
+    for name, corner in (("P", 1), ("Q", 3), ("M", 2), ("rotation", 1), ("dx", 1), ("shear_integral", 1)):
+        assert series(study, name, corner).estimate.verdict == "to rounding", name
+    assert series(study, "work").estimate.verdict != "to rounding"
+
+
+def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Convergence, problem: Problem) -> None:
+    assert study.complete
+    assert list(study.loads) == [1, 2, 3]
+    assert study.loads[3]["Q"] == -0.2
+    assert np.abs(study.grid.theta - BOTTOM).min() < 1e-12
+    assert np.abs(study.grid.theta[::4] - BOTTOM).min() < 1e-12  # on the coarsest one, too
+    for count, value in zip(GRIDS, series(study, "dissipation").values, strict=True):
+        grid = Grid.arc(float(study.grid.theta[0]), float(study.grid.theta[-1]), count)
+        assert solve(problem, CORNERS, grid=grid)[-1].dissipation == value
+
+
+def test_increments_tend_to_the_path_on_the_same_grid(study: Convergence, problem: Problem) -> None:
+    path, increment = study.studies
+    assert (path.method, path.counts, increment.method, increment.counts) == (
+        "path", GRIDS, "increment", (5, 10, 20),
+    )  # fmt: skip
+    assert increment.nodes == 51
+    work = series(study, "work", 3, 1)
+    assert work.path == series(study, "work").values[0]
+    errors = np.abs(np.subtract(work.values, work.path))
+    assert errors[2] < 0.5 * errors[0]
+    assert math.isnan(series(study, "work").path)
+
+
+def test_a_long_history_shows_its_last_corner_or_the_one_asked_for(problem: Problem) -> None:
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(20)
+    last = converge(problem, history, GRIDS)
+    assert list(last.loads) == [41]
+    assert {each.corner for each in last.studies[0].series} == {41}
+    second = converge(problem, history, GRIDS, corner=2)
+    assert list(second.loads) == [2]
+    assert second.loads[2]["Q"] == 0.2
+
+
+def test_other_ratios_and_the_whole_circle(problem: Problem) -> None:
+    found = converge(problem, CORNERS[:2], (60, 75, 110), arc=(0.0, 2.0 * math.pi))
+    assert found.grid.closed
+    assert found.grid.size == 110
+    assert np.abs(np.sin(0.5 * (found.grid.theta - BOTTOM))).min() < 1e-12
+    assert series(found, "P", 2).estimate.verdict == "to rounding"
+    uneven = converge(problem, CORNERS[:2], (60, 75, 110), corner=1)
+    assert series(uneven, "peak_pressure", 1).values[-1] == pytest.approx(
+        series(found, "peak_pressure", 1).values[-1], rel=1e-2
+    )
+
+
+def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
+    problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spans = []
+
+    def narrow(*arguments: Any, grid: Grid, **options: Any) -> Result:
+        spans.append((grid.size, grid.theta[-1] - grid.theta[0]))
+        if grid.size == 101 and len(spans) < 3:
+            raise ArcError("the contact reaches an end")
+        return solve(*arguments, grid=grid, **options)
+
+    monkeypatch.setattr(fastpin.convergence, "solve", narrow)
+    converge(problem, CORNERS[:1], GRIDS)
+    assert [size for size, _ in spans] == [51, 101, 51, 101, 201]
+    assert spans[2][1] > 1.2 * spans[0][1]
+
+
+@pytest.mark.parametrize(
+    ("options", "field", "words"),
+    [
+        ({"nodes": (101, 201)}, "nodes", "at least 3 numbers"),
+        ({"nodes": (101, 201, 201)}, "nodes", "must increase from one to the next, but 201 follows 201"),
+        ({"nodes": (50, 101, 201)}, "nodes", "whole number of at least 51, not 50"),
+        ({"nodes": (101, 201, 30_000)}, "nodes", "at most 20,000"),
+        ({"nodes": (101.5, 201, 401)}, "nodes", "whole number"),
+        ({"nodes": "101"}, "nodes", "at least 3 numbers"),
+        ({"increments": (20, 40)}, "increments", "at least 3 numbers"),
+        ({"increments": (20, 10, 40)}, "increments", "but 10 follows 20"),
+        ({"increments": (0, 10, 40)}, "increments", "at least 1, not 0"),
+        ({"increment_nodes": 101}, "increment_nodes", "give increments"),
+        ({"increments": (5, 10, 20), "increment_nodes": 20}, "increment_nodes", "at least 51"),
+        ({"corner": 4}, "corner", "1 to 3, not 4"),
+        ({"corner": 0}, "corner", "at least 1"),
+        ({"arc": (1.0, 0.0)}, "arc", "from a smaller to a larger angle"),
+    ],
+    ids=str,
+)
+def test_input_is_checked_before_anything_is_solved(
+    options: dict[str, Any], field: str, words: str, problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fastpin.convergence, "solve", None)
+    with pytest.raises(InputError, match=words) as refused:
+        converge(problem, CORNERS, **options)
+    assert refused.value.field == field
+
+
+def test_loads_that_a_grid_cannot_carry_name_it(problem: Problem) -> None:
+    with pytest.raises(NoEquilibriumError, match=r"^with 51 nodes: ") as lost:
+        converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS)
+    assert lost.value.result is not None
+
+
+def test_a_contact_of_few_nodes_is_refused(problem: Problem) -> None:
+    with pytest.raises(InputError, match="51 put only 5 in the contact at corner 1") as refused:
+        converge(problem, [{"P": 1e-2}], GRIDS, arc=(BOTTOM - 1.0, BOTTOM + 1.0))
+    assert refused.value.field == "nodes"
+
+
+@pytest.mark.parametrize(("at", "grids", "studies"), [("201", 0, 0), ("301", 3, 1), ("20 inc", 4, 1)])
+def test_an_interrupt_keeps_three_grids(at: str, grids: int, studies: int, problem: Problem) -> None:
+    def progress(done: float, total: float, what: str) -> None:
+        assert 0.0 <= done <= total
+        if what.startswith(at):
+            raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterrupted) as stopped:
+        converge(problem, CORNERS, (51, 101, 201, 301), (5, 10, 20), 51, progress=progress)
+    if not grids:
+        assert stopped.value.study is None
+        return
+    kept = stopped.value.study
+    assert kept is not None
+    assert not kept.complete
+    assert len(kept.studies) == studies
+    assert len(kept.studies[0].counts) == grids
+
+
+# -- the command ---------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(EXAMPLE)
+    return path
+
+
+def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--nodes", "51,101,151", "--increments", "4,8,16", "--corner", "2"]
+    files = {name: tmp_path / f"a.{name}" for name in ("csv", "json", "png")}
+    written = ["--csv", str(files["csv"]), "--json", str(files["json"]), "--plot", str(files["png"])]
+    assert main(["converge", str(case), *arguments, *written]) == 0
+    out = capsys.readouterr().out
+    assert "corner 2: P = 2.42 MN/m, Q = 726 kN/m" in out
+    lines = [line.split() for line in out.splitlines()]
+    assert ["quantity", "unit", "51", "101", "151", "order", "limit", "bar"] in lines
+    assert ["quantity", "unit", "4", "8", "16", "order", "limit", "bar", "path", "within"] in lines
+    assert ["P", "MN/m", "2.42", "2.42", "2.42", "to", "rounding", "-", "-"] in lines
+    with files["csv"].open() as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == COLUMNS
+    solvers = {(row["solver"], row["nodes"], row["increments"]) for row in rows}
+    assert solvers == {("path", count, "") for count in ("51", "101", "151")} | {
+        ("increment", "151", count) for count in ("4", "8", "16")
+    }
+    peaks = [row for row in rows if row["quantity"] == "peak_pressure"]
+    assert [row["unit"] for row in peaks] == ["Pa"] * 6
+    assert all(1.2e8 < float(row["value"]) < 1.6e8 for row in peaks)
+    assert peaks[-1]["path"] == peaks[2]["value"]
+    start = next(row for row in rows if row["quantity"] == "contact_1_start")
+    assert (start["unit"], round(float(start["value"]))) == ("deg", -49)
+    document = json.loads(files["json"].read_text())
+    assert document["complete"] is True
+    assert document["studies"][1]["quantities"][0]["path"] == float(peaks[-1]["path"])
+    assert files["png"].read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["converge", str(case), "--nodes", "51,61,71", "--corner", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["loads"]["1"]["P"] == 2.42e6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--nodes", "101,x"], "--nodes: must be whole numbers with commas"),
+        (["--nodes", "101,201"], "--nodes: must be at least 3 numbers"),
+        (["--nodes", "11,101,201"], "--nodes: must be a whole number of at least 51"),
+        (["--increments", "4,2,8"], "--increments: must increase"),
+        (["--increment-nodes", "101"], "--increment-nodes: is for the increment solver"),
+        (["--corner", "9"], "--corner: must be one of the history, 1 to 4, not 9"),
+        (["--plot", "a.docx"], "--plot: the figure's name must end in"),
+        (["--csv", "a.csv", "--json", "a.csv"], "writes the same file as"),
+        (["--csv", "no/such/place.csv"], "does not exist"),
+        (["--csv", "a.toml"], "won't overwrite the case file"),
+    ],
+)
+def test_options_are_checked_before_the_work(
+    arguments: list[str],
+    words: str,
+    case: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(fastpin.convergence, "solve", None)
+    assert main(["converge", str(case), *arguments]) == 2
+    err = capsys.readouterr().err
+    assert words in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == [case]
+
+
+def test_an_interrupted_command_hands_out_what_there_is(
+    case: Path, study: Convergence, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: list[Convergence | None] = [replace(study, studies=study.studies[:1], complete=False), None]
+
+    def interrupted(*_: object) -> Convergence:
+        raise StudyInterrupted(kept.pop(0))
+
+    monkeypatch.setattr(fastpin.convergence, "converge", interrupted)
+    csv_file = case.parent / "a.csv"
+    assert main(["converge", str(case), "--csv", str(csv_file)]) == 130
+    captured = capsys.readouterr()
+    assert "path solver; nodes on one arc:" in captured.out
+    assert "interrupted; finished with 51, 101, 201 nodes" in captured.err
+    assert csv_file.exists()
+    assert main(["converge", str(case)]) == 130
+    assert "interrupted before three grids were finished" in capsys.readouterr().err
+
+
+def test_text_shows_zeros_as_zeros(study: Convergence) -> None:
+    lines = [line.split() for line in text(study).splitlines()]
+    assert ["rotation", "F", "beta*/R", "0", "0", "0", "to", "rounding", "-", "-"] in lines
