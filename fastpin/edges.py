@@ -38,8 +38,8 @@ EDGE_LEAST = 10
 """Nodes that may be used of a zone with so many or a little more; of a larger one the outer half."""
 
 EDGE_DEGREES = (1, 2, 3, 4)
-EDGE_LONG = 15
-"""Nodes from which on a straight line is not tried."""
+EDGE_LONG, EDGE_FAR = 15, 6
+"""Nodes from which on a straight line is not tried, nor, behind so many nodes left out, a fit without decaying part."""
 
 EDGE_ERROR = 0.1
 """Largest standard error of an edge, in node distances; with a larger one it is put halfway between two nodes."""
@@ -126,7 +126,8 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
         window, values = x[first : first + nodes], powered[first : first + nodes]
         for degree in EDGE_DEGREES:
             for decaying in (False, True):
-                if nodes < degree + 1 + decaying + SPARE or (degree == 1 and nodes >= EDGE_LONG):
+                too_simple = nodes >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
+                if too_simple or nodes < degree + 1 + decaying + SPARE:
                     continue
                 root, error = _edge_fit(window, values, degree, decaying)
                 offset = root - 0.5
@@ -224,8 +225,8 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
         return Peak(float(fitted[0]), best.error, 0.0)
     if top == t.size - 1:
         return None
-    shift, value = _vertex(*fitted[top - 1 : top + 2])
-    return Peak(value, best.error, best.place * (t[top] + shift * t[1]) ** 2)
+    shift, value = _vertex(*(float(each) for each in fitted[top - 1 : top + 2]))
+    return Peak(value, best.error, best.place * float(t[top] + shift * t[1]) ** 2)
 
 
 def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
@@ -277,7 +278,7 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
                 residual = columns @ coefficients - wanted
                 place -= float(inverse[-1] @ residual)
             error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
-            if best is None or error < best.error:
+            if abs(place) <= CUSP_REACH and (best is None or error < best.error):
                 best = Peak(float(coefficients[0]), error, place)
     return best
 

@@ -49,6 +49,9 @@ MAY_BE_EXACT = ("force", "moment", "rotation", "displacement")
 LEAST_COARSE = 51
 """Nodes of the coarse grid."""
 
+SAME_TOP = 1.5
+"""Node distances from a peak within which a local maximum of the nodal values is the peak itself."""
+
 BESIDE = 2
 """Nodes at each end of the coarse arc beyond the fine one: a coarse contact may be wider."""
 
@@ -92,12 +95,11 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     mine, theirs = values(state), compared(state, coarse)
     found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
     for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
-        others = _as_high(state, traction, abs(mine[name]), found[name])
-        place = mine[f"{name}_angle"]
-        if others.size and math.isfinite(place):
-            away = _apart(state.theta[others], place)
+        others = _apart(state.theta[_as_high(state, traction, found[name])], mine[f"{name}_angle"])
+        others = others[others > SAME_TOP * float(state.grid.weights.max())]
+        if others.size:
             known = found[f"{name}_angle"]
-            found[f"{name}_angle"] = max(float(away.max()), known if math.isfinite(known) else 0.0)
+            found[f"{name}_angle"] = max(float(others.max()), known if math.isfinite(known) else 0.0)
     return found
 
 
@@ -121,7 +123,7 @@ def _floor(name: str, state: State) -> float:
         top = int(np.argmax(traction))
         beside = traction[[top - 1, (top + 1) % traction.size]]
         peak = abs(QUANTITIES[name].of(state))
-        floor = PEAK_FLOORS[peak > (1.0 + 1e-12) * float(traction[top])]
+        floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
         return floor * (peak - float(beside.min()))
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
@@ -134,15 +136,13 @@ def _ends(state: State, zone: str) -> int:
     return 2 * len(intervals(state, zone)) if getattr(state, zone) else 2
 
 
-def _as_high(state: State, traction: np.ndarray, peak: float, bar: float) -> np.ndarray:
-    """Nodes where a traction has another largest value that may be the peak."""
+def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
+    """Nodes with a local maximum of a traction that may be the largest one."""
     before, after = np.roll(traction, 1), np.roll(traction, -1)
     if not state.grid.closed:
         before[0] = after[-1] = 0.0
-    tops = (traction > 0.0) & (traction >= before) & (traction >= after) & (traction >= peak - 2.0 * bar)
-    top, n = int(np.argmax(traction)), traction.size
-    tops[[top - 1, top, (top + 1) % n]] = False
-    return np.flatnonzero(tops)
+    highest = (traction > 0.0) & (traction >= before) & (traction >= after)
+    return np.flatnonzero(highest & (traction >= traction.max() - 2.0 * bar))
 
 
 def _apart(angles: np.ndarray, angle: float) -> np.ndarray:

@@ -224,7 +224,9 @@ def _old_cusp(
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)
         found = edges.cusp(outwards * x[order], magnitude[nodes[order]], 0.5 + outwards * tilt)
-        if found is not None and found.error < drop and (best is None or found.error < best[0]):
+        if found is None or max(found.error, abs(found.value - magnitude[top])) > drop:
+            continue  # the largest nodal value tells it better
+        if best is None or found.error < best[0]:
             best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
     return None if best is None else best[1:]
 
