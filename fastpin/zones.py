@@ -17,6 +17,9 @@ NEAR = 12
 """Node distances from a border within which the largest shear of unlike bodies belongs to its cusp."""
 
 
+DROP_NODES = 3
+"""Nodes on either side of the largest one, by whose values that of a cusp is judged."""
+
 TIE = 1e-9
 """Relative difference below which two peaks are equal; the one at the larger angle is taken."""
 
@@ -219,7 +222,8 @@ def _old_cusp(
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
         return None
-    drop = magnitude[top] - min(magnitude[top - 1], magnitude[(top + 1) % grid.size])
+    beside = np.arange(top - DROP_NODES, top + DROP_NODES + 1) % grid.size
+    drop = float(magnitude[top] - magnitude[beside].min())
     best = None
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)

@@ -1,16 +1,19 @@
-"""The tables of docs/accuracy.md: errors against closed forms, finite elements and the other solver.
+"""The tables and the figure of docs/accuracy.md: errors against finer grids, closed forms, finite elements, increments.
 
-``python scripts/accuracy.py`` prints them as Markdown; it takes some minutes. ``--quick`` uses small grids.
+``python scripts/accuracy.py`` prints the tables as Markdown, in some minutes; ``--figure FILE`` draws the errors of the
+reference cases, ``--quick`` uses small grids, ``--only NAME`` makes one part.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin import Problem, analytic, solve
+from fastpin import Grid, Problem, Result, analytic, solve
 from fastpin.comparison import (
     BOTTOM,
     FRETTING,
@@ -20,6 +23,8 @@ from fastpin.comparison import (
     cattaneo_mindlin_differences,
     residuals_away,
 )
+from fastpin.plot import draw_with, key, line, panels
+from fastpin.quantities import compared, size
 from fastpin.sliding import solve_sliding
 
 
@@ -56,29 +61,118 @@ def closed_form(sizes: list[int]) -> None:
     print(f"\nOrders: edge {order(sizes, edges):.2f}, peak pressure {order(sizes, peaks):.2f}.")
 
 
-def with_friction(sizes: list[int]) -> None:
-    print("\n## With friction: the mesh")
+CASES = {
+    "like bodies without friction, L_p = 0.1": (Problem.from_load_parameter(LIKE, 0.1, 0.0), [{"P": 1.0}]),
+    "Ti-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1": (
+        Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"),
+        [{"P": 1.0}],
+    ),
+    "like bodies, body load, mu = 0.4, L_p = 0.1": (
+        Problem.from_load_parameter(LIKE, 0.1, 0.4, "body"),
+        [{"P": 1.0}],
+    ),
+    "like bodies, held, mu = 0.55, L_p = 0.5": (
+        Problem.from_load_parameter(LIKE, 0.5, 0.55, "centre", "fixed"),
+        FRETTING,
+    ),
+    "like bodies, free, body load, mu = 0.55, L_p = 0.05": (
+        Problem.from_load_parameter(LIKE, 0.05, 0.55, "body"),
+        FRETTING,
+    ),
+}
+LOADS = ("P", "+Q", "-Q", "+Q again")
+SHOWN = {
+    "peak_pressure": "peak N",
+    "peak_shear": "peak T",
+    "peak_shear_angle": "peak T at",
+    "contact_1_start": "contact, left",
+    "contact_1_stop": "contact, right",
+    "stick_1_start": "stick, left",
+    "stick_1_stop": "stick, right",
+    "rotation": "rotation",
+    "dx": "dx",
+    "dy": "dy",
+    "shear_integral": "int T",
+    "shear_magnitude": "int abs T",
+    "dissipation": "dissipated",
+}
+ROUNDING = 1e-9
+"""Errors below this part of a quantity's size on all grids are those of something exact, and not shown."""
+
+SECOND = {"color": "0.8", "linestyle": "-", "linewidth": 2.5}
+
+Errors = dict[str, dict[tuple[str, str], list[float]]]
+
+
+def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
+    print("\n## The reference cases")
     print(
-        "\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, and similar materials, centre load, held, mu = 0.55,"
+        f"\nDifferences from {finest} nodes on the same arc; of angles in rad, of all else in parts of its size: the peak"
     )
-    print("L_p = 0.5, after P, +0.275, -0.275. N and T in F/R.")
-    rows = []
-    for nodes in sizes:
-        one = solve(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}], nodes=nodes)[-1]
-        two = solve(Problem.from_load_parameter(LIKE, 0.5, 0.55, "centre", "fixed"), FRETTING[:3], nodes=nodes)[-1]
-        rows.append(
-            [
-                nodes,
-                f"{one.peak_pressure:.6f}",
-                f"{abs(one.peak_shear):.6f}",
-                f"{0.5 * (one.contact[0][1] - one.contact[0][0]):.5f}",
-                f"{0.5 * (one.stick[0][1] - one.stick[0][0]):.5f}",
-                f"{two.peak_pressure:.6f}",
-                f"{two.peak_shear:.5f}",
-                f"{-two.resultants['M']:.7f}",
-            ]
-        )
-    table(["nodes", "peak N", "peak T", "contact", "stick", "peak N, -Q", "peak T, -Q", "int T, -Q"], rows)
+    print(
+        "pressure, int N, and strains and energies made of these. The order is the slope of a straight line through the"
+    )
+    print("logarithms.")
+    found: Errors = {}
+    for title, (problem, history) in CASES.items():
+        coarse = solve(problem, history, nodes=sizes[0]).grid  # with a node where the pin first touches
+        *results, reference = (solve(problem, history, grid=_refined(coarse, nodes)) for nodes in (*sizes, finest))
+        print(f"\n### {title[0].upper()}{title[1:]}")
+        found[title] = _differences(reference, results)
+        rows: list[list[object]] = []
+        for (load, name), errors in found[title].items():
+            rows.append([load, SHOWN[name], *(f"{error:.1e}" for error in errors), f"{order(sizes, errors):.1f}"])
+        table(["load", "quantity", *(str(nodes) for nodes in sizes), "order"], rows)
+    if figure is not None:
+        draw_with(lambda errors: _drawn(sizes, errors), found, figure, 160.0)
+
+
+def _refined(grid: Grid, nodes: int) -> Grid:
+    """`nodes` nodes on the same arc or circle."""
+    if grid.closed:
+        return Grid.circle(nodes, float(grid.theta[0]))
+    return Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), nodes)
+
+
+def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, str], list[float]]:
+    """By load and quantity, the differences of the results from the reference, smallest grid first."""
+    found = {}
+    for load, true, *states in zip(LOADS, reference, *results, strict=False):
+        exact = compared(true, true)
+        for name in SHOWN:
+            if name not in exact:
+                continue
+            scale = 1.0 if name.endswith(("angle", "start", "stop")) else size(name, true)
+            errors = [abs(compared(true, state)[name] - exact[name]) / scale for state in states]
+            if np.all(np.isfinite(errors)) and max(errors) > ROUNDING:
+                found[load, name] = errors
+    return found
+
+
+def _drawn(sizes: list[int], found: Errors) -> Figure:
+    """A panel for every case: how the errors of peaks, edges and borders fall."""
+    names = ("peak_pressure", "peak_shear", "contact_1_stop", "stick_1_stop", "shear_magnitude")
+    figure, axes = panels(2, 3, height=2.3, width=8.6)
+    for panel in axes.flat[len(found) :]:
+        panel.set_visible(False)
+    for panel, (title, errors) in zip(axes.flat, found.items(), strict=False):
+        for (load, name), values in errors.items():
+            if name in names and load in (LOADS[0], LOADS[1], LOADS[3]):
+                dashes = (LOADS[0], LOADS[1], LOADS[3]).index(load)
+                panel.loglog(sizes, values, marker=".", **line(names.index(name), dashes, 1.0))
+        panel.loglog(sizes, 1e-2 * (np.array(sizes) / sizes[0]) ** -2.0, zorder=0, **SECOND)
+        panel.set_title(title.replace(", mu", ",\nmu").replace("friction,", "friction,\n"), fontsize=8)
+        panel.set_xlabel("nodes")
+        panel.set_xticks(sizes, [str(nodes) for nodes in sizes])
+        panel.minorticks_off()
+    axes[0, 0].set_ylabel("error, rad or relative")
+    axes[1, 0].set_ylabel("error, rad or relative")
+    key(
+        figure,
+        [(SHOWN[name], line(colour)) for colour, name in enumerate(names)],
+        [*((load, line(0, dashes)) for dashes, load in enumerate(("P", "+Q", "+Q again"))), ("order 2", SECOND)],
+    )
+    return figure
 
 
 def finite_elements() -> None:
@@ -181,17 +275,26 @@ def singular_equations(sizes: list[int]) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="small grids")
+    parser.add_argument("--figure", type=Path, metavar="FILE", help="draw the errors of the reference cases")
+    parser.add_argument("--only", metavar="NAME", help="one part, by the name of its function")
     options = parser.parse_args()
     quick = options.quick
-    closed_form([50, 100, 200] if quick else [100, 200, 400, 800, 1600])
-    with_friction([101, 201] if quick else [101, 201, 401, 801, 1601])
-    finite_elements()
-    increments([20, 40] if quick else [20, 40, 80, 160, 320])
-    half_plane(101 if quick else 401)
-    full_sliding(
-        [4, 8, 12, 16] if quick else [4, 8, 12, 16, 32, 64, 128], [101] if quick else [101, 201, 401, 801, 1601]
-    )
-    singular_equations([101, 201] if quick else [101, 201, 401, 801, 1601])
+    sizes = [101, 201] if quick else [101, 201, 401, 801, 1601]
+    terms = [4, 8, 12, 16] if quick else [4, 8, 12, 16, 32, 64, 128]
+    parts = {
+        "closed_form": lambda: closed_form([50, 100, 200] if quick else [100, 200, 400, 800, 1600]),
+        "reference_cases": lambda: reference_cases(sizes, 401 if quick else 3201, options.figure),
+        "finite_elements": finite_elements,
+        "increments": lambda: increments([20, 40] if quick else [20, 40, 80, 160, 320]),
+        "half_plane": lambda: half_plane(101 if quick else 401),
+        "full_sliding": lambda: full_sliding(terms, sizes),
+        "singular_equations": lambda: singular_equations(sizes),
+    }
+    if options.only is not None and options.only not in parts:
+        parser.error(f"--only: one of {', '.join(parts)}")
+    for name, part in parts.items():
+        if options.only in (None, name):
+            part()
 
 
 if __name__ == "__main__":
