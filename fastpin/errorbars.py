@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from fastpin.state import State
 
 ORDER = 1.0
-"""The order that is assumed: edges have 1 to 1.5, integrals and smooth peaks 2, peaks beside old kinks 1."""
+"""The order that is assumed: that of borders beside older ones. All else has 1.5 to 2, with some scatter."""
 
 PEAK_FLOORS = 1.0, 0.2
 """Of a peak that is read at a node, and between nodes, in parts of what the traction falls by from there to the lower
 one of the two nodes beside it."""
 
-PLACE_FLOOR = 0.5
+PLACE_FLOOR = 0.2
 """Of an angle, and of each end of the intervals of a width, in parts of the node distance."""
 
 FLOORS = {
