@@ -26,8 +26,8 @@ PEAK_FLOORS = 1.0, 0.2
 """Of a peak that is read at a node, and between nodes, in parts of what the traction falls by from there to the lower
 one of the two nodes beside it."""
 
-PLACE_FLOOR = 0.2
-"""Of an angle, and of each end of the intervals of a width, in parts of the node distance."""
+PLACE_FLOOR, PEAK_PLACE_FLOOR = 0.2, 1.0
+"""Of each end of an interval, also in a width, and of the angle of a peak, in parts of the node distance."""
 
 FLOORS = {
     "shear_magnitude": 4.0,
@@ -127,7 +127,8 @@ def _floor(name: str, state: State) -> float:
         return floor * (peak - float(beside.min()))
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
-        return PLACE_FLOOR * ends * size(name, state) / closed
+        floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR
+        return floor * ends * size(name, state) / closed
     return FLOORS.get(name, FLOORS[kind]) * size(name, state) / closed**2
 
 

@@ -26,6 +26,9 @@ LATEST = 3
 LEAST_ORDER, MOST_ORDER = 0.5, 4.0
 """Orders outside are not believed."""
 
+MISFIT = 0.1
+"""Standard deviation of a fit that shows no order any more, in parts of the range of the values."""
+
 TRUSTED_ORDER = 2.0
 """The order of piecewise linear tractions: a larger one is reported, but limit and bar come from a fit of this one."""
 
@@ -38,7 +41,7 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     verdict : str
-        "observed": an order is. "not observed": the values go up and down, or in no power of the spacing.
+        "observed": an order is. "not observed": the values follow no power of the spacing.
         "to rounding": all values are the same but for rounding. "not comparable": one of them is missing (NaN).
     order : float
         p of C h^p; NaN unless observed.
@@ -71,13 +74,9 @@ def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float
         return Estimate("not comparable", math.nan, math.nan, math.nan)
     if np.ptp(f) <= rounding:
         return Estimate("to rounding", math.nan, last, float(np.ptp(f)))
-    noise = SAFETY_NOISE * float(np.ptp(f[-LATEST:]))
-    steps = np.diff(f)
-    if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
-        return Estimate("not observed", math.nan, math.nan, noise)
     order, limit, deviation = _fit(h, f)
-    if not LEAST_ORDER <= order <= MOST_ORDER or deviation >= np.ptp(f) / (len(f) - 1):
-        return Estimate("not observed", math.nan, math.nan, noise)
+    if not LEAST_ORDER <= order <= MOST_ORDER or deviation >= MISFIT * np.ptp(f):
+        return Estimate("not observed", math.nan, math.nan, SAFETY_NOISE * float(np.ptp(f[-LATEST:])))
     if order > TRUSTED_ORDER:
         limit, deviation = _fit_of_order(h, f, TRUSTED_ORDER)
     safety = SAFETY if len(f) > LATEST else SAFETY_NOISE

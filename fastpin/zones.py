@@ -212,7 +212,7 @@ def shear_peak(
         found_cusp = _old_cusp(grid, sticking, magnitude, top, sign * tilt)
         if found_cusp is not None:
             best, place = found_cusp
-    return sign * best, place
+    return sign * float(best), float(place)
 
 
 def _old_cusp(

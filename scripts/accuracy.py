@@ -106,13 +106,9 @@ Errors = dict[str, dict[tuple[str, str], list[float]]]
 
 def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
     print("\n## The reference cases")
-    print(
-        f"\nDifferences from {finest} nodes on the same arc; of angles in rad, of all else in parts of its size: the peak"
-    )
-    print(
-        "pressure, int N, and strains and energies made of these. The order is the slope of a straight line through the"
-    )
-    print("logarithms.")
+    print(f"\nDifferences from {finest} nodes on the same arc; of angles in rad, of all else in parts of its size: the")
+    print("peak pressure, int N, and strains and energies made of these. The order is the slope of a straight line")
+    print("through the logarithms.")
     found: Errors = {}
     for title, (problem, history) in CASES.items():
         coarse = solve(problem, history, nodes=sizes[0]).grid  # with a node where the pin first touches
