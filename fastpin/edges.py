@@ -11,6 +11,7 @@ ones have left. So a small set of windows and shapes is tried, and the fit with 
 
 from __future__ import annotations
 
+import bisect
 import functools
 import math
 from dataclasses import dataclass
@@ -24,6 +25,7 @@ EDGE_WINDOWS = ((2, 6), (2, 8), (2, 11), (2, 15), (2, 21), (6, 8), (6, 11), (6, 
                 (6, 84), (6, 120))  # fmt: skip
 """Nodes beside an edge that are left out, and nodes of a window to try."""
 
+EDGE_ENDS = sorted(first + nodes for first, nodes in EDGE_WINDOWS)
 EDGE_NEAREST = (2, 6)  # the window that has to agree with the others, on a parabola
 EDGE_AGREEMENT = 0.12
 """Largest difference from the place that the nearest nodes give, in node distances."""
@@ -112,61 +114,72 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
         return halfway
     spacing = float(theta[1] - theta[0])
     low = (outside - float(theta[0])) / spacing
-    x = np.round((theta[:most] - theta[0]) / spacing + 0.5, 9)  # from halfway between nodes that are equally spaced
-    powered = np.abs(quantity[:most]) ** (1.0 / exponent)
-    first, nodes = EDGE_NEAREST
-    nearest, error = _edge_fit(x[first : first + nodes], powered[first : first + nodes], 2, False)
-    nearest -= 0.5
+    used = theta[: EDGE_ENDS[bisect.bisect_right(EDGE_ENDS, most) - 1]]
+    x = np.round((used - theta[0]) / spacing + 0.5, 9)  # 0 is halfway to the next node of an equal spacing
+    powered = np.abs(quantity[: x.size]) ** (1.0 / exponent)
+    nearest, *others = _edge_designs(x.tobytes())
+    local, slope = nearest.root(powered)
+    local -= 0.5
     least, place = EDGE_ERROR, 0.5 * low
-    if error <= EDGE_NEAREST_ERROR and 1.25 * low <= nearest <= EDGE_INSIDE:
-        place = max(nearest, low)
-    for first, nodes in EDGE_WINDOWS:
-        if first + nodes > most:
-            continue
-        window, values = x[first : first + nodes], powered[first : first + nodes]
-        for degree in EDGE_DEGREES:
-            for decaying in (False, True):
-                too_simple = nodes >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
-                if too_simple or nodes < degree + 1 + decaying + SPARE:
-                    continue
-                root, error = _edge_fit(window, values, degree, decaying)
-                offset = root - 0.5
-                agrees = abs(offset - nearest) <= EDGE_AGREEMENT and 1.25 * low <= offset <= EDGE_INSIDE
-                if agrees and error < least:
-                    least, place = error, max(offset, low)
+    if 1.25 * low <= local <= EDGE_INSIDE and nearest.error(powered, slope) <= EDGE_NEAREST_ERROR:
+        place = max(local, low)
+    for design in others:
+        root, slope = design.root(powered)
+        offset = root - 0.5
+        if abs(offset - local) <= EDGE_AGREEMENT and 1.25 * low <= offset <= EDGE_INSIDE:
+            error = design.error(powered, slope)
+            if error < least:
+                least, place = error, max(offset, low)
     return float(theta[0]) + spacing * place
-
-
-def _edge_fit(window: np.ndarray, values: np.ndarray, degree: int, decaying: bool) -> tuple[float, float]:
-    """Where a fit has its root, and the standard error of that."""
-    design = _edge_design(window.tobytes(), degree, decaying)
-    root, slope = _root([float(c) for c in design.series @ values])
-    if slope == 0.0:
-        return root, math.inf
-    residual = design.columns @ (design.inverse @ values) - values
-    return root, standard_error(residual, degree + 1 + decaying, design.amplification) / abs(slope)
 
 
 @dataclass(frozen=True, eq=False)
 class _EdgeDesign:
+    """Least squares on one window: a polynomial of the distance, and perhaps a part that falls like its inverse."""
+
+    nodes: slice
     columns: np.ndarray
     inverse: np.ndarray
     series: np.ndarray  # of the nodal values: the coefficients of the polynomial's powers
     amplification: float
 
+    @classmethod
+    def of(cls, x: np.ndarray, first: int, count: int, degree: int, decaying: bool) -> _EdgeDesign:
+        window = x[first : first + count]
+        basis = [np.polynomial.Chebyshev.basis(k, domain=(window[0], window[-1])) for k in range(degree + 1)]
+        columns = np.column_stack([polynomial(window) for polynomial in basis] + [window[0] / window] * decaying)
+        inverse = np.linalg.pinv(columns)
+        powers = np.zeros((degree + 1, columns.shape[1]))
+        for k, polynomial in enumerate(basis):
+            powers[: k + 1, k] = polynomial.convert(kind=np.polynomial.Polynomial).coef
+        series = powers @ inverse
+        return cls(slice(first, first + count), columns, inverse, series, float(np.linalg.norm(series[0])))
 
-@functools.lru_cache(maxsize=1024)
-def _edge_design(window: bytes, degree: int, decaying: bool) -> _EdgeDesign:
-    """Least squares at the distances `window`: a polynomial, and perhaps a part that falls like 1/distance."""
-    x = np.frombuffer(window)
-    basis = [np.polynomial.Chebyshev.basis(k, domain=(x[0], x[-1])) for k in range(degree + 1)]
-    columns = np.column_stack([polynomial(x) for polynomial in basis] + [x[0] / x] * decaying)
-    inverse = np.linalg.pinv(columns)
-    powers = np.zeros((degree + 1, columns.shape[1]))
-    for k, polynomial in enumerate(basis):
-        powers[: k + 1, k] = polynomial.convert(kind=np.polynomial.Polynomial).coef
-    series = powers @ inverse
-    return _EdgeDesign(columns, inverse, series, float(np.linalg.norm(series[0])))
+    def root(self, values: np.ndarray) -> tuple[float, float]:
+        """Where the polynomial has its root near 0, and its slope there."""
+        return _root((self.series @ values[self.nodes]).tolist())
+
+    def error(self, values: np.ndarray, slope: float) -> float:
+        """Standard error of the root."""
+        if slope == 0.0:
+            return math.inf
+        wanted = values[self.nodes]
+        residual = self.columns @ (self.inverse @ wanted) - wanted
+        return standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
+
+
+@functools.lru_cache(maxsize=64)
+def _edge_designs(places: bytes) -> list[_EdgeDesign]:
+    """The fits to try with the nodes at these distances from the edge; the first is that of the nearest nodes."""
+    x = np.frombuffer(places)
+    designs = [_EdgeDesign.of(x, *EDGE_NEAREST, 2, False)]
+    for first, count in EDGE_WINDOWS:
+        for degree in EDGE_DEGREES:
+            for decaying in (False, True):
+                too_simple = count >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
+                if first + count <= x.size and not too_simple and count >= degree + 1 + decaying + SPARE:
+                    designs.append(_EdgeDesign.of(x, first, count, degree, decaying))
+    return designs
 
 
 def _root(series: list[float]) -> tuple[float, float]:
