@@ -17,6 +17,9 @@ NEAR = 12
 """Node distances from a border within which the largest shear of unlike bodies belongs to its cusp."""
 
 
+RIVAL = 0.8
+"""Part of the largest nodal shear that the nodes beside a border need for its cusp to be a candidate."""
+
 DROP_NODES = 3
 """Nodes on either side of the largest one, by whose values that of a cusp is judged."""
 
@@ -184,35 +187,63 @@ def shear_peak(
     """
     magnitude = np.abs(shear)
     top = int(np.flatnonzero(magnitude >= (1.0 - TIE) * magnitude.max())[-1])
-    sign = 1.0 if shear[top] >= 0.0 else -1.0
-    best, place = float(magnitude[top]), float(grid.theta[top])
-    smooth = True
-    neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
-    if np.all(neighbours == neighbours[0]):
-        best, place, smooth = _smooth_peak(grid, magnitude, top)
-    spacing = float(grid.weights[top])
-    near = False
+    peaks, told, near = [], False, False
     for interval in stick:
         for border, outwards in zip(interval, (-1.0, 1.0), strict=True):
-            offset = outwards * math.remainder(float(grid.theta[top]) - border, 2.0 * math.pi) / spacing
-            near = near or abs(offset) <= 2.0
-            found = None
-            if tilt != 0.0 and -2.0 <= offset <= NEAR:
-                nodes, x = _around(grid, pressure > 0.0, top)
-                order = slice(None) if outwards > 0.0 else slice(None, None, -1)
-                bound = friction * pressure[nodes[order]]
-                found = edges.border_peak(outwards * x[order] + offset, bound, 0.5 + outwards * sign * tilt)
-            if found is not None and abs(found.place - offset) <= 3.0:
-                best, place = found.value, border + outwards * spacing * found.place
-            elif abs(offset) <= 1.5:
-                at_border = friction * _interpolated(grid, pressure, border)
-                if at_border > best:
-                    best, place = at_border, border
+            offsets = outwards * (np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
+            spacing = float(grid.weights[np.argmin(np.abs(offsets))])
+            beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
+            if beside.size == 0:
+                continue
+            highest = int(beside[np.argmax(magnitude[beside])])
+            near = near or abs(offsets[top]) <= 2.0 * spacing
+            if magnitude[highest] < RIVAL * magnitude[top]:
+                continue
+            peak = None
+            if tilt != 0.0:
+                bent = outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt
+                peak = _border_peak(grid, friction * pressure, border, outwards, 0.5 + bent, highest)
+            if peak is not None and _likely(grid, magnitude, highest, peak[0]):
+                told = told or highest == top
+                peaks.append((*peak, highest))
+                continue
+            at_border = friction * _interpolated(grid, pressure, border)
+            if np.abs(offsets[beside]).min() <= spacing and _likely(grid, magnitude, highest, at_border):
+                peaks.append((at_border, border, highest))
+    if not told:
+        peaks.append(_peak_of_nodes(grid, magnitude, sticking, top, near, tilt if shear[top] >= 0.0 else -tilt))
+    highest_value = max(value for value, _, _ in peaks)
+    value, place, node = max(
+        (peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest_value), key=lambda peak: peak[1]
+    )
+    return math.copysign(value, float(shear[node])), place
+
+
+def _peak_of_nodes(
+    grid: Grid, magnitude: np.ndarray, sticking: np.ndarray, top: int, near: bool, tilt: float
+) -> tuple[float, float, int]:
+    """Value and place of the peak at the node `top`: smooth, or the cusp of an old border if no border is `near`."""
+    neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
+    if not np.all(neighbours == neighbours[0]):
+        return float(magnitude[top]), float(grid.theta[top]), top
+    value, place, smooth = _smooth_peak(grid, magnitude, top)
     if not smooth and not near:
-        found_cusp = _old_cusp(grid, sticking, magnitude, top, sign * tilt)
-        if found_cusp is not None:
-            best, place = found_cusp
-    return sign * float(best), float(place)
+        value, place = _old_cusp(grid, sticking, magnitude, top, tilt) or (value, place)
+    return value, place, top
+
+
+def _border_peak(
+    grid: Grid, bound: np.ndarray, border: float, outwards: float, exponent: float, node: int
+) -> tuple[float, float] | None:
+    """Largest mu N on the slip side of a border and its place; None if it is not within three nodes of `node`."""
+    nodes, x = _around(grid, bound > 0.0, node)
+    spacing = float(grid.weights[node])
+    offset = outwards * math.remainder(float(grid.theta[node]) - border, 2.0 * math.pi) / spacing
+    order = slice(None) if outwards > 0.0 else slice(None, None, -1)
+    found = edges.border_peak(outwards * x[order] + offset, bound[nodes[order]], exponent)
+    if found is None or abs(found.place - offset) > 3.0:
+        return None
+    return found.value, border + outwards * spacing * found.place
 
 
 def _old_cusp(
@@ -222,17 +253,26 @@ def _old_cusp(
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
         return None
-    beside = np.arange(top - DROP_NODES, top + DROP_NODES + 1) % grid.size
-    drop = float(magnitude[top] - magnitude[beside].min())
     best = None
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)
         found = edges.cusp(outwards * x[order], magnitude[nodes[order]], 0.5 + outwards * tilt)
-        if found is None or max(found.error, abs(found.value - magnitude[top])) > drop:
-            continue  # the largest nodal value tells it better
+        if found is None or not _likely(grid, magnitude, top, found.value, found.error):
+            continue
         if best is None or found.error < best[0]:
             best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
     return None if best is None else best[1:]
+
+
+def _likely(grid: Grid, values: np.ndarray, top: int, peak: float, error: float = 0.0) -> bool:
+    """Whether a fitted peak fits the values about the largest one, at `top`.
+
+    It may be higher by what they fall by on the steeper side, and lower by what they do on the other, in a few nodes.
+    """
+    steps = np.arange(1, DROP_NODES + 1)
+    left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
+    drops = float(values[top] - left.min()), float(values[top] - right.min())
+    return -min(drops) <= peak - values[top] <= max(drops) and error <= max(drops)
 
 
 def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
