@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError
 from fastpin.terminal import (
+    EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
     bar,
@@ -60,9 +61,9 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs, options.case)
 
-    from fastpin.convergence import StudyInterrupted, converge
+    from fastpin.convergence import StudyInterrupted, StudyLostError, converge
 
-    code = EXIT_OK
+    code, trouble = EXIT_OK, ""
     with bar(1, "{desc}") as shown:
 
         def progress(done: float, total: float, what: str) -> None:
@@ -76,18 +77,21 @@ def run(options: argparse.Namespace) -> int:
                 case.options.arc, progress,
             )  # fmt: skip
         except StudyInterrupted as ended:
-            study, code = ended.study, EXIT_INTERRUPTED
+            study, code, trouble = ended.study, EXIT_INTERRUPTED, "interrupted"
+        except StudyLostError as lost:
+            study, code, trouble = lost.study, EXIT_FAILED, str(lost)
         except InputError as error:
             option = error.field.replace("_", "-")
             known = option in ("nodes", "increments", "increment-nodes", "corner")
             raise InputError(f"--{option}" if known else error.field, error.reason) from None
     if study is None:
-        return fail("interrupted before three grids were finished", code)
-    return _hand_out(study, options, case.title) or (code and fail(_kept(study), code))
+        return fail(f"{trouble}; less than three grids were finished", code)
+    return _hand_out(study, options, case.title) or (code and fail(f"{trouble}; {_kept(study)}", code))
 
 
 def _kept(study: Convergence) -> str:
-    return f"interrupted; finished with {', '.join(map(str, study.studies[0].counts))} nodes" + (
+    corners = ", ".join(map(str, study.loads))
+    return f"kept: corner {corners} with {', '.join(map(str, study.studies[0].counts))} nodes" + (
         "" if len(study.studies) == 1 else f" and {', '.join(map(str, study.studies[1].counts))} increments"
     )
 
@@ -100,24 +104,25 @@ def _numbers(option: str, text: str) -> list[int]:
 
 
 def _hand_out(study: Convergence, options: argparse.Namespace, title: str) -> int:
-    """Print the tables and write the files that were asked for."""
+    """Write the files that were asked for and print the tables, which a reader of our output may leave."""
     from fastpin import convergetable
 
     document = json.dumps(convergetable.document(study, title), indent=2, allow_nan=False) + "\n"
-    if options.json == "-":
-        sys.stdout.write(document)
-    else:
-        print("\n".join([title, ""] if title else []) + convergetable.text(study))
 
     def plot(path: Path) -> None:
         from fastpin.convergeplot import plot_convergence
 
         plot_convergence(study, path, title=title)
 
-    return write_files(
+    code = write_files(
         [
             (options.csv, lambda path: convergetable.write_csv(study, path)),
             (None if options.json == "-" else options.json, lambda path: write_text(path, document)),
             (options.plot, plot),
         ]
     )
+    if options.json == "-":
+        sys.stdout.write(document)
+    else:
+        print("\n".join([title, ""] if title else []) + convergetable.text(study))
+    return code

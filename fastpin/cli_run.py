@@ -222,8 +222,6 @@ def _hand_out(
     """Print the states and write the files that were asked for; `hidden` states in the middle are left out."""
     from fastpin.report import summary
 
-    if options.json != "-":
-        _print_states(case, result, hidden)
     code, error = EXIT_OK, None
     if isinstance(ended, SolveError):
         error = str(ended)
@@ -245,9 +243,7 @@ def _hand_out(
     writers: list[tuple[Any, Callable[[Path], None]]] = []
     if options.json is not None:
         document = json.dumps(summary(case, result, error), indent=2, allow_nan=False) + "\n"
-        if options.json == "-":
-            sys.stdout.write(document)
-        else:
+        if options.json != "-":
             writers.append((options.json, lambda path: write_text(path, document)))
     if result is not None and len(result):
         reached = result
@@ -257,7 +253,12 @@ def _hand_out(
         writers.append((options.cycles, lambda path: _plot_cycles(with_cycles, path, case.title)))
     elif options.cycles is not None:
         code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-    return write_files(writers) or code
+    code = write_files(writers) or code
+    if options.json == "-":  # last, for whoever reads our output may leave
+        sys.stdout.write(document)
+    else:
+        _print_states(case, result, hidden)
+    return code
 
 
 def _reached(result: Result) -> int:

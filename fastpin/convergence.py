@@ -24,6 +24,7 @@ from fastpin.solver import Task, solve
 from fastpin.state import Result
 
 LEAST_GRIDS = 3
+LEAST_RATIO = 1.1
 LEAST_NODES = 51
 LEAST_CLOSED = 10
 """Nodes in contact below which a grid says nothing about the quantities of finer ones."""
@@ -105,7 +106,7 @@ class Convergence:
     studies : tuple of Study
         That of the path solver, and that of the increment solver if it was asked for.
     complete : bool
-        False if it was interrupted; the finer grids, or the increments, are then missing.
+        False if it was interrupted, or lost its loads; finer grids, increments or later corners are then missing.
     """
 
     problem: Problem
@@ -114,6 +115,10 @@ class Convergence:
     studies: tuple[Study, ...]
     complete: bool = True
 
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{study.method}: {'-'.join(map(str, study.counts))}" for study in self.studies)
+        return f"<Convergence: {counts}; corners {', '.join(map(str, self.loads))}>"
+
 
 class StudyInterrupted(KeyboardInterrupt):
     """Ctrl-C during a study; ``study`` is what was found before, None with fewer than three grids."""
@@ -121,6 +126,16 @@ class StudyInterrupted(KeyboardInterrupt):
     def __init__(self, study: Convergence | None) -> None:
         super().__init__("interrupted")
         self.study = study
+
+
+class StudyLostError(SolveError):
+    """A grid on which the loads can't be followed, or that does not fit in memory; the message names it.
+
+    ``study`` is what was found: the corners before the one that was lost, or the grids before the one that was too
+    large; None if there are none, or fewer than three grids.
+    """
+
+    study: Convergence | None = None
 
 
 def converge(
@@ -150,8 +165,8 @@ def converge(
     increment_nodes : int, optional
         Nodes of the increment solver's grid; of `nodes` the first of 201 or more unless given, or the last.
     corner : int, optional
-        The corner that is studied, counted from 1; what follows it is left out. By default all of up to six, or the
-        last one.
+        The corner that is studied, counted from 1; what follows it is left out, but for the choice of the arc. By
+        default all of up to six, or the last one.
     arc : (float, float), optional
         Start and end angle, rad; 2 pi apart for the whole circle.
     progress : callable, optional
@@ -161,26 +176,29 @@ def converge(
     ------
     InputError
         Naming the field that can't be used, before anything is solved; also where a grid has too few nodes in contact.
-    SolveError
-        Where the loads can't be followed on a grid, which the message names.
+    StudyLostError
+        Where the loads can't be followed to the end on a grid, which the message names; it holds the study of the
+        corners before that.
     StudyInterrupted
         By Ctrl-C; it holds the study of the grids that were finished, if they are three.
     """
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
-    steps = _increasing("increments", increments, 1) if len(increments) else ()
+    for before, after in pairwise(counts):
+        if after < LEAST_RATIO * before:
+            raise InputError("nodes", f"must grow by a tenth at least to show an order, but {after} follows {before}")
+    wanted = not isinstance(increments, Sequence) or len(increments) > 0
+    steps = _increasing("increments", increments, 1) if wanted else ()
     single = next((count for count in counts if count >= INCREMENT_NODES), counts[-1])
     if increment_nodes is not None:
         if not steps:
             raise InputError("increment_nodes", "is for the increment solver: give increments, too")
         single = _between("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
     task = Task.checked(problem, history, counts[0], "path", 1, arc, None, 0, "all", True, None)
-    if corner is not None:
-        if whole_number("corner", corner, 1) > len(task.history):
-            raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {corner}")
-        task = replace(task, history=task.history[:corner])
+    if corner is not None and whole_number("corner", corner, 1) > len(task.history):
+        raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {corner}")
     if arc is not None:
         next(task.grids())  # checks it
-    return _Work(task, counts, steps, single, corner is None, progress).study()
+    return _Work(task, counts, steps, single, corner, progress).study()
 
 
 def _increasing(field: str, numbers: Sequence[int], least: int, most: int | None = None) -> tuple[int, ...]:
@@ -208,14 +226,16 @@ class _Work:
         counts: tuple[int, ...],
         increments: tuple[int, ...],
         increment_nodes: int,
-        may_be_all: bool,
+        corner: int | None,
         progress: Progress | None,
     ) -> None:
         self.task, self.counts, self.increments, self.single = task, counts, increments, increment_nodes
-        corners = len(task.history)
-        every = may_be_all and corners <= SHORT
-        self.corners = range(1, corners + 1) if every else range(corners, corners + 1)
-        self.keep = "corners" if every else f"every {corners}"
+        self.history = task.history if corner is None else task.history[:corner]
+        corners = len(self.history)
+        self.every = corner is None and corners <= SHORT
+        self.corners = range(1, corners + 1) if self.every else range(corners, corners + 1)
+        self.keep = "corners" if self.every else f"every {corners}"
+        self.lost: StudyLostError | None = None
         self.progress = progress
         self.done = 0.0
         self.total = sum(_cost("path", count, 0) for count in (*counts, *self._path_apart()))
@@ -227,9 +247,19 @@ class _Work:
         try:
             self._follow()
         except KeyboardInterrupt:
-            enough = sum(count in self.found for count in self.counts) >= LEAST_GRIDS
-            raise StudyInterrupted(self._convergence(complete=False) if enough else None) from None
+            raise StudyInterrupted(self._finished()) from None
+        except StudyLostError as error:
+            error.study = self._finished()
+            raise
+        if self.lost is not None:
+            self.lost.study = self._finished()
+            raise self.lost
         return self._convergence(complete=True)
+
+    def _finished(self) -> Convergence | None:
+        """The study of the grids that are finished, if they are enough."""
+        enough = sum(count in self.found for count in self.counts) >= LEAST_GRIDS
+        return self._convergence(complete=False) if enough else None
 
     def _path_apart(self) -> list[int]:
         """The increment solver's grid, where it is none of the others."""
@@ -254,7 +284,7 @@ class _Work:
     def _solved(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
         """The history on one grid."""
         if arc.closed:
-            direction = first_direction(self.task.history.distinct())
+            direction = first_direction(self.history.distinct())
             grid = Grid.circle(nodes, float(arc.theta[0]) if direction is None else direction)
         else:
             grid = Grid.arc(float(arc.theta[0]), float(arc.theta[-1]), nodes)
@@ -265,17 +295,25 @@ class _Work:
             if self.progress is not None:
                 self.progress(self.done + cost * done / total, self.total, what)
 
-        problem, history = self.task.problem, self.task.history
+        where = what if method == "path" else f"{what} a step and {nodes} nodes"
         try:
             result = solve(
-                problem, history, method=method, increments=max(increments, 1), grid=grid, keep=self.keep,
-                progress=progress,
+                self.task.problem, self.history, method=method, increments=max(increments, 1), grid=grid,
+                keep=self.keep, progress=progress,
             )  # fmt: skip
-        except SolveError as error:
-            where = what if method == "path" else f"{what} a step and {nodes} nodes"
+        except ArcError as error:
             error.args = (f"with {where}: {error}",)
             raise
-        for corner, state in zip(self.corners, result, strict=True):
+        except SolveError as error:
+            lost = StudyLostError(f"with {where}: {error}", error.step, error.fraction, error.load, error.result)
+            if not self.every or error.result is None or error.step < 1:
+                raise lost from None
+            self.lost, result = self.lost or lost, error.result  # study the corners before that
+            self.corners = range(1, error.step + 1)
+            self.history = self.history[: error.step]
+        except MemoryError:
+            raise StudyLostError(f"with {where}: not enough memory") from None
+        for corner, state in zip(self.corners, result, strict=False):
             closed = int(np.count_nonzero(state.pressure))
             if 0 < closed < LEAST_CLOSED:
                 field = "nodes" if nodes in self.counts else "increment_nodes"
@@ -297,7 +335,7 @@ class _Work:
             spacings, path = [1.0 / step for step in steps], self.found[self.single]
             series = self._series(spacings, self.found_increments, path)
             studies.append(Study("increment", steps, self.single, tuple(series)))
-        loads = {corner: state.load for corner, state in zip(self.corners, finest, strict=True)}
+        loads = {corner: state.load for corner, state in zip(self.corners, finest, strict=False)}
         return Convergence(self.task.problem, finest.grid, loads, tuple(studies), complete)
 
     def _series(self, spacings: Sequence[float], results: Sequence[Result], path: Result | None) -> Iterator[Series]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,8 @@ ORDER_OF_PANELS = (
 _GUIDES: dict[int, Line] = {1: {"color": "0.6", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
            2: {"color": "0.6", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.0}}  # fmt: skip
 _STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
-_NAMES = {"path": "path solver, against nodes", "increment": "increment solver, against increments a step"}
+_NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
+TITLE_WIDTH = 90  # characters
 
 
 def plot_convergence(
@@ -57,7 +59,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     for index, panel in enumerate(axes.flat):
         panel.set_visible(index < len(names))
         if index + COLUMNS >= len(names):
-            panel.set_xlabel("nodes; increments a step")
+            panel.set_xlabel("nodes; increments a step" if len(convergence.studies) > 1 else "nodes")
     for name, panel in zip(names, axes.flat, strict=False):
         _draw_panel(panel, found[name])
     for panel in axes[:, 0]:
@@ -68,12 +70,17 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     bar: Line = {"color": "0.3", "linestyle": "none", "marker": "_", "markersize": 9.0, "markeredgewidth": 1.6}
     key(
         figure,
-        [(_NAMES[method], {**_STYLES[method], "markersize": 4.0}) for method in methods],
+        [
+            (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 4.0})
+            for study in convergence.studies
+            if study.method in methods
+        ],
         [("no order observed: to the last value", open_marks), ("error bar of the last value", bar)],
         guides,
     )
     loads = named_loads(convergence.problem, convergence.loads[corner])
-    figure.suptitle(f"{title}\ncorner {corner}: {loads}" if title else f"corner {corner}: {loads}", fontsize=9.5)
+    lines = [*textwrap.wrap(title, TITLE_WIDTH), f"corner {corner}: {loads}"]
+    figure.suptitle("\n".join(lines), fontsize=9.5)
     return figure
 
 
@@ -108,6 +115,9 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Shown]]
     panel.margins(x=0.12, y=0.08)
     low, high = panel.get_ylim()
     low = min(low, high / 30.0)  # a decade at least
+    if high < 100.0 * low:
+        panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     panel.yaxis.set_minor_formatter(NullFormatter())
     panel.set_ylim(low, high * (high / low) ** (0.14 * len(words) + 0.04))  # room for the words
     left, right = panel.get_xlim()

@@ -44,7 +44,7 @@ EDGE_LONG, EDGE_FAR = 15, 6
 """Nodes from which on a straight line is not tried, nor, behind so many nodes left out, a fit without decaying part."""
 
 EDGE_ERROR = 0.1
-"""Largest standard error of an edge, in node distances; with a larger one it is put halfway between two nodes."""
+"""Largest standard error of an edge, in node distances; with a larger one the two outermost nodes tell it."""
 
 HALF_WIDTHS = (8, 12, 18, 27, 40, 60)
 """Nodes on either side of a border or a corner, in the windows to try."""
@@ -104,23 +104,25 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
     Returns
     -------
     float
-        An angle not beyond `outside`; halfway to it where no shape can be made out.
+        An angle not beyond `outside`. Where no shape can be made out, that to which the two outermost nodes point.
     """
-    halfway = 0.5 * float(theta[0] + outside)
+    if theta.size == 1:
+        return 0.5 * float(theta[0] + outside)
+    spacing = float(theta[1] - theta[0])
+    low = (outside - float(theta[0])) / spacing
+    place = _by_two_nodes(float(quantity[0]), float(quantity[1]), exponent, low)
     most = max(theta.size // 2, min(theta.size - 1, EDGE_LEAST))
     if alike >= sum(EDGE_NEAREST):
         most = min(most, alike)
     if most < sum(EDGE_NEAREST):
-        return halfway
-    spacing = float(theta[1] - theta[0])
-    low = (outside - float(theta[0])) / spacing
+        return float(theta[0]) + spacing * place
     used = theta[: EDGE_ENDS[bisect.bisect_right(EDGE_ENDS, most) - 1]]
     x = np.round((used - theta[0]) / spacing + 0.5, 9)  # 0 is halfway to the next node of an equal spacing
     powered = np.abs(quantity[: x.size]) ** (1.0 / exponent)
     nearest, *others = _edge_designs(x.tobytes())
     local, slope = nearest.root(powered)
     local -= 0.5
-    least, place = EDGE_ERROR, 0.5 * low
+    least = EDGE_ERROR
     if 1.25 * low <= local <= EDGE_INSIDE and nearest.error(powered, slope) <= EDGE_NEAREST_ERROR:
         place = max(local, low)
     for design in others:
@@ -131,6 +133,12 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
             if error < least:
                 least, place = error, max(offset, low)
     return float(theta[0]) + spacing * place
+
+
+def _by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
+    """Where the line through two nodes points, from the first one in node distances; halfway to `low` if inwards."""
+    outer, inner = abs(first) ** (1.0 / exponent), abs(second) ** (1.0 / exponent)
+    return max(-outer / (inner - outer), low) if inner > outer else 0.5 * low
 
 
 @dataclass(frozen=True, eq=False)

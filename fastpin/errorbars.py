@@ -108,6 +108,8 @@ def _bar(name: str, value: float, other: float, state: State) -> float:
         return math.nan
     if math.isnan(other):
         return math.inf
+    if value == other == 0.0:
+        return 0.0
     rounding = ROUNDING * size(name, state)
     if abs(value - other) <= rounding and quantity(name).kind in MAY_BE_EXACT:
         return rounding
@@ -124,7 +126,7 @@ def _floor(name: str, state: State) -> float:
         beside = traction[[top - 1, (top + 1) % traction.size]]
         peak = abs(QUANTITIES[name].of(state))
         floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
-        return floor * (peak - float(beside.min()))
+        return floor * max(peak - float(beside.min()), 0.0)
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
         floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR

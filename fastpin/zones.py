@@ -24,7 +24,7 @@ DROP_NODES = 3
 """Nodes on either side of the largest one, by whose values that of a cusp is judged."""
 
 TIE = 1e-9
-"""Relative difference below which two peaks are equal; the one at the larger angle is taken."""
+"""Relative difference below which two peaks are equal; the one farther to the right is taken."""
 
 
 def square_root(run: np.ndarray) -> tuple[float, float]:
@@ -158,7 +158,7 @@ def pressure_peak(grid: Grid, pressure: np.ndarray, coupled: bool = False) -> tu
 
     Where friction couples pressure and shear (unlike bodies) the pressure has a corner where the pin first touched.
     """
-    top = int(np.argmax(pressure))
+    top = _top(grid, pressure)
     value, place, smooth = _smooth_peak(grid, pressure, top)
     if smooth or not coupled:
         return value, place
@@ -186,7 +186,7 @@ def shear_peak(
     little beyond it; or in a cusp where such a border once was. `tilt` is arctan(mu beta_D)/pi, see (T26).
     """
     magnitude = np.abs(shear)
-    top = int(np.flatnonzero(magnitude >= (1.0 - TIE) * magnitude.max())[-1])
+    top = _top(grid, magnitude)
     peaks, told, near = [], False, False
     for interval in stick:
         for border, outwards in zip(interval, (-1.0, 1.0), strict=True):
@@ -213,10 +213,20 @@ def shear_peak(
     if not told:
         peaks.append(_peak_of_nodes(grid, magnitude, sticking, top, near, tilt if shear[top] >= 0.0 else -tilt))
     highest_value = max(value for value, _, _ in peaks)
-    value, place, node = max(
-        (peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest_value), key=lambda peak: peak[1]
-    )
+    equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest_value]
+    value, place, node = max(equal, key=lambda peak: _from_bottom(peak[1]))
     return math.copysign(value, float(shear[node])), place
+
+
+def _top(grid: Grid, values: np.ndarray) -> int:
+    """The node with the largest value; of equals, as symmetric contacts have them, the one farthest to the right."""
+    equal = np.flatnonzero(values >= (1.0 - TIE) * values.max())
+    return int(equal[np.argmax([_from_bottom(angle) for angle in grid.theta[equal]])])
+
+
+def _from_bottom(angle: float) -> float:
+    """Angle from the bottom of the hole, -pi to pi."""
+    return math.remainder(angle + 0.5 * math.pi, 2.0 * math.pi)
 
 
 def _peak_of_nodes(

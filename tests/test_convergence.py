@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import fastpin.convergence
-from fastpin import Grid, LoadHistory, MaterialPair, NoEquilibriumError, Problem, Result, analytic, solve
+from fastpin import Grid, LoadHistory, MaterialPair, Problem, Result, analytic, solve
 from fastpin.casefile import EXAMPLE
 from fastpin.cli import main
-from fastpin.convergence import Convergence, Series, StudyInterrupted, converge
+from fastpin.convergence import Convergence, Series, StudyInterrupted, StudyLostError, converge
 from fastpin.convergetable import COLUMNS, text
 from fastpin.errors import ArcError, InputError
 
@@ -156,9 +156,49 @@ def test_input_is_checked_before_anything_is_solved(
 
 
 def test_loads_that_a_grid_cannot_carry_name_it(problem: Problem) -> None:
-    with pytest.raises(NoEquilibriumError, match=r"^with 51 nodes: ") as lost:
-        converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS)
-    assert lost.value.result is not None
+    with pytest.raises(StudyLostError, match=r"^with 51 nodes: step 2, at 47") as lost:
+        converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS, (5, 10, 20))
+    study = lost.value.study
+    assert study is not None
+    assert list(study.loads) == [1]
+    assert [found.counts for found in study.studies] == [GRIDS, (5, 10, 20)]
+    assert not study.complete
+    with pytest.raises(StudyLostError, match=r"^with 51 nodes: ") as at_once:
+        converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS, corner=2)
+    assert at_once.value.study is None
+
+
+def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(
+    problem: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def limited(*arguments: Any, grid: Grid, **options: Any) -> Result:
+        if grid.size > 201:
+            raise MemoryError
+        return solve(*arguments, grid=grid, **options)
+
+    monkeypatch.setattr(fastpin.convergence, "solve", limited)
+    with pytest.raises(StudyLostError, match="with 301 nodes: not enough memory") as lost:
+        converge(problem, CORNERS, (51, 101, 201, 301))
+    assert lost.value.study is not None
+    assert lost.value.study.studies[0].counts == (51, 101, 201)
+
+
+def test_a_corner_is_studied_on_the_arc_of_the_whole_history(problem: Problem) -> None:
+    whole, one = converge(problem, CORNERS, GRIDS), converge(problem, CORNERS, GRIDS, corner=2)
+    assert np.array_equal(whole.grid.theta, one.grid.theta)
+    assert list(one.loads) == [2]
+    assert [each for each in whole.studies[0].series if each.corner == 2] == list(one.studies[0].series)
+
+
+def test_grids_that_hardly_differ_are_refused(problem: Problem) -> None:
+    with pytest.raises(InputError, match="nodes: must grow by a tenth at least to show an order, but 105 follows 101"):
+        converge(problem, CORNERS, (101, 105, 201))
+    with pytest.raises(InputError, match="increments: must be at least 3 numbers, not 20"):
+        converge(problem, CORNERS, GRIDS, increments=20)  # type: ignore[arg-type]
+
+
+def test_a_study_prints_shortly(problem: Problem) -> None:
+    assert repr(converge(problem, CORNERS[:1], GRIDS)) == "<Convergence: path: 51-101-201; corners 1>"
 
 
 def test_a_contact_of_few_nodes_is_refused(problem: Problem) -> None:
@@ -276,10 +316,10 @@ def test_an_interrupted_command_hands_out_what_there_is(
     assert main(["converge", str(case), "--csv", str(csv_file)]) == 130
     captured = capsys.readouterr()
     assert "path solver; nodes on one arc:" in captured.out
-    assert "interrupted; finished with 51, 101, 201 nodes" in captured.err
+    assert "interrupted; kept: corner 1, 2, 3 with 51, 101, 201 nodes" in captured.err
     assert csv_file.exists()
     assert main(["converge", str(case)]) == 130
-    assert "interrupted before three grids were finished" in capsys.readouterr().err
+    assert "interrupted; less than three grids were finished" in capsys.readouterr().err
 
 
 def test_text_shows_zeros_as_zeros(study: Convergence) -> None:

@@ -47,14 +47,17 @@ def test_a_part_that_falls_with_the_distance_does_not_move_an_edge():
     assert edges.edge(theta, values, 0.5, 0.69, 5) == pytest.approx(0.694, abs=2e-6)  # too few to be limited to them
 
 
-def test_an_edge_without_a_shape_is_put_halfway():
+def test_an_edge_without_a_shape_is_where_the_outermost_nodes_point():
     theta = 0.7 + 0.01 * np.arange(60)
     noise = np.random.default_rng(1).uniform(0.1, 1.0, 60)
-    assert edges.edge(theta, noise, 0.5, 0.69, 60) == pytest.approx(0.695)
-    assert edges.edge(theta[:5], np.sqrt(np.arange(1.0, 6.0)), 0.5, 0.69, 5) == pytest.approx(0.695)
-    assert edges.edge(theta[:1], np.ones(1), 0.5, 0.69, 1) == pytest.approx(0.695)
-    flat = edges.edge(theta, np.ones(60), 0.5, 0.69, 60)
-    assert flat == pytest.approx(0.695)
+    noise[:2] = 0.2, 0.3
+    line = 0.7 - 0.01 * 0.2**2 / (0.3**2 - 0.2**2)
+    assert edges.edge(theta, noise, 0.5, 0.69, 60) == pytest.approx(line)
+    assert edges.edge(theta[:2], noise[:2], 0.5, 0.69, 2) == pytest.approx(line)
+    assert edges.edge(theta[:2], np.array([0.29, 0.3]), 0.5, 0.69, 2) == pytest.approx(0.69)  # no farther
+    assert edges.edge(theta[:5], np.sqrt(np.arange(0.3, 5.0)), 0.5, 0.69, 5) == pytest.approx(0.697)
+    for values in (noise[:1], noise[1::-1], np.ones(60)):
+        assert edges.edge(theta[: values.size], values, 0.5, 0.69, 60) == pytest.approx(0.695)  # halfway
 
 
 def test_beyond_the_next_border_nothing_is_used():
