@@ -13,15 +13,16 @@ import numpy as np
 from fastpin.arc import first_direction
 from fastpin.casefile import MAX_NODES
 from fastpin.checks import whole_number
+from fastpin.errorbars import PLACE_FLOOR
 from fastpin.errors import ArcError, InputError, SolveError
 from fastpin.extrapolate import Estimate, estimate
 from fastpin.grid import Grid
 from fastpin.loading import LoadHistory
 from fastpin.problem import Problem
-from fastpin.quantities import compared, size, values
+from fastpin.quantities import compared, quantity, size, values
 from fastpin.run import Method
 from fastpin.solver import Task, solve
-from fastpin.state import Result
+from fastpin.state import Result, State
 
 LEAST_GRIDS = 3
 LEAST_RATIO = 1.1
@@ -186,7 +187,7 @@ def converge(
     for before, after in pairwise(counts):
         if after < LEAST_RATIO * before:
             raise InputError("nodes", f"must grow by a tenth at least to show an order, but {after} follows {before}")
-    wanted = not isinstance(increments, Sequence) or len(increments) > 0
+    wanted = np.size(increments) > 0
     steps = _increasing("increments", increments, 1) if wanted else ()
     single = next((count for count in counts if count >= INCREMENT_NODES), counts[-1])
     if increment_nodes is not None:
@@ -202,6 +203,7 @@ def converge(
 
 
 def _increasing(field: str, numbers: Sequence[int], least: int, most: int | None = None) -> tuple[int, ...]:
+    numbers = numbers.tolist() if isinstance(numbers, np.ndarray) else numbers
     if not isinstance(numbers, Sequence) or isinstance(numbers, str) or len(numbers) < LEAST_GRIDS:
         raise InputError(field, f"must be at least {LEAST_GRIDS} numbers, not {numbers!r}: an order takes as many")
     checked = tuple(_between(field, number, least, most) for number in numbers)
@@ -347,7 +349,14 @@ class _Work:
                 if math.isfinite(value):
                     numbers, natural = tuple(row[name] for row in rows), size(name, last)
                     found = estimate(spacings, numbers, ROUNDING * natural)
+                    if quantity(name).kind in ("angle", "width") and found.bar <= ROUNDING * natural:
+                        found = Estimate("not observed", math.nan, math.nan, _place_floor(last, natural))
                     yield Series(corner, name, numbers, found, natural, other.get(name, math.nan))
+
+
+def _place_floor(state: State, contact: float) -> float:
+    """The error bar of a place that is the same on all grids: they are read at or between nodes that all have."""
+    return PLACE_FLOOR * contact / max(1, int(np.count_nonzero(state.pressure)))
 
 
 def _cost(method: Method, nodes: int, increments: int) -> float:

@@ -94,10 +94,13 @@ def values(state: State) -> dict[str, float]:
 def compared(state: State, other: State) -> dict[str, float]:
     """The quantities of `state` as `other` has them, which is the same load on another grid.
 
-    Angles are those next to the ones of `state`, whole turns apart. NaN stands for what can't be compared: the ends of
-    zones that are not as many.
+    Angles are those next to the ones of `state`, whole turns apart. The peak shear, which may be at one of two places
+    of opposite signs, is compared in magnitude, with the sign that it has in `state`. NaN stands for what can't be
+    compared: the angle of such a peak, the ends of zones that are not as many.
     """
     mine, theirs = values(state), values(other)
+    if mine["peak_shear"] * theirs["peak_shear"] < 0.0:
+        theirs |= {"peak_shear": -theirs["peak_shear"], "peak_shear_angle": math.nan}
     for zone in ZONES:
         theirs |= _ends(zone, _matched(intervals(state, zone), intervals(other, zone)))
     return {

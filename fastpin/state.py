@@ -95,7 +95,7 @@ class State:
 
     @cached_property
     def contact(self) -> list[Interval]:
-        """Contact intervals (start, stop), rad, read between nodes (N^2 is extrapolated to zero).
+        """Contact intervals (start, stop), rad, read between nodes (N is extrapolated to zero, see edges.py).
 
         A contact round the whole circle is one interval of length 2 pi.
         """
@@ -145,9 +145,11 @@ class State:
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
-        return zones.shear_peak(
+        peak, place = zones.shear_peak(
             self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick, self._tilt
         )
+        most = self.problem.friction * self.peak_pressure
+        return min(max(peak, -most), most), place
 
     @cached_property
     def _tilt(self) -> float:

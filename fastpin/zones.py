@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -20,8 +20,11 @@ NEAR = 12
 RIVAL = 0.8
 """Part of the largest nodal shear that the nodes beside a border need for its cusp to be a candidate."""
 
+CUSP_RISE = 1.2
+"""Most by which a cusp may be above the largest node, in parts of the drop to the lower node beside that."""
+
 DROP_NODES = 3
-"""Nodes on either side of the largest one, by whose values that of a cusp is judged."""
+"""Nodes on either side of the largest one, by whose values a peak at a border is judged."""
 
 TIE = 1e-9
 """Relative difference below which two peaks are equal; the one farther to the right is taken."""
@@ -71,7 +74,7 @@ def intervals(
         back = run[::-1]
         start = edges.edge(theta, quantity[run], at_start, outside[0], _alike(kinds[run]))
         stop = edges.edge(theta[::-1], quantity[back], at_stop, outside[1], _alike(kinds[back]))
-        zones.append((start, stop))
+        zones.append((float(start), float(stop)))
     return zones
 
 
@@ -105,7 +108,7 @@ def stick_intervals(
                 start = first if run[0] == nodes[0] else max(start + turn, first)
                 stop = last if run[-1] == nodes[-1] else min(stop + turn, last)
                 break
-        zones.append((start, stop))
+        zones.append((float(start), float(stop)))
     return zones
 
 
@@ -141,8 +144,11 @@ def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[
     theta = grid.theta - 2.0 * math.pi * turns if grid.closed else grid.theta
     order = np.argsort(theta)
     order = order[(theta[order] >= start) & (theta[order] <= stop) & (np.abs(status[order]) == 1)]
-    if order.size == 0:
-        return []
+    if order.size == 0:  # narrower than a node distance
+        slipping = np.flatnonzero(np.abs(status) == 1)
+        apart = np.abs(np.remainder(grid.theta[slipping] - 0.5 * (start + stop) + math.pi, 2.0 * math.pi) - math.pi)
+        near = slipping.size and apart.min() <= stop - start + float(grid.weights.max())
+        return [(float(start), float(stop), int(status[slipping[np.argmin(apart)]]))] if near else []
     signs, angles = status[order], theta[order]
     changes = np.flatnonzero(np.diff(signs))
     borders = [start, *(0.5 * (angles[changes] + angles[changes + 1])), stop]
@@ -187,31 +193,32 @@ def shear_peak(
     """
     magnitude = np.abs(shear)
     top = _top(grid, magnitude)
+    slipping = (pressure > 0.0) & ~sticking
     peaks, told, near = [], False, False
-    for interval in stick:
-        for border, outwards in zip(interval, (-1.0, 1.0), strict=True):
-            offsets = outwards * (np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
-            spacing = float(grid.weights[np.argmin(np.abs(offsets))])
-            beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
-            if beside.size == 0:
-                continue
-            highest = int(beside[np.argmax(magnitude[beside])])
-            near = near or abs(offsets[top]) <= 2.0 * spacing
-            if magnitude[highest] < RIVAL * magnitude[top]:
-                continue
-            peak = None
-            if tilt != 0.0:
-                bent = outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt
-                peak = _border_peak(grid, friction * pressure, border, outwards, 0.5 + bent, highest)
-            if peak is not None and _likely(grid, magnitude, highest, peak[0]):
-                told = told or highest == top
-                peaks.append((*peak, highest))
-                continue
-            at_border = friction * _interpolated(grid, pressure, border)
-            if np.abs(offsets[beside]).min() <= spacing and _likely(grid, magnitude, highest, at_border):
-                peaks.append((at_border, border, highest))
+    for border, outwards in _borders(stick):
+        offsets = outwards * (np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
+        spacing = float(grid.weights[np.argmin(np.abs(offsets))])
+        if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
+            continue  # the end of the contact
+        beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
+        highest = int(beside[np.argmax(magnitude[beside])])
+        near = near or abs(offsets[top]) <= 2.0 * spacing
+        if magnitude[highest] < RIVAL * magnitude[top]:
+            continue
+        peak = None
+        if tilt != 0.0:
+            bent = outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt
+            peak = _border_peak(grid, friction * pressure, border, outwards, 0.5 + bent, highest)
+        if peak is not None and _likely(grid, magnitude, highest, peak[0]):
+            told = told or highest == top
+            peaks.append((*peak, highest))
+            continue
+        at_border = friction * _interpolated(grid, pressure, border)
+        if _likely(grid, magnitude, highest, at_border):
+            peaks.append((at_border, border, highest))
     if not told:
-        peaks.append(_peak_of_nodes(grid, magnitude, sticking, top, near, tilt if shear[top] >= 0.0 else -tilt))
+        upright = shear if shear[top] >= 0.0 else -shear
+        peaks.append(_peak_of_nodes(grid, upright, sticking, top, near, tilt if shear[top] >= 0.0 else -tilt))
     highest_value = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest_value]
     value, place, node = max(equal, key=lambda peak: _from_bottom(peak[1]))
@@ -229,16 +236,26 @@ def _from_bottom(angle: float) -> float:
     return math.remainder(angle + 0.5 * math.pi, 2.0 * math.pi)
 
 
+def _borders(stick: list[Interval]) -> Iterator[tuple[float, int]]:
+    """Ends of stick zones, and to which side of them nodes do not stick; none of a contact that sticks all round."""
+    for start, stop in stick:
+        if stop - start < 2.0 * math.pi - 1e-9:
+            yield from ((start, -1), (stop, 1))
+
+
 def _peak_of_nodes(
-    grid: Grid, magnitude: np.ndarray, sticking: np.ndarray, top: int, near: bool, tilt: float
+    grid: Grid, shear: np.ndarray, sticking: np.ndarray, top: int, near: bool, tilt: float
 ) -> tuple[float, float, int]:
-    """Value and place of the peak at the node `top`: smooth, or the cusp of an old border if no border is `near`."""
+    """Value and place of the peak at the node `top`: smooth, or the cusp of an old border if no border is `near`.
+
+    `shear` is the shear traction with the sign that makes it positive at `top`.
+    """
     neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
     if not np.all(neighbours == neighbours[0]):
-        return float(magnitude[top]), float(grid.theta[top]), top
-    value, place, smooth = _smooth_peak(grid, magnitude, top)
+        return float(shear[top]), float(grid.theta[top]), top
+    value, place, smooth = _smooth_peak(grid, shear, top)
     if not smooth and not near:
-        value, place = _old_cusp(grid, sticking, magnitude, top, tilt) or (value, place)
+        value, place = _old_cusp(grid, sticking, shear, top, tilt) or (value, place)
     return value, place, top
 
 
@@ -256,25 +273,27 @@ def _border_peak(
     return found.value, border + outwards * spacing * found.place
 
 
-def _old_cusp(
-    grid: Grid, sticking: np.ndarray, magnitude: np.ndarray, top: int, tilt: float
-) -> tuple[float, float] | None:
-    """Height and place of a cusp inside a stick zone; None if the nodes do not tell it better than their largest."""
+def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, tilt: float) -> tuple[float, float] | None:
+    """Height and place of a cusp inside a stick zone; None if the largest nodal value tells it better.
+
+    It does if the fitted one is lower, or higher by more than what the nodes beside it are lower.
+    """
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
         return None
+    drop = float(shear[top] - min(shear[top - 1], shear[(top + 1) % grid.size]))
     best = None
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)
-        found = edges.cusp(outwards * x[order], magnitude[nodes[order]], 0.5 + outwards * tilt)
-        if found is None or not _likely(grid, magnitude, top, found.value, found.error):
+        found = edges.cusp(outwards * x[order], shear[nodes[order]], 0.5 + outwards * tilt)
+        if found is None or not 0.0 <= found.value - shear[top] <= CUSP_RISE * drop:
             continue
         if best is None or found.error < best[0]:
             best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
     return None if best is None else best[1:]
 
 
-def _likely(grid: Grid, values: np.ndarray, top: int, peak: float, error: float = 0.0) -> bool:
+def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
     """Whether a fitted peak fits the values about the largest one, at `top`.
 
     It may be higher by what they fall by on the steeper side, and lower by what they do on the other, in a few nodes.
@@ -282,7 +301,7 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float, error: float 
     steps = np.arange(1, DROP_NODES + 1)
     left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
     drops = float(values[top] - left.min()), float(values[top] - right.min())
-    return -min(drops) <= peak - values[top] <= max(drops) and error <= max(drops)
+    return -min(drops) <= peak - values[top] <= max(drops)
 
 
 def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
@@ -324,7 +343,10 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
 
 
 def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
-    """Quadratic interpolation at `angle` from the three nearest nodes."""
+    """Interpolation at `angle`: quadratic, from the three nearest nodes; linear where one of them is zero."""
     offsets = np.remainder(grid.theta - angle + math.pi, 2.0 * math.pi) - math.pi
-    near = np.argpartition(np.abs(offsets), 2)[:3]
-    return float(np.polyval(np.polyfit(offsets[near], values[near], 2), 0.0))
+    near = np.argsort(np.abs(offsets))[:3]
+    if not np.all(values[near] > 0.0):
+        near = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
+                         np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
+    return float(np.polyval(np.polyfit(offsets[near], values[near], near.size - 1), 0.0))

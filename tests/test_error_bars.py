@@ -58,12 +58,15 @@ def test_key_figures_say_the_same(problem: Problem) -> None:
         assert figures[name] == pytest.approx(scale * mine[name] + shift)
 
 
-def test_angles_are_compared_across_the_seam(problem: Problem) -> None:
+def test_angles_are_compared_across_the_seam_and_shears_across_their_sign(problem: Problem) -> None:
     state = solve(problem, CORNERS[:1], grid=Grid.circle(120, BOTTOM))[-1]
     other = solve(problem, CORNERS[:1], grid=Grid.circle(120, BOTTOM + math.pi))[-1]
     theirs = compared(state, other)
     for name, value in values(state).items():
         assert theirs[name] == pytest.approx(value, abs=1e-9)
+    mirrored = replace(state, shear=-state.shear)
+    assert compared(state, mirrored)["peak_shear"] == state.peak_shear
+    assert math.isnan(compared(state, mirrored)["peak_shear_angle"])
 
 
 def test_zones_that_are_not_as_many_are_not_compared(problem: Problem) -> None:
