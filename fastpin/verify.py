@@ -35,6 +35,9 @@ NODES = 401
 STATED = 1.2
 """What the finite-element model's stated errors, which are "about", are multiplied by."""
 
+BACK = 0.4
+"""Part of Q to which a half-plane contact is unloaded at last; the largest shear stays where the border of Q was."""
+
 TOLERANCES: dict[str, dict[str, float]] = {
     "like": {"peak N": 1e-5, "half-angle": 3e-5},
     "alpha* = 0": {"peak N": 8e-6, "half-angle": 3.5e-5},
@@ -47,8 +50,14 @@ TOLERANCES: dict[str, dict[str, float]] = {
         "int |dT|": STATED * 2e-3,
         "peak N": STATED * 1.5e-4,
     },
-    "half-plane": {"peak N": 5e-6, "int |dT|": 2e-3, "stick ratio": 1e-5},
-    "sliding": {"peak N": 8e-6, "moment": 7e-6, "end": 4e-5, "end, unlike bodies": 9e-5},
+    "half-plane": {
+        "peak N": 5e-6,
+        "peak T": 1e-3,
+        "peak T, back to 0.4 Q": 3e-3,
+        "int |dT|": 2e-3,
+        "stick ratio": 1e-5,
+    },
+    "sliding": {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-5, "end, unlike bodies": 9e-5},
     "equations": {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
     "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
     "energy": {"work": 1.5e-5},
@@ -198,16 +207,27 @@ def _half_plane(solving: _Solving) -> Rows:
     half = float(analytic.hertz_half_angle(load_parameter))
     pushed, *fretted = solving(
         Problem.from_load_parameter(LIKE, load_parameter, friction, "centre", "fixed"),
-        [{"P": 1.0}, {"Q": ratio * friction}, {"Q": -ratio * friction}, {"Q": ratio * friction}],
+        [{"P": 1.0}, *({"Q": part * ratio * friction} for part in (1.0, -1.0, 1.0, BACK))],
         arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half),
     )
     yield _value("peak N", pushed.peak_pressure, float(analytic.hertz_peak_pressure(load_parameter)), "P")
-    differences = cattaneo_mindlin_differences(fretted, ratio)
+    differences = cattaneo_mindlin_differences(fretted[:3], ratio)
     exact = float(analytic.cattaneo_mindlin_stick_ratio(ratio))
-    for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted, differences, strict=True):
+    for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted[:3], differences, strict=True):
         yield _Row("int |dT|", difference, "int mu N", case=case)
         stick = _half_width(state.stick[0]) / _half_width(state.contact[0])
         yield _value("stick ratio", stick, exact, case)
+        yield _value("peak T", abs(state.peak_shear), _peak_shear(state, ratio, 1.0), case)
+    yield _value("peak T", abs(fretted[3].peak_shear), _peak_shear(fretted[3], ratio, BACK), "back to 0.4 Q")
+
+
+def _peak_shear(state: State, ratio: float, part: float) -> float:
+    """Largest shear of Cattaneo and Mindlin after unloading from Q to a part of it: where the border of +Q was."""
+    load_parameter, friction = state.problem.load_parameter(state.load["P"]), state.problem.friction
+    half, top = float(analytic.hertz_half_angle(load_parameter)), float(analytic.hertz_peak_pressure(load_parameter))
+    border = half * float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    branch: analytic.Branch = "unloading" if part < 1.0 else "loading"
+    return abs(float(analytic.cattaneo_mindlin_shear(border, half, top, friction, part * ratio, ratio, branch)))
 
 
 def _sliding(pair: MaterialPair, solving: _Solving) -> Rows:
@@ -215,6 +235,7 @@ def _sliding(pair: MaterialPair, solving: _Solving) -> Rows:
     state = solving(problem, [{"P": 1.0}, {"Q": 1.0}])[-1]
     series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
     yield _value("peak N", state.peak_pressure, series.peak_pressure)
+    yield _value("peak T", abs(state.peak_shear), problem.friction * series.peak_pressure)
     yield _value("moment", state.resultants["M"], series.moment)
     for ours, reference in zip(state.contact[0], series.contact, strict=True):
         yield _angle("end", ours, reference)

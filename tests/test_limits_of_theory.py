@@ -164,9 +164,9 @@ def test_unlike_materials_tend_to_half_planes(ratio, limit, published, tolerance
 def test_the_sign_of_beta_decides_how_far_unlike_half_planes_reach():
     """And so does the pin's load, of which a half-plane knows nothing."""
     softer_plate, softer_pin = (error_curve(f"mu = 1 |beta|, beta {relation} 0").parameters for relation in "><")
-    assert softer_plate["right_to_5_percent_from"] == pytest.approx(2800.0, rel=0.25)
+    assert softer_plate["right_to_5_percent_from"] == pytest.approx(2400.0, rel=0.25)
     assert math.isnan(softer_plate["right_to_1_percent_from"])  # these few nodes do not tell
-    assert softer_pin["right_to_5_percent_from"] == pytest.approx(7.0, rel=0.25)
+    assert softer_pin["right_to_5_percent_from"] == pytest.approx(8.4, rel=0.25)
     limit = half_plane.unlike_half_planes(half_plane.BETA, half_plane.BETA)
     centre, body = (
         [error for _, _, error in half_plane.unlike_errors(100.0, 1.0, limit, 401, pin_load)]
