@@ -57,9 +57,10 @@ CUSP_SHAPES = ((2, 2, False), (3, 2, False), (4, 3, True), (5, 4, True))
 
 CUSP_REACH = 2.0  # node distances from the largest nodal value
 CUSP_PLACES = 33
+CUSP_REFINED = 8  # of all windows and shapes, those with the smallest standard errors
 CUSP_STEPS = 2  # of the Gauss-Newton method, from the best of these places
 CUSP_STEP = 1e-4
-BORDER_SHAPES = ((3, 1), (3, 2), (4, 2), (4, 3))  # degree of the polynomial, terms of the cusp
+BORDER_SHAPES = ((3, 2), (4, 3))  # degree of the polynomial, terms of the cusp
 BORDER_SKIPPED = (1, 2, 4)
 BORDER_ERROR = 3e-3
 """Largest standard error of the bound at a border, relative to its largest value."""
@@ -119,20 +120,21 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
     used = theta[: EDGE_ENDS[bisect.bisect_right(EDGE_ENDS, most) - 1]]
     x = np.round((used - theta[0]) / spacing + 0.5, 9)  # 0 is halfway to the next node of an equal spacing
     powered = np.abs(quantity[: x.size]) ** (1.0 / exponent)
-    nearest, *others = _edge_designs(x.tobytes())
-    local, slope = nearest.root(powered)
-    local -= 0.5
+    designs = _edge_designs(x.tobytes())
+    roots, slopes = _roots((designs.series @ powered).reshape(-1, designs.terms))
+    offsets = roots - 0.5
+    near = offsets[0]
+    if not 1.25 * low <= near <= EDGE_INSIDE:
+        return float(theta[0]) + spacing * place
+    if designs.fits[0].error(powered, slopes[0]) <= EDGE_NEAREST_ERROR:
+        place = max(near, low)
     least = EDGE_ERROR
-    if 1.25 * low <= local <= EDGE_INSIDE and nearest.error(powered, slope) <= EDGE_NEAREST_ERROR:
-        place = max(local, low)
-    for design in others:
-        root, slope = design.root(powered)
-        offset = root - 0.5
-        if abs(offset - local) <= EDGE_AGREEMENT and 1.25 * low <= offset <= EDGE_INSIDE:
-            error = design.error(powered, slope)
-            if error < least:
-                least, place = error, max(offset, low)
-    return float(theta[0]) + spacing * place
+    agree = (np.abs(offsets - near) <= EDGE_AGREEMENT) & (offsets >= 1.25 * low) & (offsets <= EDGE_INSIDE)
+    for k in np.flatnonzero(agree[1:]) + 1:
+        error = designs.fits[k].error(powered, slopes[k])
+        if error < least:
+            least, place = error, max(offsets[k], low)
+    return float(theta[0] + spacing * place)
 
 
 def _by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
@@ -142,7 +144,7 @@ def _by_two_nodes(first: float, second: float, exponent: float, low: float) -> f
 
 
 @dataclass(frozen=True, eq=False)
-class _EdgeDesign:
+class _EdgeFit:
     """Least squares on one window: a polynomial of the distance, and perhaps a part that falls like its inverse."""
 
     nodes: slice
@@ -152,7 +154,7 @@ class _EdgeDesign:
     amplification: float
 
     @classmethod
-    def of(cls, x: np.ndarray, first: int, count: int, degree: int, decaying: bool) -> _EdgeDesign:
+    def of(cls, x: np.ndarray, first: int, count: int, degree: int, decaying: bool) -> _EdgeFit:
         window = x[first : first + count]
         basis = [np.polynomial.Chebyshev.basis(k, domain=(window[0], window[-1])) for k in range(degree + 1)]
         columns = np.column_stack([polynomial(window) for polynomial in basis] + [window[0] / window] * decaying)
@@ -163,45 +165,52 @@ class _EdgeDesign:
         series = powers @ inverse
         return cls(slice(first, first + count), columns, inverse, series, float(np.linalg.norm(series[0])))
 
-    def root(self, values: np.ndarray) -> tuple[float, float]:
-        """Where the polynomial has its root near 0, and its slope there."""
-        return _root((self.series @ values[self.nodes]).tolist())
-
     def error(self, values: np.ndarray, slope: float) -> float:
-        """Standard error of the root."""
-        if slope == 0.0:
-            return math.inf
+        """Standard error of the root, where the polynomial has this slope."""
         wanted = values[self.nodes]
         residual = self.columns @ (self.inverse @ wanted) - wanted
         return standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
 
 
+@dataclass(frozen=True, eq=False)
+class _EdgeDesigns:
+    """All fits that are tried; ``series`` (fits * terms, nodes) gives the coefficients of all their polynomials."""
+
+    fits: list[_EdgeFit]
+    terms: int
+    series: np.ndarray
+
+
 @functools.lru_cache(maxsize=64)
-def _edge_designs(places: bytes) -> list[_EdgeDesign]:
-    """The fits to try with the nodes at these distances from the edge; the first is that of the nearest nodes."""
+def _edge_designs(places: bytes) -> _EdgeDesigns:
+    """The fits with the nodes at these distances from the edge; the first is that of the nearest nodes."""
     x = np.frombuffer(places)
-    designs = [_EdgeDesign.of(x, *EDGE_NEAREST, 2, False)]
+    fits = [_EdgeFit.of(x, *EDGE_NEAREST, 2, False)]
     for first, count in EDGE_WINDOWS:
         for degree in EDGE_DEGREES:
             for decaying in (False, True):
                 too_simple = count >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
                 if first + count <= x.size and not too_simple and count >= degree + 1 + decaying + SPARE:
-                    designs.append(_EdgeDesign.of(x, first, count, degree, decaying))
-    return designs
+                    fits.append(_EdgeFit.of(x, first, count, degree, decaying))
+    terms = max(EDGE_DEGREES) + 1
+    series = np.zeros((len(fits), terms, x.size))
+    for fit, rows in zip(fits, series, strict=True):
+        rows[: fit.series.shape[0], fit.nodes] = fit.series
+    return _EdgeDesigns(fits, terms, series.reshape(-1, x.size))
 
 
-def _root(series: list[float]) -> tuple[float, float]:
-    """Root of a power series near 0, by Newton's method, and the slope there."""
-    place, slope = 0.0, 0.0
-    for _ in range(4):
-        value = slope = 0.0
-        for coefficient in reversed(series):
-            slope = slope * place + value
-            value = value * place + coefficient
-        if slope == 0.0:
-            break
-        place -= value / slope
-    return place, slope
+def _roots(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Roots near 0 of power series, shape (fits, terms), by Newton's method, and the slopes there; NaN without any."""
+    places = np.zeros(series.shape[0])
+    slopes = places
+    with np.errstate(all="ignore"):
+        for _ in range(4):
+            values, slopes = np.zeros_like(places), np.zeros_like(places)
+            for k in range(series.shape[1] - 1, -1, -1):
+                slopes = slopes * places + values
+                values = values * places + series[:, k]
+            places = places - values / slopes
+    return np.where(np.isfinite(places) & (slopes != 0.0), places, np.nan), slopes
 
 
 # --- peaks ----------------------------------------------------------------------------------------------------
@@ -278,29 +287,28 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
     Peak or None
         None if no cusp is found within two nodes of the largest value.
     """
-    best: Peak | None = None
+    tried: list[tuple[float, int, float, np.ndarray, np.ndarray, tuple[int, int, bool]]] = []
     for half, skipped in CUSP_WINDOWS:
         if x[0] > 0.5 - half or x[-1] < half - 0.5:
             break
         taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
         window, wanted = np.round(x[taken], 9), values[taken]
         for shape in CUSP_SHAPES:
-            unknowns = shape[0] + 1 + shape[1] + shape[2] + 1
-            if window.size < unknowns + SPARE:
-                continue
-            place = _cusp_place(window, wanted, shape, exponent)
-            if place is None:
-                continue
-            for _ in range(CUSP_STEPS):
-                columns = _left_cusp(window, place, shape, exponent)
-                coefficients = np.linalg.pinv(columns) @ wanted
-                moved = _left_cusp(window, place + CUSP_STEP, shape, exponent) - columns
-                inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / CUSP_STEP]))
-                residual = columns @ coefficients - wanted
-                place -= float(inverse[-1] @ residual)
-            error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
-            if abs(place) <= CUSP_REACH and (best is None or error < best.error):
-                best = Peak(float(coefficients[0]), error, place)
+            if window.size >= shape[0] + 1 + shape[1] + shape[2] + 1 + SPARE:
+                error, place = _cusp_place(window, wanted, shape, exponent)
+                tried.append((error, len(tried), place, window, wanted, shape))
+    best: Peak | None = None
+    for _, _, place, window, wanted, shape in sorted(tried)[:CUSP_REFINED]:
+        for _ in range(CUSP_STEPS):
+            columns = _left_cusp(window, place, shape, exponent)
+            coefficients = np.linalg.pinv(columns) @ wanted
+            moved = _left_cusp(window, place + CUSP_STEP, shape, exponent) - columns
+            inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / CUSP_STEP]))
+            residual = columns @ coefficients - wanted
+            place -= float(inverse[-1] @ residual)
+        error = standard_error(residual, inverse.shape[0], float(np.linalg.norm(inverse[0])))
+        if abs(place) <= CUSP_REACH and (best is None or error < best.error):
+            best = Peak(float(coefficients[0]), error, place)
     return best
 
 
@@ -315,24 +323,29 @@ def _left_cusp(x: np.ndarray, place: float, shape: tuple[int, int, bool], expone
     return columns
 
 
-def _cusp_place(window: np.ndarray, values: np.ndarray, shape: tuple[int, int, bool], exponent: float) -> float | None:
-    """The place that leaves the smallest misfit; None if that is at an end of the places to try."""
-    orthogonal = _cusp_bases(window.tobytes(), shape, exponent)
+def _cusp_place(
+    window: np.ndarray, values: np.ndarray, shape: tuple[int, int, bool], exponent: float
+) -> tuple[float, float]:
+    """The place that leaves the smallest misfit and about its standard error; infinite at an end of what is tried."""
+    orthogonal, amplification = _cusp_bases(window.tobytes(), shape, exponent)
     left = values - np.einsum("pmk,pk->pm", orthogonal, np.einsum("pmk,m->pk", orthogonal, values))
     misfit = np.einsum("pm,pm->p", left, left)
     lowest = int(np.argmin(misfit))
     if lowest in (0, CUSP_PLACES - 1):
-        return None
+        return math.inf, 0.0
     shift, _ = _vertex(*misfit[lowest - 1 : lowest + 2])
-    return CUSP_REACH * (2.0 * (lowest + shift) / (CUSP_PLACES - 1) - 1.0)
+    place = CUSP_REACH * (2.0 * (lowest + shift) / (CUSP_PLACES - 1) - 1.0)
+    return standard_error(left[lowest], orthogonal.shape[2] + 1, amplification), place
 
 
 @functools.lru_cache(maxsize=256)
-def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> np.ndarray:
-    """Orthonormal columns for every place to try, shape (places, nodes, unknowns)."""
+def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> tuple[np.ndarray, float]:
+    """Orthonormal columns for every place to try (places, nodes, unknowns), and how a residual tells on the value."""
     x = np.frombuffer(window)
     places = np.linspace(-CUSP_REACH, CUSP_REACH, CUSP_PLACES)
-    return np.linalg.qr(np.array([_left_cusp(x, place, shape, exponent) for place in places]))[0]
+    columns = np.array([_left_cusp(x, place, shape, exponent) for place in places])
+    middle = np.linalg.pinv(columns[CUSP_PLACES // 2])
+    return np.linalg.qr(columns)[0], float(np.linalg.norm(middle[0]))
 
 
 def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
