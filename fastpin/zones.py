@@ -16,7 +16,6 @@ Interval = tuple[float, float]
 NEAR = 12
 """Node distances from a border within which the largest shear of unlike bodies belongs to its cusp."""
 
-
 RIVAL = 0.8
 """Part of the largest nodal shear that the nodes beside a border need for its cusp to be a candidate."""
 
@@ -191,9 +190,32 @@ def shear_peak(
     The shear peaks smoothly inside a zone; in a cusp at a stick-slip border, where it is mu N, or for unlike bodies a
     little beyond it; or in a cusp where such a border once was. `tilt` is arctan(mu beta_D)/pi, see (T26).
     """
-    magnitude = np.abs(shear)
-    top = _top(grid, magnitude)
-    slipping = (pressure > 0.0) & ~sticking
+    top = _top(grid, np.abs(shear))
+    peaks, told, near = _peaks_at_borders(grid, pressure, shear, sticking, friction, stick, tilt, top)
+    if not told:
+        upright, bent = (shear, tilt) if shear[top] >= 0.0 else (-shear, -tilt)
+        peaks.append(_peak_of_nodes(grid, upright, sticking, top, near, bent))
+    highest = max(value for value, _, _ in peaks)
+    equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
+    value, place, node = max(equal, key=lambda peak: _from_bottom(peak[1]))
+    return math.copysign(value, float(shear[node])), place
+
+
+def _peaks_at_borders(
+    grid: Grid,
+    pressure: np.ndarray,
+    shear: np.ndarray,
+    sticking: np.ndarray,
+    friction: float,
+    stick: list[Interval],
+    tilt: float,
+    top: int,
+) -> tuple[list[tuple[float, float, int]], bool, bool]:
+    """Values, places and highest nodes of the peaks at stick-slip borders that may be the largest.
+
+    And whether one of them is that of the largest node `top`, fitted on both sides, and whether a border is near that.
+    """
+    magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, told, near = [], False, False
     for border, outwards in _borders(stick):
         offsets = outwards * (np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
@@ -216,13 +238,7 @@ def shear_peak(
         at_border = friction * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):
             peaks.append((at_border, border, highest))
-    if not told:
-        upright = shear if shear[top] >= 0.0 else -shear
-        peaks.append(_peak_of_nodes(grid, upright, sticking, top, near, tilt if shear[top] >= 0.0 else -tilt))
-    highest_value = max(value for value, _, _ in peaks)
-    equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest_value]
-    value, place, node = max(equal, key=lambda peak: _from_bottom(peak[1]))
-    return math.copysign(value, float(shear[node])), place
+    return peaks, told, near
 
 
 def _top(grid: Grid, values: np.ndarray) -> int:
