@@ -42,6 +42,12 @@ _OUTCOME_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "hos
 _BUSY_SECONDS = 60.0
 
 
+def begun(directory: Path) -> bool:
+    """Whether a directory has an index; one that another process is about to make is empty, and none yet."""
+    path = directory / FILE
+    return path.is_file() and path.stat().st_size > 0
+
+
 class Index:
     """The index in a directory. To be used in a ``with`` statement, which closes it.
 
@@ -59,7 +65,7 @@ class Index:
 
     def __init__(self, directory: Path, create: bool = False) -> None:
         self.path = directory / FILE
-        if not create and not self.path.is_file():
+        if not create and not begun(directory):
             raise InputError(str(directory), "holds no sweep: there is no index.sqlite")
         with self._said():
             mode = "rwc" if create else "rw"

@@ -26,7 +26,7 @@ from fastpin import __version__
 from fastpin.checks import whole_number
 from fastpin.errors import FastpinError, InputError
 from fastpin.files import replacing
-from fastpin.index import DONE, FAILED, FILE, WAITING, Index, locked, made
+from fastpin.index import DONE, FAILED, FILE, WAITING, Index, begun, locked, made
 from fastpin.plan import Plan, Point, parse_plan, read_plan
 from fastpin.pool import DIED, BrokenError, cores, handed_out
 from fastpin.worker import Outcome, solve_run
@@ -146,7 +146,7 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
         If the index can't be used, or `shard` is out of range.
     """
     points, directory = shard_of(plan, shard), Path(directory)
-    if not (directory / FILE).exists():
+    if not begun(directory):
         return Summary(0, len(points), [])
     with Index(directory) as index:
         return _summary(index, points, directory / RESULTS)
@@ -174,7 +174,7 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
 
 def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     """As :func:`load`, but one row for each point of a plan and in its order; a point not in the index is waiting."""
-    known = {row["id"]: row for row in load(directory)} if (Path(directory) / FILE).exists() else {}
+    known = {row["id"]: row for row in load(directory)} if begun(Path(directory)) else {}
     nothing = {"status": WAITING, "reason": None}
     return [
         {**known.get(point.id, nothing), "id": point.id, **dict.fromkeys(plan.fields), **point.values}

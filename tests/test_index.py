@@ -199,3 +199,13 @@ def test_a_directory_is_locked_for_one(tmp_path: Path) -> None:
 def test_a_lock_that_can_not_be_made_is_named() -> None:
     with pytest.raises(InputError, match="can't be used: unable to open"), locked(Path("/proc/1")):
         pass
+
+
+def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
+    (tmp_path / FILE).touch()  # as SQLite does before it writes
+    with pytest.raises(InputError, match="holds no sweep"):
+        Index(tmp_path)
+    with Index(tmp_path, create=True):
+        pass
+    with Index(tmp_path):
+        pass
