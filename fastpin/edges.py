@@ -156,13 +156,10 @@ class _EdgeFit:
     @classmethod
     def of(cls, x: np.ndarray, first: int, count: int, degree: int, decaying: bool) -> _EdgeFit:
         window = x[first : first + count]
-        basis = [np.polynomial.Chebyshev.basis(k, domain=(window[0], window[-1])) for k in range(degree + 1)]
-        columns = np.column_stack([polynomial(window) for polynomial in basis] + [window[0] / window] * decaying)
+        scaled, powers = window / window[-1], np.arange(degree + 1)
+        columns = np.column_stack([scaled[:, None] ** powers, *([1.0 / scaled] * decaying)])
         inverse = np.linalg.pinv(columns)
-        powers = np.zeros((degree + 1, columns.shape[1]))
-        for k, polynomial in enumerate(basis):
-            powers[: k + 1, k] = polynomial.convert(kind=np.polynomial.Polynomial).coef
-        series = powers @ inverse
+        series = inverse[: degree + 1] / window[-1] ** powers[:, None]
         return cls(slice(first, first + count), columns, inverse, series, float(np.linalg.norm(series[0])))
 
     def error(self, values: np.ndarray, slope: float) -> float:
