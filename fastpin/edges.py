@@ -236,10 +236,7 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
                 if np.count_nonzero(taken) < unknowns + SPARE:
                     continue
                 columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
-                inverse = np.linalg.pinv(columns)
-                coefficients = inverse @ bound[taken]
-                residual = columns @ coefficients - bound[taken]
-                error = standard_error(residual, unknowns, float(np.linalg.norm(inverse[0])))
+                coefficients, error = _fitted(columns, bound[taken])
                 if best is None or error < best.error:
                     best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
     if best is None or best.error > BORDER_ERROR * float(bound.max()):
@@ -254,6 +251,14 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
         return None
     shift, value = _vertex(*(float(each) for each in fitted[top - 1 : top + 2]))
     return Peak(value, best.error, best.place * float(t[top] + shift * t[1]) ** 2)
+
+
+def _fitted(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
+    """Coefficients of a least-squares fit, and the standard error of the first one."""
+    inverse = np.linalg.pinv(columns)
+    coefficients = inverse @ values
+    residual = columns @ coefficients - values
+    return coefficients, standard_error(residual, columns.shape[1], float(np.linalg.norm(inverse[0])))
 
 
 def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
@@ -366,9 +371,7 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
                 if y.size < unknowns + SPARE:
                     continue
                 columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
-                inverse = np.linalg.pinv(columns)
-                coefficients = inverse @ wanted
-                error = standard_error(columns @ coefficients - wanted, unknowns, float(np.linalg.norm(inverse[0])))
+                coefficients, error = _fitted(columns, wanted)
                 bend = -coefficients[degree + 1] / half
                 if bend > max(abs(coefficients[1]) / half, CORNER_BEND * error) and (
                     best is None or error < best.error
