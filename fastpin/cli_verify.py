@@ -12,9 +12,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from fastpin import __version__
-from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
-from fastpin.terminal import EXIT_FAILED, EXIT_OK, bar, fail
+from fastpin.terminal import EXIT_FAILED, EXIT_OK, bar, check_outputs, write_files, write_text
 
 if TYPE_CHECKING:
     from fastpin.verify import Check
@@ -38,8 +36,7 @@ def add(commands: Any) -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    if options.json not in (None, "-"):
-        check_writable(options.json)
+    check_outputs({"--json": options.json}, None)
 
     from fastpin.layout import versions
     from fastpin.pool import cores
@@ -68,12 +65,8 @@ def _verify(options: argparse.Namespace) -> int:
         text = json.dumps(plain(document), indent=2, allow_nan=False) + "\n"
         if options.json == "-":
             sys.stdout.write(text)
-            return code
-        try:
-            with replacing(options.json) as temporary:
-                temporary.write_text(text, encoding="utf-8")
-        except (OSError, InputError) as trouble:
-            return fail(f"can't write {options.json}: {trouble}", EXIT_FAILED)
+        else:
+            code = write_files([(options.json, lambda path: write_text(path, text))]) or code
     return code
 
 

@@ -126,6 +126,20 @@ _MODELS = {
 # -- closed forms and equations ------------------------------------------------------------------------------
 
 
+def cattaneo_mindlin(
+    state: State, x: np.ndarray | float, now: float, most: float, branch: analytic.Branch
+) -> np.ndarray | float:
+    """Shear traction on the pin of Cattaneo and Mindlin, at angles `x` from the bottom, under the P of a state.
+
+    Q/(mu P) is `now`, and has been `most`; see :func:`fastpin.analytic.cattaneo_mindlin_shear`.
+    """
+    load_parameter = state.problem.load_parameter(state.load["P"])
+    half = float(analytic.hertz_half_angle(load_parameter))
+    peak = float(analytic.hertz_peak_pressure(load_parameter))
+    # The traction on the pin opposes Q, and theta runs along +x at the bottom.
+    return -analytic.cattaneo_mindlin_shear(x, half, peak, state.problem.friction, now, most, branch)
+
+
 def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[float]:
     """int |dT| over int mu N between Cattaneo-Mindlin tractions and three states: after +Q, -Q and +Q again.
 
@@ -139,13 +153,11 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
     branches: list[tuple[float, analytic.Branch]] = [(ratio, "loading"), (-ratio, "unloading"), (ratio, "reloading")]
     found = []
     for state, (now, branch) in zip(states, branches, strict=True):
-        friction, load_parameter = state.problem.friction, state.problem.load_parameter(state.load["P"])
-        half = float(analytic.hertz_half_angle(load_parameter))
-        peak = float(analytic.hertz_peak_pressure(load_parameter))
-        # The traction on the pin opposes Q, and theta runs along +x at the bottom.
-        shear = -analytic.cattaneo_mindlin_shear(state.theta - BOTTOM, half, peak, friction, now, ratio, branch)
+        shear = cattaneo_mindlin(state, state.theta - BOTTOM, now, ratio, branch)
         weights = state.grid.weights
-        found.append(float(weights @ np.abs(state.shear - shear) / (friction * (weights @ state.pressure))))
+        found.append(
+            float(weights @ np.abs(state.shear - shear) / (state.problem.friction * (weights @ state.pressure)))
+        )
     return found
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from fastpin.arc import first_direction
 from fastpin.casefile import MAX_NODES
 from fastpin.checks import whole_number
-from fastpin.errorbars import PLACE_FLOOR
+from fastpin.errorbars import PLACE_FLOOR, spacing
 from fastpin.errors import ArcError, InputError, SolveError
 from fastpin.extrapolate import Estimate, estimate
 from fastpin.grid import Grid
@@ -22,7 +22,7 @@ from fastpin.problem import Problem
 from fastpin.quantities import compared, quantity, size, values
 from fastpin.run import Method
 from fastpin.solver import Task, solve
-from fastpin.state import Result, State
+from fastpin.state import Result
 
 LEAST_GRIDS = 3
 LEAST_RATIO = 1.1
@@ -289,7 +289,7 @@ class _Work:
             direction = first_direction(self.history.distinct())
             grid = Grid.circle(nodes, float(arc.theta[0]) if direction is None else direction)
         else:
-            grid = Grid.arc(float(arc.theta[0]), float(arc.theta[-1]), nodes)
+            grid = arc.with_nodes(nodes)
         what = f"{nodes} nodes" if method == "path" else f"{increments} increments"
         cost = _cost(method, nodes, increments)
 
@@ -350,13 +350,9 @@ class _Work:
                     numbers, natural = tuple(row[name] for row in rows), size(name, last)
                     found = estimate(spacings, numbers, ROUNDING * natural)
                     if quantity(name).kind in ("angle", "width") and found.bar <= ROUNDING * natural:
-                        found = Estimate("not observed", math.nan, math.nan, _place_floor(last, natural))
+                        # read at or between nodes that all grids have
+                        found = Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
                     yield Series(corner, name, numbers, found, natural, other.get(name, math.nan))
-
-
-def _place_floor(state: State, contact: float) -> float:
-    """The error bar of a place that is the same on all grids: they are read at or between nodes that all have."""
-    return PLACE_FLOOR * contact / max(1, int(np.count_nonzero(state.pressure)))
 
 
 def _cost(method: Method, nodes: int, increments: int) -> float:

@@ -13,7 +13,9 @@ from __future__ import annotations
 
 import bisect
 import functools
+import itertools
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,7 +82,7 @@ class Peak:
     place: float
 
 
-def standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
+def _standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
     """Standard error of a fitted number, a little enlarged where few nodes are left over."""
     spare = residual.size - unknowns
     return math.sqrt(float(residual @ residual) / spare) * amplification * (1.0 + 10.0 / spare)
@@ -121,16 +123,16 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
     x = np.round((used - theta[0]) / spacing + 0.5, 9)  # 0 is halfway to the next node of an equal spacing
     powered = np.abs(quantity[: x.size]) ** (1.0 / exponent)
     designs = _edge_designs(x.tobytes())
-    roots, slopes = _roots((designs.series @ powered).reshape(-1, designs.terms))
+    roots, slopes = _roots((designs.series @ powered).reshape(len(designs.fits), -1))
     offsets = roots - 0.5
-    near = offsets[0]
-    if not 1.25 * low <= near <= EDGE_INSIDE:
+    possible = (offsets >= 1.25 * low) & (offsets <= EDGE_INSIDE)
+    if not possible[0]:
         return float(theta[0]) + spacing * place
     if designs.fits[0].error(powered, slopes[0]) <= EDGE_NEAREST_ERROR:
-        place = max(near, low)
+        place = max(offsets[0], low)
     least = EDGE_ERROR
-    agree = (np.abs(offsets - near) <= EDGE_AGREEMENT) & (offsets >= 1.25 * low) & (offsets <= EDGE_INSIDE)
-    for k in np.flatnonzero(agree[1:]) + 1:
+    agreeing = possible & (np.abs(offsets - offsets[0]) <= EDGE_AGREEMENT)
+    for k in np.flatnonzero(agreeing[1:]) + 1:
         error = designs.fits[k].error(powered, slopes[k])
         if error < least:
             least, place = error, max(offsets[k], low)
@@ -166,7 +168,7 @@ class _EdgeFit:
         """Standard error of the root, where the polynomial has this slope."""
         wanted = values[self.nodes]
         residual = self.columns @ (self.inverse @ wanted) - wanted
-        return standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
+        return _standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +176,6 @@ class _EdgeDesigns:
     """All fits that are tried; ``series`` (fits * terms, nodes) gives the coefficients of all their polynomials."""
 
     fits: list[_EdgeFit]
-    terms: int
     series: np.ndarray
 
 
@@ -189,11 +190,10 @@ def _edge_designs(places: bytes) -> _EdgeDesigns:
                 too_simple = count >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
                 if first + count <= x.size and not too_simple and count >= degree + 1 + decaying + SPARE:
                     fits.append(_EdgeFit.of(x, first, count, degree, decaying))
-    terms = max(EDGE_DEGREES) + 1
-    series = np.zeros((len(fits), terms, x.size))
+    series = np.zeros((len(fits), max(EDGE_DEGREES) + 1, x.size))
     for fit, rows in zip(fits, series, strict=True):
         rows[: fit.series.shape[0], fit.nodes] = fit.series
-    return _EdgeDesigns(fits, terms, series.reshape(-1, x.size))
+    return _EdgeDesigns(fits, series.reshape(-1, x.size))
 
 
 def _roots(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -226,19 +226,14 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
         Of the cusp: bound = p(x) on the stick side and p(x) + x^exponent q(x) on the slip side, p and q smooth.
     """
     best, shape = None, (np.zeros(0), 0, 0)
-    for half in HALF_WIDTHS:
-        if x[0] > 0.5 - half or x[-1] < half - 0.5:
-            break
-        for skipped in BORDER_SKIPPED:
-            taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
-            for degree, terms in BORDER_SHAPES:
-                unknowns = degree + 1 + terms
-                if np.count_nonzero(taken) < unknowns + SPARE:
-                    continue
-                columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
-                coefficients, error = _fitted(columns, bound[taken])
-                if best is None or error < best.error:
-                    best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
+    for half, taken in _windows(x, itertools.product(HALF_WIDTHS, BORDER_SKIPPED)):
+        for degree, terms in BORDER_SHAPES:
+            if np.count_nonzero(taken) < degree + 1 + terms + SPARE:
+                continue
+            columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
+            coefficients, error = _fitted(columns, bound[taken])
+            if best is None or error < best.error:
+                best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
     if best is None or best.error > BORDER_ERROR * float(bound.max()):
         return None
     t = np.linspace(0.0, 1.0, 401)  # the square roots of the distances: most of them are at the border
@@ -253,12 +248,19 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
     return Peak(value, best.error, best.place * float(t[top] + shift * t[1]) ** 2)
 
 
+def _windows(x: np.ndarray, sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, np.ndarray]]:
+    """Half-width and nodes of the windows about x = 0 that fit in; `sizes`: half-width, and nodes left out beside 0."""
+    for half, skipped in sizes:
+        if x[0] <= 0.5 - half and x[-1] >= half - 0.5:
+            yield half, (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
+
+
 def _fitted(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
     """Coefficients of a least-squares fit, and the standard error of the first one."""
     inverse = np.linalg.pinv(columns)
     coefficients = inverse @ values
     residual = columns @ coefficients - values
-    return coefficients, standard_error(residual, columns.shape[1], float(np.linalg.norm(inverse[0])))
+    return coefficients, _standard_error(residual, columns.shape[1], float(np.linalg.norm(inverse[0])))
 
 
 def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
@@ -290,10 +292,7 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
         None if no cusp is found within two nodes of the largest value.
     """
     tried: list[tuple[float, int, float, np.ndarray, np.ndarray, tuple[int, int, bool]]] = []
-    for half, skipped in CUSP_WINDOWS:
-        if x[0] > 0.5 - half or x[-1] < half - 0.5:
-            break
-        taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
+    for _, taken in _windows(x, CUSP_WINDOWS):
         window, wanted = np.round(x[taken], 9), values[taken]
         for shape in CUSP_SHAPES:
             if window.size >= shape[0] + 1 + shape[1] + shape[2] + 1 + SPARE:
@@ -308,7 +307,7 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
             inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / CUSP_STEP]))
             residual = columns @ coefficients - wanted
             place -= float(inverse[-1] @ residual)
-        error = standard_error(residual, inverse.shape[0], float(np.linalg.norm(inverse[0])))
+        error = _standard_error(residual, inverse.shape[0], float(np.linalg.norm(inverse[0])))
         if abs(place) <= CUSP_REACH and (best is None or error < best.error):
             best = Peak(float(coefficients[0]), error, place)
     return best
@@ -337,7 +336,7 @@ def _cusp_place(
         return math.inf, 0.0
     shift, _ = _vertex(*misfit[lowest - 1 : lowest + 2])
     place = CUSP_REACH * (2.0 * (lowest + shift) / (CUSP_PLACES - 1) - 1.0)
-    return standard_error(left[lowest], orthogonal.shape[2] + 1, amplification), place
+    return _standard_error(left[lowest], orthogonal.shape[2] + 1, amplification), place
 
 
 @functools.lru_cache(maxsize=256)
@@ -360,21 +359,15 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
     values : ndarray, shape (n,)
     """
     best: Peak | None = None
-    for half in HALF_WIDTHS:
-        if x[0] > 0.5 - half or x[-1] < half - 0.5:
-            break
-        for skipped in CORNER_SKIPPED:
-            taken = (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
-            y, wanted = x[taken] / half, values[taken]
-            for degree in CORNER_DEGREES:
-                unknowns = 2 * degree + 1
-                if y.size < unknowns + SPARE:
-                    continue
-                columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
-                coefficients, error = _fitted(columns, wanted)
-                bend = -coefficients[degree + 1] / half
-                if bend > max(abs(coefficients[1]) / half, CORNER_BEND * error) and (
-                    best is None or error < best.error
-                ):
-                    best = Peak(float(coefficients[0]), error, 0.0)
+    for half, taken in _windows(x, itertools.product(HALF_WIDTHS, CORNER_SKIPPED)):
+        y, wanted = x[taken] / half, values[taken]
+        for degree in CORNER_DEGREES:
+            if y.size < 2 * degree + 1 + SPARE:
+                continue
+            columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
+            coefficients, error = _fitted(columns, wanted)
+            bend = -coefficients[degree + 1] / half
+            falling = bend > max(abs(coefficients[1]) / half, CORNER_BEND * error)
+            if falling and (best is None or error < best.error):
+                best = Peak(float(coefficients[0]), error, 0.0)
     return best

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fastpin.extrapolate import pair_bar
-from fastpin.grid import Grid
-from fastpin.quantities import QUANTITIES, compared, intervals, quantity, size, values
+from fastpin.grid import Grid, apart
+from fastpin.quantities import QUANTITIES, compared, intervals, quantity, size, values, width
 
 if TYPE_CHECKING:
     from fastpin.state import State
@@ -66,7 +66,7 @@ def halved(grid: Grid, direction: float | None) -> Grid:
     if not grid.uniform:
         ends = grid.theta[-1:] if not grid.closed else grid.theta[:1]
         return Grid(np.union1d(grid.theta[::2], ends), grid.closed)
-    parity = 0 if direction is None else int(np.argmin(_apart(grid.theta, direction))) % 2
+    parity = 0 if direction is None else int(np.argmin(np.abs(apart(grid.theta, direction)))) % 2
     if grid.closed:
         return Grid.circle((n + 1) // 2, float(grid.theta[parity]))
     spacing = float(grid.theta[-1] - grid.theta[0]) / (n - 1)
@@ -95,7 +95,8 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     mine, theirs = values(state), compared(state, coarse)
     found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
     for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
-        others = _apart(state.theta[_as_high(state, traction, found[name])], mine[f"{name}_angle"])
+        highest = state.theta[_as_high(state, traction, found[name])]
+        others = np.abs(apart(highest, mine[f"{name}_angle"]))
         others = others[others > SAME_TOP * float(state.grid.weights.max())]
         if others.size:
             known = found[f"{name}_angle"]
@@ -130,8 +131,13 @@ def _floor(name: str, state: State) -> float:
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
         floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR
-        return floor * ends * size(name, state) / closed
+        return floor * ends * spacing(state)
     return FLOORS.get(name, FLOORS[kind]) * size(name, state) / closed**2
+
+
+def spacing(state: State) -> float:
+    """Mean node distance in the contact, rad."""
+    return width(state.contact) / max(1, int(np.count_nonzero(state.pressure)))
 
 
 def _ends(state: State, zone: str) -> int:
@@ -146,8 +152,3 @@ def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
         before[0] = after[-1] = 0.0
     highest = (traction > 0.0) & (traction >= before) & (traction >= after)
     return np.flatnonzero(highest & (traction >= traction.max() - 2.0 * bar))
-
-
-def _apart(angles: np.ndarray, angle: float) -> np.ndarray:
-    """How far angles are from another one, the short way round."""
-    return np.abs(np.remainder(angles - angle + math.pi, 2.0 * math.pi) - math.pi)

@@ -60,6 +60,12 @@ class Grid:
         count = whole_number("nodes", nodes, LEAST_NODES)
         return cls(finite("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
 
+    def with_nodes(self, nodes: int) -> Grid:
+        """`nodes` equally spaced nodes on the same arc or circle."""
+        if self.closed:
+            return Grid.circle(nodes, float(self.theta[0]))
+        return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
+
     @property
     def size(self) -> int:
         return int(self.theta.size)
@@ -99,6 +105,11 @@ class Grid:
             total += _half_hat_moment(length, sense)
         total *= np.exp(1j * self.theta)
         return total.real, total.imag
+
+
+def apart(angles: np.ndarray | float, angle: np.ndarray | float) -> np.ndarray:
+    """How far `angles` are from `angle`, rad, the short way round: -pi to pi, positive counter-clockwise."""
+    return np.remainder(np.asarray(angles) - angle + math.pi, 2.0 * math.pi) - math.pi
 
 
 def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:

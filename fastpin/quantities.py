@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fastpin.grid import apart
+
 if TYPE_CHECKING:
     from fastpin.state import State
     from fastpin.zones import Interval
@@ -144,8 +146,8 @@ def _matched(mine: Sequence[Interval], theirs: Sequence[Interval]) -> list[Inter
     if len(mine) != len(theirs):
         return [(math.nan, math.nan)] * len(mine)
 
-    def apart(turned: Sequence[Interval]) -> float:
+    def away(turned: Sequence[Interval]) -> float:
         ends = np.subtract(turned, mine)
-        return float(np.abs(np.remainder(ends + math.pi, 2.0 * math.pi) - math.pi).sum())
+        return float(np.abs(apart(ends, 0.0)).sum())
 
-    return min(([*theirs[k:], *theirs[:k]] for k in range(len(theirs))), key=apart, default=[])
+    return min(([*theirs[k:], *theirs[:k]] for k in range(len(theirs))), key=away, default=[])

@@ -159,7 +159,7 @@ class State:
     def _contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """With which the pressure falls to zero at the ends of the contact of the nodes `run`, (T21)."""
         first, last = self.status[run[[0, -1]]]
-        return 0.5 - self._tilt * (first % 2) * first, 0.5 + self._tilt * (last % 2) * last
+        return 0.5 - self._tilt * float(first), 0.5 + self._tilt * float(last)
 
     def _stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """With which mu N - |T| falls to zero at the ends of the stick zone of the nodes `run`, (T26)."""

@@ -20,6 +20,7 @@ from fastpin.comparison import (
     LIKE,
     UNLIKE,
     FiniteElements,
+    cattaneo_mindlin,
     cattaneo_mindlin_differences,
     residuals_away,
 )
@@ -223,11 +224,9 @@ def _half_plane(solving: _Solving) -> Rows:
 
 def _peak_shear(state: State, ratio: float, part: float) -> float:
     """Largest shear of Cattaneo and Mindlin after unloading from Q to a part of it: where the border of +Q was."""
-    load_parameter, friction = state.problem.load_parameter(state.load["P"]), state.problem.friction
-    half, top = float(analytic.hertz_half_angle(load_parameter)), float(analytic.hertz_peak_pressure(load_parameter))
+    half = float(analytic.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     border = half * float(analytic.cattaneo_mindlin_stick_ratio(ratio))
-    branch: analytic.Branch = "unloading" if part < 1.0 else "loading"
-    return abs(float(analytic.cattaneo_mindlin_shear(border, half, top, friction, part * ratio, ratio, branch)))
+    return abs(float(cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")))
 
 
 def _sliding(pair: MaterialPair, solving: _Solving) -> Rows:

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from fastpin import edges
-from fastpin.grid import Grid
+from fastpin.grid import Grid, apart
 
 Interval = tuple[float, float]
 
@@ -145,9 +145,9 @@ def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[
     order = order[(theta[order] >= start) & (theta[order] <= stop) & (np.abs(status[order]) == 1)]
     if order.size == 0:  # narrower than a node distance
         slipping = np.flatnonzero(np.abs(status) == 1)
-        apart = np.abs(np.remainder(grid.theta[slipping] - 0.5 * (start + stop) + math.pi, 2.0 * math.pi) - math.pi)
-        near = slipping.size and apart.min() <= stop - start + float(grid.weights.max())
-        return [(float(start), float(stop), int(status[slipping[np.argmin(apart)]]))] if near else []
+        away = np.abs(apart(grid.theta[slipping], 0.5 * (start + stop)))
+        near = slipping.size and away.min() <= stop - start + float(grid.weights.max())
+        return [(float(start), float(stop), int(status[slipping[np.argmin(away)]]))] if near else []
     signs, angles = status[order], theta[order]
     changes = np.flatnonzero(np.diff(signs))
     borders = [start, *(0.5 * (angles[changes] + angles[changes + 1])), stop]
@@ -218,7 +218,7 @@ def _peaks_at_borders(
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, told, near = [], False, False
     for border, outwards in _borders(stick):
-        offsets = outwards * (np.remainder(grid.theta - border + math.pi, 2.0 * math.pi) - math.pi)
+        offsets = outwards * apart(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
             continue  # the end of the contact
@@ -360,7 +360,7 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
 
 def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
     """Interpolation at `angle`: quadratic, from the three nearest nodes; linear where one of them is zero."""
-    offsets = np.remainder(grid.theta - angle + math.pi, 2.0 * math.pi) - math.pi
+    offsets = apart(grid.theta, angle)
     near = np.argsort(np.abs(offsets))[:3]
     if not np.all(values[near] > 0.0):
         near = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],

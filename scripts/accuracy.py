@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin import Grid, Problem, Result, analytic, solve
+from fastpin import Problem, Result, analytic, solve
 from fastpin.comparison import (
     BOTTOM,
     FRETTING,
@@ -112,7 +112,7 @@ def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
     found: Errors = {}
     for title, (problem, history) in CASES.items():
         coarse = solve(problem, history, nodes=sizes[0]).grid  # with a node where the pin first touches
-        *results, reference = (solve(problem, history, grid=_refined(coarse, nodes)) for nodes in (*sizes, finest))
+        *results, reference = (solve(problem, history, grid=coarse.with_nodes(nodes)) for nodes in (*sizes, finest))
         print(f"\n### {title[0].upper()}{title[1:]}")
         found[title] = _differences(reference, results)
         rows: list[list[object]] = []
@@ -121,13 +121,6 @@ def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
         table(["load", "quantity", *(str(nodes) for nodes in sizes), "order"], rows)
     if figure is not None:
         draw_with(lambda errors: _drawn(sizes, errors), found, figure, 160.0)
-
-
-def _refined(grid: Grid, nodes: int) -> Grid:
-    """`nodes` nodes on the same arc or circle."""
-    if grid.closed:
-        return Grid.circle(nodes, float(grid.theta[0]))
-    return Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), nodes)
 
 
 def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, str], list[float]]:

@@ -60,9 +60,7 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
 
 def refined(grid: Grid, times: int) -> Grid:
     """The same arc or circle with so many times the intervals."""
-    if grid.closed:
-        return Grid.circle(times * grid.size, float(grid.theta[0]))
-    return Grid.arc(float(grid.theta[0]), float(grid.theta[-1]), times * (grid.size - 1) + 1)
+    return grid.with_nodes(times * grid.size if grid.closed else times * (grid.size - 1) + 1)
 
 
 def main() -> None:
