@@ -12,8 +12,14 @@ import os
 
 import numpy as np
 
-from fastpin import MATERIALS, Grid, LoadHistory, MaterialPair, Problem, Result, State, solve
-from fastpin.integral_equations import residuals
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from fastpin.verification.integral_equations import residuals
 
 SIZES = (101, 201, 401, 801, 1201, 2401)
 """Numbers of nodes that are timed."""

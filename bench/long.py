@@ -21,8 +21,9 @@ import numpy as np
 from tqdm import tqdm
 
 import fastpin
-from fastpin import plot, store
-from fastpin.record import record
+from fastpin.figures import style, tractions
+from fastpin.storage import store
+from fastpin.storage.recording import record
 
 RESULTS = Path(__file__).with_name("results")
 FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "long.png"
@@ -77,19 +78,19 @@ def follow(corners: int, nodes: int, keep: str, path: Path) -> list[tuple[float,
     return watch.rows
 
 
-def draw(columns: dict[str, np.ndarray]) -> plot.Figure:
+def draw(columns: dict[str, np.ndarray]) -> tractions.Figure:
     """Memory, corners and size of the file against time."""
-    figure, axes = plot.panels(1, 2, height=2.6)
+    figure, axes = style.panels(1, 2, height=2.6)
     minutes = columns["seconds"] / 60.0
-    axes[0, 0].plot(minutes, columns["memory_mb"], **plot.line(0))
+    axes[0, 0].plot(minutes, columns["memory_mb"], **style.line(0))
     axes[0, 0].set_ylabel("resident memory  [MB]")
     axes[0, 0].set_ylim(0.0, 1.2 * columns["memory_mb"].max())
-    axes[0, 1].plot(minutes, columns["corners"] / 1e3, **plot.line(0))
-    axes[0, 1].plot(minutes, columns["file_mb"], **plot.line(1, 1))
+    axes[0, 1].plot(minutes, columns["corners"] / 1e3, **style.line(0))
+    axes[0, 1].plot(minutes, columns["file_mb"], **style.line(1, 1))
     axes[0, 1].set_ylabel("thousand corners, MB")
     for panel in axes[0]:
         panel.set_xlabel("time  [min]")
-    plot.key(figure, [("thousand corners", plot.line(0)), ("size of the file, MB", plot.line(1, 1))])
+    style.key(figure, [("thousand corners", style.line(0)), ("size of the file, MB", style.line(1, 1))])
     return figure
 
 
@@ -104,7 +105,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.draw:
         table = np.loadtxt(RESULTS / "long.csv", delimiter=",", skiprows=1)
-        plot.draw_with(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
+        style.draw_with(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
         return
     cases.steady_state(61)  # compiles
     with tempfile.TemporaryDirectory() as folder:
@@ -135,7 +136,7 @@ def main() -> None:
             writer = csv.writer(file)
             writer.writerow(NAMES)
             writer.writerows([f"{value:.5g}" for value in row] for row in rows)
-        plot.draw_with(draw, columns, FIGURE)
+        style.draw_with(draw, columns, FIGURE)
 
 
 if __name__ == "__main__":

@@ -228,13 +228,12 @@ def slopes_table(stored: Stored) -> str:
 
 def draw(stored: Stored) -> Any:
     """Times, and the numbers of events, against the number of nodes, on logarithmic scales."""
-    from fastpin import plot
 
-    figure, axes = plot.panels(1, 2, height=3.4)
+    figure, axes = style.panels(1, 2, height=3.4)
     rows = []
     for panel, lines, label, styles in (
-        (axes[0, 0], curves(stored), "seconds", [plot.line(index, index) for index in range(5)]),
-        (axes[0, 1], counts(stored), "number", [plot.line(5, 0), plot.line(5, 1)]),
+        (axes[0, 0], curves(stored), "seconds", [style.line(index, index) for index in range(5)]),
+        (axes[0, 1], counts(stored), "number", [style.line(5, 0), style.line(5, 1)]),
     ):
         entries = []
         for (name, series), style in zip(lines, styles, strict=True):
@@ -244,7 +243,7 @@ def draw(stored: Stored) -> Any:
         panel.set_xlabel("nodes n")
         panel.set_ylabel(label)
         rows.append(entries)
-    plot.key(figure, *rows)
+    style.key(figure, *rows)
     return figure
 
 
@@ -276,9 +275,8 @@ def newest() -> Path:
 
 
 def save_figure(stored: Stored, path: Path) -> None:
-    from fastpin import plot
 
-    plot.draw_with(draw, stored, path)
+    style.draw_with(draw, stored, path)
 
 
 def main() -> None:

@@ -23,9 +23,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import fastpin
-from fastpin import store, sweep
-from fastpin.plan import Plan
-from fastpin.products import in_one_thread
+from fastpin.kernels.products import in_one_thread
+from fastpin.storage import store
+from fastpin.studies import sweep
+from fastpin.studies.plan import Plan
 
 PLAN = """
 [grid]

@@ -18,7 +18,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 import fastpin
-from fastpin.collocation import System
+from fastpin.elasticity.system import System
 
 Timed = Callable[..., Any]
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from fastpin.cli import main
+from fastpin.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

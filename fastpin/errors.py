@@ -2,14 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from fastpin.state import Result
-
-
-CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
-
 
 class FastpinError(Exception):
     """Base class of all errors raised by fastpin."""
@@ -22,6 +14,9 @@ class InputError(FastpinError, ValueError):
         super().__init__(f"{field}: {message}")
         self.field = field
         self.reason = message
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str]]:
+        return type(self), (self.field, self.reason)
 
 
 class CaseFileError(InputError):
@@ -39,52 +34,5 @@ class CaseFileError(InputError):
         lines = [f"{name}{f', line {line}' if line else ''}: {text}" for line, text in self.problems]
         self.args = ("\n".join(lines),)
 
-
-class SolveError(FastpinError):
-    """A history that could not be followed to its end.
-
-    Attributes
-    ----------
-    step : int
-        Index of the load corner towards which the load was moving.
-    fraction : float
-        Fraction of that step that was solved, 0 to 1.
-    load : dict of str to float
-        The load at which the solution was lost, in the units of the history.
-    result : Result or None
-        Everything that was solved before.
-    """
-
-    def __init__(
-        self,
-        message: str,
-        step: int = -1,
-        fraction: float = 0.0,
-        load: dict[str, float] | None = None,
-        result: Result | None = None,
-    ) -> None:
-        super().__init__(message)
-        self.step = step
-        self.fraction = fraction
-        self.load = dict(load or {})
-        self.result = result
-
-
-class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a solution, which stopped where it can be gone on from; ``result`` is what was solved before."""
-
-    def __init__(self, result: Result | None = None) -> None:
-        super().__init__("interrupted")
-        self.result = result
-
-
-class NoEquilibriumError(SolveError):
-    """No state of the pin carries the load: the pin spins, slides away or loses contact."""
-
-
-class ConvergenceError(SolveError):
-    """The solver could not find a state that meets the contact conditions; none is returned."""
-
-
-class ArcError(SolveError):
-    """The contact reaches an end of the arc of nodes that was given."""
+    def __reduce__(self) -> tuple[type[CaseFileError], tuple[str, list[tuple[int, str]]]]:  # type: ignore[override]
+        return type(self), (self.field, self.problems)

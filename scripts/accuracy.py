@@ -13,19 +13,16 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin import Problem, Result, analytic, solve
-from fastpin.comparison import (
-    BOTTOM,
-    FRETTING,
-    LIKE,
-    UNLIKE,
-    FiniteElements,
-    cattaneo_mindlin_differences,
-    residuals_away,
-)
-from fastpin.plot import draw_with, key, line, panels
-from fastpin.quantities import compared, size
-from fastpin.sliding import solve_sliding
+from fastpin.figures.style import draw_with, key, line, panels
+from fastpin.model.angles import BOTTOM
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.quantities import matching_values, size
+from fastpin.verification import closed_forms
+from fastpin.verification.comparisons import cattaneo_mindlin_differences, residuals_away
+from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
+from fastpin.verification.sliding import solve_sliding
 
 
 def order(sizes: list[int], errors: list[float]) -> float:
@@ -48,12 +45,12 @@ def closed_form(sizes: list[int]) -> None:
     for nodes in sizes:
         edge, peak = [], []
         for load_parameter, wide in cases:
-            exact = analytic.persson_half_angle(load_parameter)
+            exact = closed_forms.persson_half_angle(load_parameter)
             arc = (BOTTOM - wide[0] * exact, BOTTOM + wide[1] * exact)
             problem = Problem.from_load_parameter(LIKE, load_parameter, 0.0)
             state = solve(problem, [{"P": 1.0}], nodes=nodes, arc=arc)[-1]
             edge += [state.contact[0][1] - BOTTOM - exact, state.contact[0][0] - BOTTOM + exact]
-            peak.append(state.peak_pressure / analytic.persson_pressure(0.0, exact) - 1.0)
+            peak.append(state.peak_pressure / closed_forms.persson_pressure(0.0, exact) - 1.0)
         edges.append(math.sqrt(np.mean(np.square(edge))))
         peaks.append(math.sqrt(np.mean(np.square(peak))))
     rows = [[n, e, p] for n, e, p in zip(sizes, edges, peaks, strict=True)]
@@ -127,12 +124,12 @@ def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, st
     """By load and quantity, the differences of the results from the reference, smallest grid first."""
     found = {}
     for load, true, *states in zip(LOADS, reference, *results, strict=False):
-        exact = compared(true, true)
+        exact = matching_values(true, true)
         for name in SHOWN:
             if name not in exact:
                 continue
             scale = 1.0 if name.endswith(("angle", "start", "stop")) else size(name, true)
-            errors = [abs(compared(true, state)[name] - exact[name]) / scale for state in states]
+            errors = [abs(matching_values(true, state)[name] - exact[name]) / scale for state in states]
             if np.all(np.isfinite(errors)) and max(errors) > ROUNDING:
                 found[load, name] = errors
     return found
@@ -205,7 +202,7 @@ def half_plane(nodes: int) -> None:
     for parameter in parameters:
         problem = Problem.from_load_parameter(LIKE, parameter, 0.5, "centre", "fixed")
         result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}], nodes=nodes)
-        half, top = analytic.hertz_half_angle(parameter), analytic.hertz_peak_pressure(parameter)
+        half, top = closed_forms.hertz_half_angle(parameter), closed_forms.hertz_peak_pressure(parameter)
         row: list[object] = [f"{parameter:g}", result[0].peak_pressure / top - 1.0]
         row += cattaneo_mindlin_differences(result[1:], 0.6)
         loading.append(row[2])

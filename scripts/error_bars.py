@@ -15,9 +15,14 @@ import math
 import numpy as np
 from tqdm import tqdm
 
-from fastpin import Grid, LoadHistory, Material, MaterialPair, Problem, State, solve
-from fastpin.extrapolate import estimate
-from fastpin.quantities import QUANTITIES, compared, size, values
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.states.quantities import QUANTITIES, matching_values, size, values
+from fastpin.states.state import State
+from fastpin.studies.extrapolate import estimate
 
 NODES = 201
 TIMES = (2, 4, 8)
@@ -78,8 +83,14 @@ def main() -> None:
         finer = [solve(problem, history, grid=refined(result.grid, times)) for times in TIMES]
         for state, *better in zip(result, *finer, strict=True):
             states += 1
-            assert state.coarse is not None
-            count(state, [compared(state, other) for other in (state.coarse, state, *better)], pairs, studies, without)
+            assert state.error_bars is not None
+            count(
+                state,
+                [matching_values(state, other) for other in (state.error_bars.coarse, state, *better)],
+                pairs,
+                studies,
+                without,
+            )
     print(f"{options.cases} cases, {states} states, {NODES} nodes\n")
     print("| quantity | values | held, % | surely held, % | surely broken, % | bar / error, median | no bar |")
     print("|---|--:|--:|--:|--:|--:|--:|")

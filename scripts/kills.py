@@ -19,8 +19,11 @@ from pathlib import Path
 
 import numpy as np
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, record, store
-from fastpin.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.storage import recording, store, writer
+from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS
 
 NODES = 61
 ROUNDS = 400
@@ -48,11 +51,11 @@ def work(path: Path, rounds: int) -> None:
     """Begin the run, or go on with it; say on standard error how many states are in the file."""
     logging.basicConfig(level=logging.DEBUG, format="%(message)s")
     logging.getLogger("numba").setLevel(logging.WARNING)
-    record.CHECKPOINT_EVERY, record.CHECKPOINT_SHARE = CHECKPOINT_EVERY, 1.0
+    writer.CHECKPOINT_EVERY, writer.CHECKPOINT_SHARE = CHECKPOINT_EVERY, 1.0
     if path.exists():
-        record.resume(path)
+        recording.resume(path)
     else:
-        record.record(problem(), history(rounds), path, nodes=NODES, between=1)
+        recording.record(problem(), history(rounds), path, nodes=NODES, between=1)
 
 
 def differences(one: Path, other: Path) -> list[str]:

@@ -13,7 +13,13 @@ import time
 import numpy as np
 from tqdm import tqdm
 
-from fastpin import FastpinError, LoadHistory, Material, MaterialPair, Problem, Result, State, solve
+from fastpin.errors import FastpinError
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 NODES = 81
 

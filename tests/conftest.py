@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fastpin import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
 
 
 @pytest.fixture(scope="session")

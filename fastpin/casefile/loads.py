@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fastpin import loading
-from fastpin.caselines import CaseText, Section, number, shown, string, whole
+from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.loading import LOADS, LoadHistory
-from fastpin.problem import Problem
+from fastpin.model.checks import as_toml, number, string, whole_number
+from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.loads import LOADS
+from fastpin.model.problem import Problem
 
 MAX_CORNERS = 100_000_000
 MAX_ROWS = 10_000_000  # of corners that are held in memory
@@ -31,14 +32,14 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     else:
         source.report("no loads: [[load]] blocks or a section [history] are missing", "load")
         return None
-    whole = _repeated(section, history)
+    whole = _repeat(section, history)
     if whole is not None and len(whole) > MAX_CORNERS:
         source.report(f"the history has {len(whole):,} corners, more than {MAX_CORNERS:,}", "load")
         return None
     return whole
 
 
-def check_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
+def report_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
     """Report every load that does not go with the problem."""
     # What a corner leaves out is taken from the one before; what was never given stays away.
     columns = history.distinct(initial=np.full(len(LOADS), np.nan)).T
@@ -46,7 +47,7 @@ def check_loads(source: CaseText, problem: Problem, history: LoadHistory) -> Non
         values = np.unique(column[~np.isnan(column)])
         if len(values):
             try:
-                loading.check_loads(problem, LoadHistory({name: value} for value in values))
+                check_loads(problem, LoadHistory({name: value} for value in values))
             except InputError as error:
                 _report_load(source, name, str(error))
 
@@ -80,7 +81,7 @@ def _from_block(block: Section, folder: Path) -> LoadHistory | None:
         for name in (*LOADS, *HARMONIC):
             if name in block:
                 block.report(f"{name}: can't be given together with csv", name)
-        return _repeated(block, _from_csv(block, folder))
+        return _repeat(block, _from_csv(block, folder))
     if "amplitude" in block:
         for name in LOADS:
             if name in block:
@@ -90,12 +91,12 @@ def _from_block(block: Section, folder: Path) -> LoadHistory | None:
         if name in block:
             block.report(f"{name}: needs an amplitude, such as amplitude = {{Q = 1e5}}", name)
     rows = _corners(block)
-    return _repeated(block, LoadHistory(rows)) if rows else None
+    return _repeat(block, LoadHistory(rows)) if rows else None
 
 
-def _repeated(section: Section, history: LoadHistory | None) -> LoadHistory | None:
+def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None:
     """A history, as often as the key ``repeat`` of its section says; each time is a cycle."""
-    count = section.checked("repeat", whole, 1)
+    count = section.checked("repeat", whole_number, 1)
     if count is None or history is None:
         return history
     if len(history) * count > MAX_CORNERS:
@@ -109,8 +110,8 @@ def _repeated(section: Section, history: LoadHistory | None) -> LoadHistory | No
 
 def _harmonic(block: Section) -> LoadHistory | None:
     tables = {name: _loads(block, name) for name in ("mean", "amplitude", "phase")}
-    points = block.checked("points", whole, 2)
-    count = block.checked("repeat", whole, 1) or 1
+    points = block.checked("points", whole_number, 2)
+    count = block.checked("repeat", whole_number, 1) or 1
     mean, amplitude, phase = tables.values()
     if mean is None or amplitude is None or phase is None:
         return None
@@ -131,7 +132,7 @@ def _loads(block: Section, name: str) -> dict[str, float] | None:
     if table is None:
         return {}
     if not isinstance(table, dict):
-        block.report(f"{name}: must be a table of loads, such as {name} = {{Q = 1e5}}, not {shown(table)}", name)
+        block.report(f"{name}: must be a table of loads, such as {name} = {{Q = 1e5}}, not {as_toml(table)}", name)
         return None
     loads = {}
     for load, value in table.items():

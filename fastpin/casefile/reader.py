@@ -9,24 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
-from importlib import resources
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fastpin.caselines import CaseText, Section, choice, closest, number, shown, string, whole
-from fastpin.caseloads import HARMONIC, check_loads, read_history
+from fastpin.casefile.loads import HARMONIC, read_history, report_loads
+from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.keep import Keep
-from fastpin.loading import LOADS, LoadHistory
-from fastpin.materials import MATERIALS, Material, MaterialPair
-from fastpin.problem import Problem
+from fastpin.model.case import Case, check_arc, check_keep
+from fastpin.model.checks import choice, closest, number, string, true_or_false
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
 
-EXAMPLE = resources.files("fastpin").joinpath("example.toml").read_text(encoding="utf-8")
+EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
-
-MAX_NODES = 20_000  # the matrices hold 4 nodes^2 numbers: 13 GB
-METHODS = ("path", "increment")
 
 _MATERIAL_KEYS = ("material", "E", "nu", "rigid")
 KEYS: dict[str, tuple[str, ...]] = {
@@ -45,77 +44,13 @@ KEYS: dict[str, tuple[str, ...]] = {
     ),
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
-    "solve": ("nodes", "method", "increments", "arc", "between", "keep", "shortcut"),
+    "solve": tuple(field.name for field in fields(SolveOptions)),
 }
 """Sections of a case file and their keys."""
 
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # where a pair is wrong, to check the rest
 
 T = TypeVar("T")
-
-
-@dataclass(frozen=True)
-class SolveOptions:
-    """Options of :func:`fastpin.solve`, with the same names and defaults."""
-
-    nodes: int = 401
-    method: str = "path"
-    increments: int = 80
-    arc: tuple[float, float] | None = None
-    between: int | tuple[float, ...] = 0
-    keep: str = "all"
-    shortcut: bool = True
-
-    def __post_init__(self) -> None:
-        whole("nodes", self.nodes, 5, MAX_NODES)
-        choice("method", self.method, METHODS)
-        whole("increments", self.increments, 1)
-        if self.arc is not None:
-            object.__setattr__(self, "arc", _checked_arc(self.arc))
-        object.__setattr__(self, "between", checked_between(self.between))
-        object.__setattr__(self, "keep", str(Keep.of(self.keep)))
-        _true_or_false("shortcut", self.shortcut)
-
-    def keywords(self) -> dict[str, Any]:
-        """The options as keyword arguments of :func:`fastpin.solve`."""
-        return asdict(self)
-
-
-def _checked_arc(value: object) -> tuple[float, float]:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise InputError("arc", "must be a list of two angles in rad, [start, stop]")
-    start, stop = (number("arc", angle) for angle in value)
-    if not 0.0 < stop - start < 2.01 * math.pi:  # angles in degrees would mean many turns
-        allowed = "must run from a smaller to a larger angle, at most a full turn, in rad"
-        raise InputError("arc", f"{allowed}, not {start:g} to {stop:g}")
-    return start, stop
-
-
-def checked_between(value: object) -> int | tuple[float, ...]:
-    """`value` if it is a count or increasing fractions between 0 and 1, else :class:`InputError`."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        return whole("between", value, 0, 10_000)
-    wrong = InputError(
-        "between", f"must be a whole number, or a list of increasing fractions between 0 and 1, not {shown(value)}"
-    )
-    if not isinstance(value, (list, tuple)):
-        raise wrong
-    last = 0.0
-    for item in value:
-        if isinstance(item, bool) or not isinstance(item, (int, float)) or not last < item < 1.0:
-            raise wrong
-        last = item
-    return tuple(value)
-
-
-@dataclass(frozen=True)
-class Case:
-    """What a case file says: everything that :func:`fastpin.solve` needs."""
-
-    problem: Problem
-    history: LoadHistory
-    options: SolveOptions = field(default_factory=SolveOptions)
-    title: str = ""
 
 
 def builtin_case() -> Case:
@@ -185,12 +120,20 @@ def case_from(
     history = read(source, folder)
     options = _options(source.section("solve"))
     if problem is not None and history is not None:
-        check_loads(source, problem, history)
-    arc = options.arc
-    if problem is not None and problem.clearance < 0.0 and arc and arc[1] - arc[0] < 2.0 * math.pi:
-        message = "arc: an interference fit is in contact all round, the arc must span 2 pi or be left out"
-        source.report(message, "solve", "arc")
+        report_loads(source, problem, history)
+    if problem is not None:
+        _check_together(source, lambda: check_arc(problem, options))
+    if history is not None:
+        _check_together(source, lambda: check_keep(history, options))
     return Case(problem, history, options, title) if problem is not None and history is not None else None
+
+
+def _check_together(source: CaseText, check: Callable[[], None]) -> None:
+    """Report an option of the solver that does not go with the rest of the case."""
+    try:
+        check()
+    except InputError as error:
+        source.report(str(error), "solve", error.field)
 
 
 def _built(
@@ -222,9 +165,9 @@ def _check_keys(source: CaseText) -> None:
                 for key in section.table:
                     if key not in KEYS[name]:
                         hint = closest(key, KEYS[name]) or _owners(key) or f"; the keys are {', '.join(KEYS[name])}"
-                        section.report(f'unknown key "{key}" in {_bracketed(name)}{hint}', key)
+                        section.report(f'unknown key "{key}" in {_in_brackets(name)}{hint}', key)
         elif isinstance(value, (dict, list)) and not _owners(name):
-            hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_bracketed, KEYS))}"
+            hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
             source.report(f"unknown section [{name}]{hint}", name)
         else:
             hint = _owners(name) or closest(name, ("title",))
@@ -233,11 +176,11 @@ def _check_keys(source: CaseText) -> None:
 
 def _owners(key: str) -> str:
     """A hint at the sections that know a key, or nothing."""
-    owners = [_bracketed(section) for section, keys in KEYS.items() if key in keys]
+    owners = [_in_brackets(section) for section, keys in KEYS.items() if key in keys]
     return f"; it belongs in {' or '.join(owners)}" if owners else ""
 
 
-def _bracketed(section: str) -> str:
+def _in_brackets(section: str) -> str:
     return "[[load]]" if section == "load" else f"[{section}]"
 
 
@@ -260,7 +203,7 @@ def _pair(source: CaseText, contact: Section) -> MaterialPair | None:
 def _material(section: Section) -> Material | None:
     if not section.present:
         return None
-    rigid = section.checked("rigid", _true_or_false)
+    rigid = section.checked("rigid", true_or_false)
     values = {"E": section.checked("E", _modulus), "nu": section.number("nu")}
     chosen = "material" if "material" in section else "rigid" if rigid else None
     if chosen is not None:
@@ -278,12 +221,6 @@ def _material(section: Section) -> Material | None:
     section.require("E")
     section.require("nu")
     return _built(section, Material, values, {"E": 1.0, "nu": 0.3})
-
-
-def _true_or_false(name: str, value: object) -> bool:
-    if not isinstance(value, bool):
-        raise InputError(name, f"must be true or false, not {shown(value)}")
-    return value
 
 
 def _modulus(name: str, value: object) -> float:
@@ -342,5 +279,7 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
 
 def _options(section: Section) -> SolveOptions:
     given = {key: section.value(key) for key in KEYS["solve"] if key in section}
-    defaults = SolveOptions()
-    return _built(section, SolveOptions, given, defaults.keywords()) or defaults
+    harmless = SolveOptions().keywords()
+    if "increments" in given:
+        harmless["method"] = "increment"  # where the method is wrong, its increments are not
+    return _built(section, SolveOptions, given, harmless) or SolveOptions()

@@ -7,14 +7,13 @@ all keys are found beside it, and reading goes on after a faulty line.
 from __future__ import annotations
 
 import copy
-import difflib
-import math
 import re
 import tomllib
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, choice, number
 
 Place = tuple[str | int, ...]  # where a value stands in the text: ("load", 0, "P")
 T = TypeVar("T")
@@ -82,7 +81,7 @@ class CaseText:
         around = (place[:length] for length in range(len(place), 0, -1))
         return next((self._lines[part] for part in around if part in self._lines), 0)
 
-    def varied(self, tables: dict[str, Any]) -> CaseText:
+    def with_tables(self, tables: dict[str, Any]) -> CaseText:
         """This text with other tables; what is wrong with them is reported on the lines of this text."""
         other = copy.copy(self)
         other.faults, other.placed = [], []
@@ -99,7 +98,7 @@ class CaseText:
         if isinstance(table, dict):
             return Section(self, (name,), table)
         if table is not None:
-            self.report(f"{name}: must be a section [{name}], not {shown(table)}", name)
+            self.report(f"{name}: must be a section [{name}], not {as_toml(table)}", name)
         elif required and name not in self.root:
             self.report(f"the section [{name}] is missing", name)
         return Section(self, (name,), {}, present=False)
@@ -162,70 +161,6 @@ class Section:
         return self.checked(key, choice, allowed) if key in self else allowed[0]
 
 
-# -- checks of one value: return it, or raise InputError with what the user wrote --------------------------
-
-
-def number(name: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
-    """A finite number."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(name, f"must be a number, not {shown(value)}")
-    try:
-        converted = float(value)
-    except OverflowError:
-        converted = math.inf
-    if not math.isfinite(converted):
-        raise InputError(name, f"must be a finite number, not {converted}")
-    if not least <= converted <= most:
-        raise InputError(name, f"must lie between {least:g} and {most:g}, not {converted:g}")
-    return converted
-
-
-def whole(name: str, value: object, least: int, most: int | None = None) -> int:
-    """A whole number."""
-    good = isinstance(value, int) and not isinstance(value, bool) and value >= least
-    if not isinstance(value, int) or not good or (most is not None and value > most):
-        limits = f"of at least {least}" if most is None else f"from {least} to {most}"
-        raise InputError(name, f"must be a whole number {limits}, not {shown(value)}")
-    return value
-
-
-def string(name: str, value: object) -> str:
-    if not isinstance(value, str):
-        raise InputError(name, f"must be text in quotes, not {shown(value)}")
-    return value
-
-
-def choice(name: str, value: object, allowed: tuple[str, ...]) -> str:
-    """One of the words `allowed`."""
-    if isinstance(value, str) and value in allowed:
-        return value
-    hint = closest(value, allowed) if isinstance(value, str) else ""
-    choices = " or ".join(f'"{word}"' for word in allowed)
-    raise InputError(name, f"must be {choices}, not {shown(value)}{hint}")
-
-
-def shown(value: object) -> str:
-    """A TOML value as the user wrote it, more or less."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return "a table"
-    if isinstance(value, list):
-        return "a list" if len(value) > 6 else f"[{', '.join(shown(item) for item in value)}]"
-    if isinstance(value, str):
-        return f'"{value}"' if len(value) < 60 else f'"{value[:56]}..."'
-    if isinstance(value, int) and abs(value) >= 10**18:
-        return "a number of more than 18 digits"
-    return str(value)
-
-
-def closest(word: str, known: tuple[str, ...]) -> str:
-    """A hint at the known word that is meant, or nothing."""
-    lower = {name.lower(): name for name in known}
-    close = difflib.get_close_matches(word.lower(), lower, n=1)
-    return f', did you mean "{lower[close[0]]}"?' if close else ""
-
-
 # -- lines -------------------------------------------------------------------------------------------------
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
@@ -261,22 +196,22 @@ def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[
     counts: dict[str, int] = {}
     section: Place = ()
     begin, depth = 0, 0
-    for number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
+    for line_number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
         header, key = _HEADER.match(line), _KEY_LINE.match(line)
         if depth > 0:
-            starts[number] = begin
+            starts[line_number] = begin
             depth = max(depth + change, 0)
         elif header:
             section = _parts(header[2])
             if header[1] == "[[":
                 counts[header[2]] = counts.get(header[2], -1) + 1
-                places.setdefault(section, number)
+                places.setdefault(section, line_number)
                 section = (*section, counts[header[2]])
-            places.setdefault(section, number)
+            places.setdefault(section, line_number)
         elif key:
-            begin, depth = number, max(change, 0)
-            keys[number] = (*section, *_parts(key[1]))
-            places.setdefault(keys[number], number)
+            begin, depth = line_number, max(change, 0)
+            keys[line_number] = (*section, *_parts(key[1]))
+            places.setdefault(keys[line_number], line_number)
     return places, keys, starts
 
 

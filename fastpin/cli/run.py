@@ -1,92 +1,89 @@
-"""``fastpin run``, ``resume`` and ``show``: solve, and hand out what was found as table, figures and files."""
+"""``fastpin run``, ``resume`` and ``show``: solve, then write the states as a table, figures and files."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fastpin.errors import InputError, Interrupted, SolveError
-from fastpin.terminal import (
+from fastpin import casefile, figures, solver, storage
+from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
-    bar,
     check_outputs,
     fail,
     write_files,
     write_text,
 )
-
-if TYPE_CHECKING:
-    from fastpin.casefile import Case
-    from fastpin.run import Progress
-    from fastpin.state import Result
+from fastpin.errors import InputError
+from fastpin.model.case import Case, check_keep
+from fastpin.report.states import cycle_lines, state_table
+from fastpin.report.summary import document
+from fastpin.report.table import visible_rows
+from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver.result import Result
 
 LARGE_STRAIN = 0.05
+"""Strain above which results are beyond linear elasticity, and units are probably wrong."""
+
+SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars")
+"""Options of the solver that the command line can set."""
+
+LISTS = ("arc", "between")
+"""Those that may be lists, written with commas."""
+
+PROGRESS = "load point {n:.2f} of {total}"
 
 
 def run(options: argparse.Namespace) -> int:
     """Solve a case."""
-    from fastpin.casefile import builtin_case, read_case
-
-    case = builtin_case() if options.case is None else read_case(options.case)
-    case = _overridden(case, options)
+    case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
+    case = _with_options(case, options)
     _check_outputs(options)
     _check_combination(case, options)
     start = _start(options)
-    keywords = {**case.options.keywords(), **({} if start is None else {"start": start})}
-    if options.error_bars:
-        keywords["error_bars"] = True
-    with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
-        progress = _progress(shown)
-        if options.output is not None:
-            from fastpin.record import record
-
-            saved = _whole_numbers(len(case.history), options.save_after)
-            ended = _ended(
-                lambda: record(
-                    case.problem, case.history, options.output, progress=progress, save_after=saved,
-                    overwrite=options.overwrite, title=case.title, **keywords,
-                )
-            )  # fmt: skip
-            return _hand_out_stored(case, options, ended)
-        from fastpin.solver import solve
-
-        found: list[Result] = []
-        ended = _ended(lambda: found.append(solve(case.problem, case.history, progress=progress, **keywords)))
-    return _hand_out(case, options, found[0] if ended is None else ended.result, ended)
+    saved = _corners(len(case.history), options.save_after)
+    keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
+    found: list[Result] = []
+    with bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
+        keywords["progress"] = progress_to(progress_bar)
+        if options.output is None:
+            ended = _ending(lambda: found.append(solver.solve(case.problem, case.history, **keywords)))
+        else:
+            keywords |= {"title": case.title, "save_after": saved, "overwrite": options.overwrite}
+            ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
+    if options.output is not None:
+        return _write_stored(case, options, ended)
+    return _write_result(case, options, found[0] if ended is None else ended.result, ended)
 
 
 def resume(options: argparse.Namespace) -> int:
-    """Go on with a run that has ended early."""
-    from fastpin.record import resume as go_on
-    from fastpin.record import stored_case
-
-    case = stored_case(options.output)
+    """Continue a run that ended early."""
+    case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
-    with bar(len(case.history), "load point {n:.2f} of {total}") as shown:
-        ended = _ended(lambda: go_on(options.output, _progress(shown)))
-    return _hand_out_stored(case, options, ended)
+    with bar(len(case.history), PROGRESS) as progress_bar:
+        ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
+    return _write_stored(case, options, ended)
 
 
 def show(options: argparse.Namespace) -> int:
-    """Print and draw a result that is in a file."""
-    from fastpin.record import stored_case
-
-    case = stored_case(options.output)
+    """Print and draw a stored result."""
+    case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
-    return _hand_out_stored(case, options, None)
+    return _write_stored(case, options, None)
 
 
-def _ended(work: Callable[[], object]) -> SolveError | Interrupted | None:
-    """Do it, and return how it ended early, if it did."""
+def _ending(work: Callable[[], object]) -> SolveError | Interrupted | None:
+    """Do the work, and return the error that ended it early; None if it came to its end."""
     try:
         work()
     except (SolveError, Interrupted) as ended:
@@ -94,56 +91,56 @@ def _ended(work: Callable[[], object]) -> SolveError | Interrupted | None:
     return None
 
 
-def _progress(shown: Any) -> Progress:
-    def progress(done: float, total: int) -> None:
-        shown.total = total
-        shown.update(done - shown.n)
-
-    return progress
-
-
 # -- options -------------------------------------------------------------------------------------------------
 
 
-def _overridden(case: Case, options: argparse.Namespace) -> Case:
-    """The case with the solver options of the command line."""
-    given: dict[str, Any] = {}
-    for name in ("nodes", "method", "increments", "keep", "shortcut"):
-        if getattr(options, name) is not None:
-            given[name] = getattr(options, name)
-    if options.between is not None:
-        given["between"] = _between(options.between)
+def _with_options(case: Case, options: argparse.Namespace) -> Case:
+    """The case with the solver's options of the command line."""
+    given = {
+        name: _value(text, name in LISTS) for name in SOLVE_OPTIONS if (text := getattr(options, name)) is not None
+    }
+    with _as_options(options):
+        changed = case.options.changed(**given)
+        check_keep(case.history, changed)
+    return dataclasses.replace(case, options=changed)
+
+
+def _value(text: object, may_be_list: bool) -> Any:
+    """The value that an option's text stands for: a number, a list of numbers, or the text itself."""
+    if not isinstance(text, str):
+        return text
+    if may_be_list and "," in text:
+        return [_value(part.strip(), False) for part in text.split(",")]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+@contextlib.contextmanager
+def _as_options(options: argparse.Namespace) -> Any:
+    """Errors name a field of the solver by its option, if that was given."""
     try:
-        return dataclasses.replace(case, options=dataclasses.replace(case.options, **given))
+        yield
     except InputError as error:
-        raise InputError(f"--{error.field}", error.reason) from None
-
-
-def _between(text: str) -> int | tuple[float, ...]:
-    from fastpin.casefile import checked_between
-
-    try:
-        value: object = int(text) if text.strip().lstrip("+-").isdigit() else [float(part) for part in text.split(",")]
-    except ValueError:
-        value = text
-    try:
-        return checked_between(value)
-    except InputError as error:
-        raise InputError("--between", error.reason) from None
+        if error.field in SOLVE_OPTIONS and getattr(options, error.field) is not None:
+            raise InputError(f"--{error.field.replace('_', '-')}", error.reason) from None
+        raise
 
 
 def _check_combination(case: Case, options: argparse.Namespace) -> None:
-    """Refuse options that would have no effect, and what can't be drawn."""
+    """Refuse options that would have no effect, and figures that can't be drawn."""
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
             raise InputError(f"--{name.replace('_', '-')}", "needs --output FILE")
     for name in ("output", "start"):
         if options.error_bars and getattr(options, name) is not None:
             raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
-    if options.start is not None and options.nodes is not None:
-        raise InputError("--nodes", "is that of the result to go on from (--start)")
-    if case.options.keep == "cycles" and not case.history.longest_cycle:
-        raise InputError("--keep", "the history has no cycles: none of its blocks is repeated")
+    for name in ("nodes", "arc"):
+        if options.start is not None and getattr(options, name) is not None:
+            raise InputError(f"--{name}", "is that of the result to go on from (--start)")
     _check_cycles(case, options)
 
 
@@ -152,7 +149,7 @@ def _check_cycles(case: Case, options: argparse.Namespace) -> None:
         raise InputError("--cycles", "the history has no cycles: none of its blocks is repeated")
 
 
-def _whole_numbers(corners: int, text: str | None) -> list[int]:
+def _corners(corners: int, text: str | None) -> list[int]:
     """The corners after which a restart is kept."""
     try:
         numbers = [] if text is None else [int(part) for part in text.split(",")]
@@ -169,12 +166,10 @@ def _start(options: argparse.Namespace) -> Result | None:
         if options.after is not None:
             raise InputError("--after", "needs --start FILE")
         return None
-    from fastpin.store import load
-
     if options.output is not None and options.output.resolve() == options.start.resolve():
         raise InputError("--output", "is the file to start from; a branch needs a file of its own")
     try:
-        start = load(options.start, states=[], after=options.after)
+        start = storage.load(options.start, states=[], after=options.after)
     except InputError as error:
         raise InputError("--after" if error.field == "after" else error.field, error.reason) from None
     if start.restart is None:
@@ -194,25 +189,21 @@ def _check_outputs(options: argparse.Namespace) -> None:
 # -- what was found ------------------------------------------------------------------------------------------
 
 
-def _hand_out_stored(case: Case, options: argparse.Namespace, ended: SolveError | Interrupted | None) -> int:
+def _write_stored(case: Case, options: argparse.Namespace, ended: SolveError | Interrupted | None) -> int:
     """Print and draw what is in the file of a run; of many states no more than that takes is read."""
-    from fastpin.plot import MAX_LINES, spread
-    from fastpin.report import shown_rows
-    from fastpin.store import load, size
-
     if ended is not None and ended.result is None:  # the file, if there is one, is not of this run
-        return _hand_out(case, options, None, ended)
-    count = size(options.output)
+        return _write_result(case, options, None, ended)
+    count = storage.state_count(options.output)
     if options.json is not None:
-        return _hand_out(case, options, load(options.output), ended)
-    picked = set(shown_rows(count))
+        return _write_result(case, options, storage.load(options.output), ended)
+    picked = set(visible_rows(count))
     if options.plot is not None:
-        picked |= set(spread(count, MAX_LINES))
-    result = load(options.output, states=sorted(picked))
-    return _hand_out(case, options, result, ended, hidden=count - len(picked))
+        picked |= set(figures.drawn_places(count))
+    result = storage.load(options.output, states=sorted(picked))
+    return _write_result(case, options, result, ended, hidden=count - len(picked))
 
 
-def _hand_out(
+def _write_result(
     case: Case,
     options: argparse.Namespace,
     result: Result | None,
@@ -220,8 +211,6 @@ def _hand_out(
     hidden: int = 0,
 ) -> int:
     """Print the states and write the files that were asked for; `hidden` states in the middle are left out."""
-    from fastpin.report import summary
-
     code, error = EXIT_OK, None
     if isinstance(ended, SolveError):
         error = str(ended)
@@ -240,22 +229,22 @@ def _hand_out(
         )
         code = fail(f"interrupted {where}{more}", EXIT_INTERRUPTED)
 
-    writers: list[tuple[Any, Callable[[Path], None]]] = []
+    writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
-        document = json.dumps(summary(case, result, error), indent=2, allow_nan=False) + "\n"
+        text = json.dumps(document(case, result, error), indent=2, allow_nan=False) + "\n"
         if options.json != "-":
-            writers.append((options.json, lambda path: write_text(path, document)))
+            writers.append((options.json, lambda path: write_text(path, text)))
     if result is not None and len(result):
-        reached = result
-        writers.append((options.plot, lambda path: _plot(reached, path, case.title)))
+        states = result
+        writers.append((options.plot, lambda path: figures.plot_tractions(states, path, title=case.title)))
     if result is not None and result.cycles:
         with_cycles = result
-        writers.append((options.cycles, lambda path: _plot_cycles(with_cycles, path, case.title)))
+        writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
     elif options.cycles is not None:
         code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
     code = write_files(writers) or code
     if options.json == "-":  # last, for whoever reads our output may leave
-        sys.stdout.write(document)
+        sys.stdout.write(text)
     else:
         _print_states(case, result, hidden)
     return code
@@ -267,8 +256,6 @@ def _reached(result: Result) -> int:
 
 
 def _print_states(case: Case, result: Result | None, hidden: int) -> None:
-    from fastpin.report import cycle_lines, state_table
-
     if case.title:
         print(case.title)
     if result is None or not len(result):
@@ -284,15 +271,3 @@ def _print_states(case: Case, result: Result | None, hidden: int) -> None:
     names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
     known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
     print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
-
-
-def _plot(states: Sequence[Any], path: Path, title: str) -> None:
-    from fastpin.plot import plot_tractions
-
-    plot_tractions(states, path, title=title)
-
-
-def _plot_cycles(result: Result, path: Path, title: str) -> None:
-    from fastpin.plot import plot_cycles
-
-    plot_cycles(result, path, title=title)

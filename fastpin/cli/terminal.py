@@ -1,14 +1,13 @@
-"""What all commands share: exit codes, messages, the progress bar, output files."""
+"""What all commands share: exit codes, messages, output files."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
+from fastpin.storage.files import check_writable, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
@@ -18,20 +17,6 @@ def fail(message: str, code: int) -> int:
     """Say what went wrong, and return the exit code."""
     print(f"fastpin: {message}", file=sys.stderr)
     return code
-
-
-def bar(total: int, text: str) -> Any:
-    """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
-    from tqdm import tqdm
-
-    return tqdm(
-        total=total,
-        delay=2,
-        disable=None,
-        leave=False,
-        file=sys.stderr,
-        bar_format=f"{{percentage:3.0f}}% |{{bar}}| {text}, {{remaining}} left",
-    )
 
 
 def check_figure(option: str, path: Path) -> None:
@@ -56,7 +41,7 @@ def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> 
             raise InputError(name, f"writes the same file as {other}: {path}")
 
 
-def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], None]]]) -> int:
+def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], object]]]) -> int:
     """Write the files that are asked for, and return the exit code; where one can't be written, the others are."""
     code = EXIT_OK
     for path, write in writers:

@@ -1,4 +1,4 @@
-"""The matrices of one problem on one grid, and the contact's configuration in dimensionless form.
+"""The matrices of one problem on one grid, in dimensionless form.
 
 With a reference force F, tractions are in F/R, displacements in F beta*, rotations in F beta*/R. The pin's motion
 (c_x, c_y, omega) counts from where it came to rest on the hole, and
@@ -13,23 +13,15 @@ What is left is symmetric.
 
 from __future__ import annotations
 
-import copy
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fastpin import kernels
-from fastpin.basis import FactoredSet
-from fastpin.grid import Grid
-from fastpin.loading import LOADS
-from fastpin.problem import Problem
-from fastpin.state import OPEN, SLIP_POSITIVE, STICK
-
-P, Q, M, SXX, SYY, ROTATION = range(len(LOADS))
-
-MAX_RESIDUAL = 1e-9
-"""Largest relative violation of the contact conditions in a state that is returned."""
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, ROTATION, SXX, SYY, M, P, Q
+from fastpin.model.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -51,46 +43,13 @@ class Scales:
         return cls(force, traction, force * beta, rotation, force * force * beta, loads)
 
 
-@dataclass(eq=False)
-class Configuration:
-    """Everything that evolves: tractions, gap, slip, motion and status at one load (dimensionless).
-
-    ``rest`` (2,) is the position of the pin's centre, from the concentric one, where it came to rest on the hole, and
-    ``rest_gap`` (n,) the gap there, both without the remote stress. ``motion`` and ``slip`` count from there;
-    ``origin`` is the first such position (NaN before there was one).
-    ``rest_slip`` is what the remote stress had made of the slip by then, and is taken off before users see it.
-    """
-
-    pressure: np.ndarray
-    shear: np.ndarray
-    gap: np.ndarray
-    slip: np.ndarray
-    status: np.ndarray
-    motion: np.ndarray
-    load: np.ndarray
-    origin: np.ndarray
-    rest: np.ndarray
-    rest_gap: np.ndarray
-    rest_slip: np.ndarray
-    dissipation: float = 0.0
-    work: float = 0.0
-
-    def copy(self) -> Configuration:
-        """A copy that shares no array with this one."""
-        return copy.deepcopy(self)
-
-    @property
-    def closed(self) -> np.ndarray:
-        return self.status != OPEN
-
-
 @dataclass(frozen=True, eq=False)
 class System:
     """The collocation matrices of one problem on one grid.
 
     ``operator`` (2n, 2n) maps (N, T) to (h, s), ``motion`` (2n, 3) the rigid motion and ``loads`` (2n, 6) the loads.
-    ``gap0`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). The equilibrium
-    conditions (50), (51), or the prescription of a rotation that is held, are
+    ``rest_clearance`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). The
+    equilibrium conditions (50), (51), or the prescription of a rotation that is held, are
 
         equilibrium @ (N, T) + motion_rows @ motion = forces @ load.
     """
@@ -98,7 +57,7 @@ class System:
     problem: Problem
     grid: Grid
     scales: Scales
-    gap0: float
+    rest_clearance: float
     friction: float
     operator: np.ndarray
     motion: np.ndarray
@@ -108,15 +67,6 @@ class System:
     forces: np.ndarray
     weights: np.ndarray
     plate: float
-
-    def reaches_end(self, configuration: Configuration) -> bool:
-        """Whether the contact reaches an end node of an arc, where it is cut off."""
-        return not self.grid.closed and bool(configuration.closed[[0, -1]].any())
-
-    @property
-    def resting_status(self) -> int:
-        """Status of a closed node that does not move: sticking, or slipping where there is no friction."""
-        return STICK if self.friction > 0.0 else SLIP_POSITIVE
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
@@ -128,7 +78,7 @@ class System:
         ratio = pair.alpha_star / pair.beta_star
         uniform_part = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
         operator = np.empty((2 * n, 2 * n), order="F")
-        kernels.fill_operator(theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
+        influence.fill_operator(theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
@@ -167,100 +117,16 @@ class System:
         motion_rows[2, 2] = forces[2, ROTATION] = 1.0
         return replace(self, friction=0.0, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
 
-    def solve(
-        self, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
-    ) -> Solution | None:
-        """Tractions and motion for given statuses; None if the closed nodes can't hold the pin (a mechanism).
-
-        `stuck_slip` (n,) is the slip held at sticking nodes. With ``rest_gap = 0``, zero `stuck_slip` and a load rate
-        this gives rates.
-        """
-        active = FactoredSet(self, status)
-        if active.singular:
-            return None
-        n = self.grid.size
-        known = self.loads[active.rows] @ load
-        known[: active.normal.size] += np.broadcast_to(rest_gap, n)[active.normal]
-        known[active.normal.size :] -= stuck_slip[active.tangential]
-        unknowns = active.solve(np.r_[-known, self.forces @ load])
-        tractions = active.expand(unknowns)
-        motion = unknowns[-3:]
-        displacement = self.displacement(tractions, motion, load, rest_gap)
-        return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
-
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
     ) -> np.ndarray:
         """Gap and slip (2n,) of given tractions, motion and load, straight from the matrices."""
-        return self.moved(self.operator @ tractions, motion, load, rest_gap)
+        return self.total_displacement(self.operator @ tractions, motion, load, rest_gap)
 
-    def moved(
+    def total_displacement(
         self, elastic: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
     ) -> np.ndarray:
         """Gap and slip (2n,) from what the tractions make of them, ``operator @ tractions``."""
         result = elastic + self.motion @ motion + self.loads @ load
         result[: self.grid.size] += rest_gap
         return result
-
-    def work(self, before: Configuration, after: Configuration) -> float:
-        """Work of the loads between two configurations, with the mean load (dimensionless)."""
-        n = self.grid.size
-        load = 0.5 * (before.load + after.load)
-        moved = after.motion - before.motion
-        moment = -0.5 * float(self.weights @ (before.shear + after.shear))
-        change = np.r_[after.pressure - before.pressure, after.shear - before.shear]
-        column = self.loads @ load
-        internal = float((self.weights * column[:n]) @ change[:n] + (self.weights * column[n:]) @ change[n:])
-        return float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
-
-    def dissipated(self, before: Configuration, after: Configuration) -> float:
-        """Energy that friction dissipates between two configurations, with the mean shear (dimensionless)."""
-        slid = np.where(after.closed, after.slip - before.slip, 0.0)
-        return -0.5 * float((self.weights * slid) @ (before.shear + after.shear))
-
-    def energy(self, configuration: Configuration) -> float:
-        """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
-        tractions = np.r_[configuration.pressure, configuration.shear]
-        elastic = 0.5 * (self.operator @ tractions) + self.loads @ configuration.load
-        return float(np.sum(np.r_[self.weights, self.weights] * tractions * elastic))
-
-    def worst_residual(self, configuration: Configuration) -> float:
-        return float(np.max(list(self.residuals(configuration).values())))
-
-    def residuals(self, configuration: Configuration) -> dict[str, float]:
-        """Largest relative violation of the contact conditions, recomputed from the matrices."""
-        n, mu = self.grid.size, self.friction
-        pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
-        tractions = np.r_[pressure, shear]
-        elastic = self.operator @ tractions
-        true = self.moved(elastic, configuration.motion, configuration.load, configuration.rest_gap)
-        closed, stick = status != OPEN, status == STICK
-        slipping = closed & ~stick
-        gap_error = np.where(closed, np.abs(true[:n]), np.maximum(-true[:n], 0.0))
-        slip_error = np.where(closed, np.abs(true[n:] - configuration.slip), 0.0)
-        on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
-        cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
-        balance = self.equilibrium @ tractions + self.motion_rows @ configuration.motion
-        balance_error = np.abs(balance - self.forces @ configuration.load)
-        length = max(float(np.abs(elastic).max()), float(np.abs(configuration.motion).max()), 1e-300)
-        if not closed.any():
-            length = max(length, abs(self.gap0))
-        traction = max(float(pressure.max()), 1e-300)
-        total = max(float(np.abs(self.equilibrium) @ np.abs(tractions) @ np.ones(3)), 1e-300)
-        return {
-            "gap": float(gap_error.max()) / length,
-            "slip": float(slip_error.max()) / length,
-            "cone": float(max(cone_error.max(), 0.0)) / traction,
-            "equilibrium": float(balance_error.max()) / total,
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """Tractions, gap, slip and motion of one solve (or their rates)."""
-
-    pressure: np.ndarray
-    shear: np.ndarray
-    gap: np.ndarray
-    slip: np.ndarray
-    motion: np.ndarray

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from fastpin.convergence import Convergence
-from fastpin.convergetable import Shown, reported
-from fastpin.plot import Line, draw_with, key, line, panels
-from fastpin.quantities import QUANTITIES
-from fastpin.report import named_loads, scaled
+from fastpin.figures.style import Line, draw_with, key, line, panels
+from fastpin.model.units import named_loads, scaled
+from fastpin.report.convergence import ReportedSeries, reported_series
+from fastpin.states.quantities import QUANTITIES
+from fastpin.studies.convergence import Convergence
 
 MOST_PANELS = 9
 COLUMNS = 3
@@ -27,6 +27,7 @@ ORDER_OF_PANELS = (
 
 _GUIDES: dict[int, Line] = {1: {"color": "0.6", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
            2: {"color": "0.6", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.0}}  # fmt: skip
+
 _STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
 _NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
 TITLE_WIDTH = 90  # characters
@@ -47,9 +48,9 @@ def plot_convergence(
 
 
 def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
-    found: dict[str, dict[str, tuple[tuple[int, ...], Shown]]] = {}
+    found: dict[str, dict[str, tuple[tuple[int, ...], ReportedSeries]]] = {}
     for study in convergence.studies:
-        for row in reported(study, convergence.problem, corner):
+        for row in reported_series(study, convergence.problem, corner):
             if row.verdict in ("observed", "not observed"):
                 found.setdefault(row.name, {})[study.method] = study.counts, row
     names = [name for name in (*ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
@@ -84,7 +85,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     return figure
 
 
-def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Shown]]) -> None:
+def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], ReportedSeries]]) -> None:
     rows = [row for _, row in sequences.values()]
     largest = max(float(np.ptp(row.values)) for row in rows)
     factor, unit = (1.0, "deg") if rows[0].unit == "deg" else scaled([largest], rows[0].unit)

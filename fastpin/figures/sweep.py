@@ -13,8 +13,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from fastpin.plot import MAX_NAMED, Line, draw_with, key, line, panels
-from fastpin.sweeptable import Axis, Chart
+from fastpin.figures.style import MAX_NAMED, Line, draw_with, key, line, panels
+from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}

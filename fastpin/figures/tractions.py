@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,40 +20,16 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
-from fastpin.loading import LOADS
-from fastpin.report import LOAD_KIND, acting_loads, load_point, scaled, units
-from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, Result, State, series
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, draw_and_save, fitted_legend, spread
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.units import acting_loads, scaled, units
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
 
-# Okabe and Ito's colours, distinct for all kinds of colour vision, without the yellow: too light for a line.
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
-_DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
-    (0, ()),
-    (0, (5.0, 1.6)),
-    (0, (1.2, 1.2)),
-    (0, (5.0, 1.4, 1.2, 1.4)),
-    (0, (8.0, 2.0)),
-    (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
-)
 _SHADE = "0.93"
-MAX_NAMED = len(_COLOURS)
-"""Up to so many states are drawn with a legend; more get a colour scale."""
-MAX_LINES = 60
 
-_STYLE: Any = {
-    "font.size": 9.0,
-    "font.family": "sans-serif",
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "xtick.direction": "out",
-    "ytick.direction": "out",
-    "lines.linewidth": 1.4,
-    "lines.solid_capstyle": "round",
-    "legend.frameon": False,
-    "mathtext.default": "regular",
-    "svg.fonttype": "none",
-}
+MAX_LINES = 60
 
 
 def plot_tractions(
@@ -96,156 +72,15 @@ def plot_tractions(
     if not shown:
         raise InputError("states", "there is no state to plot")
     if len(shown) > MAX_LINES:
-        shown = [shown[k] for k in spread(len(shown), MAX_LINES)]
-    return _drawn(lambda: _draw(shown, title, width), path, dpi)
-
-
-def _drawn(draw: Callable[[], Figure], path: str | Path | None, dpi: float) -> Figure:
-    """The figure that ``draw()`` returns, drawn in the house style, and saved if there is a path."""
-    if path is not None:
-        _check_format(Path(path))
-    with mpl.rc_context(_STYLE):
-        figure = draw()
-        if path is not None:
-            _save(figure, Path(path), dpi)
-    return figure
-
-
-def spread(count: int, most: int) -> list[int]:
-    """Places of at most so many of `count` things, evenly spread, the first and the last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
-
-
-def plot_cycles(
-    result: Result, path: str | Path | None = None, width: float = 6.7, title: str = "", dpi: float = 200.0
-) -> Figure:
-    """What each cycle of a load history has changed, from its beginning to its end.
-
-    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure; what has
-    changed by rounding only, where the contact is periodic, has no place on its logarithmic scale.
-    Below are the energy dissipated in each cycle, and how far the cycles of a block have turned the pin (ratcheting).
-
-    Parameters
-    ----------
-    result : Result
-        With cycles: of a history with repeated blocks.
-    path, title, width, dpi
-        See :func:`plot_tractions`.
-
-    Raises
-    ------
-    InputError
-        If there are no cycles, or the figure's format is unknown.
-    """
-    if not result.cycles:
-        raise InputError("cycles", "the history has no repeated blocks")
-    return _drawn(lambda: _draw_cycles(result, title, width), path, dpi)
-
-
-def _draw_cycles(result: Result, title: str, width: float) -> Figure:
-    figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(3, 1, sharex=True)
-    kind = units(result.problem)
-    lengths = sorted({cycle.length for cycle in result.cycles})[:MAX_NAMED]
-    shown = [one for one in series(result.cycles) if one[0].length in lengths]
-    energy, unit = scaled([cycle.dissipation for cycle in result.cycles], kind["energy"])
-    turns = [np.nancumsum([0.0, *(cycle.rotation_change for cycle in one)]) for one in shown]
-    angle, unit_of_angle = scaled(np.concatenate(turns).tolist(), kind["rotation"])
-    for one, turned in zip(shown, turns, strict=True):
-        colour = lengths.index(one[0].length)
-        corner = [cycle.corner + 1 for cycle in one]
-        marker: dict[str, Any] = {"marker": "o", "markersize": 2.2} if len(one) <= 60 else {}
-        for dashes, field in enumerate(("pressure_change", "shear_change")):
-            change = np.array([getattr(cycle, field) for cycle in one])
-            change[change == 0.0] = np.nan
-            panels[0].plot(corner, change, **line(colour, dashes), **marker)
-        dissipated = np.array([energy * cycle.dissipation for cycle in one])
-        dissipated[~(dissipated > 0.0)] = np.nan
-        panels[1].plot(corner, dissipated, **line(colour), **marker)
-        panels[2].plot([corner[0] - one[0].length, *corner], angle * turned, **line(colour), **marker)
-    for panel in panels[:2]:
-        panel.set_yscale("log")
-    largest = np.nanmax([0.0, *(energy * cycle.dissipation for cycle in result.cycles)])
-    if largest > 0.0:
-        panels[1].set_ylim(bottom=max(panels[1].get_ylim()[0], 1e-9 * largest))  # below is rounding
-    panels[0].set_ylabel("largest change / peak N")
-    panels[1].set_ylabel(f"dissipated in a cycle  [{unit}]")
-    panels[2].set_ylabel(f"turned, in all  [{unit_of_angle}]")
-    panels[2].set_xlabel("corner of the load history at which the cycle ends")
-    handles: list[Artist] = [
-        Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **line(colour))
-        for colour, length in enumerate(lengths)
-    ]
-    for dashes, name in enumerate(("pressure", "shear")):
-        handles.append(Line2D([], [], label=name, **{**line(0, dashes), "color": "0.3"}))
-    _fitted_legend(figure, handles, min(len(handles), 4))
-    if len({cycle.corner for cycle in result.cycles}) > 1:
-        panels[2].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
-    figure.align_ylabels(panels)
-    if title:
-        figure.suptitle(title, fontsize=9.5)
-    return figure
-
-
-Line = dict[str, Any]
-"""How a line is drawn: keywords of ``Axes.plot``."""
-
-
-def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
-    """A line in the house's colours and dashes, of which there are :data:`MAX_NAMED` each; 0 is solid."""
-    return {"color": _COLOURS[colour], "linestyle": _DASHES[dashes], "linewidth": width}
-
-
-def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
-    """Save the figure that ``draw(curves)`` returns, drawn in the house style."""
-    _drawn(lambda: draw(curves), path, dpi)
-
-
-def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
-    """A figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
-    figure = Figure(figsize=(width, rows * height + 0.6), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, columns, squeeze=False)
-    for panel in axes.flat:
-        panel.grid(True, color="0.92", linewidth=0.6)
-        panel.set_axisbelow(True)
-    return figure, axes
-
-
-def angle_axis(panel: Axes) -> None:
-    """Ticks at whole parts of a right angle."""
-    panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
-
-
-def key(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
-    """A legend below the panels; each row holds labels with their lines."""
-    columns = max(len(row) for row in rows)
-    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
-    blank = Line2D([], [], linestyle="none", label=" ")
-    filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
-    _fitted_legend(figure, filled, columns)
-
-
-def _check_format(path: Path) -> None:
-    formats = FigureCanvasAgg.get_supported_filetypes()
-    if path.suffix[1:].lower() not in formats:
-        known = ", ".join(sorted(formats))
-        raise InputError("path", f"a figure's name must end in one of {known}, not {path.name!r}")
-    check_writable(path)
-
-
-def _save(figure: Figure, path: Path, dpi: float) -> None:
-    dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
-    with replacing(path) as temporary:
-        figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
+        shown = [shown[k] for k in drawn_places(len(shown))]
+    return draw_and_save(lambda: _draw(shown, title, width), path, dpi)
 
 
 def _draw(states: list[State], title: str, width: float) -> Figure:
     problem = states[0].problem
     named = len(states) <= MAX_NAMED
     shades = _scale(states).to_rgba(np.array([load_point(state) for state in states]))
-    colours: Sequence[Any] = _COLOURS if named else list(shades)
+    colours: Sequence[Any] = COLOURS if named else list(shades)
     zones = named and not problem.frictionless and len(states) > 1
     strip = 0.16 * len(states) + 0.15  # inches
     panels = [1.9] if problem.frictionless else [1.9, 1.9]
@@ -261,7 +96,7 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     label = label.replace("beta*", "β*")
     for index, state in enumerate(states):
         colour = colours[index]
-        dashes = _DASHES[index] if named else _DASHES[0]
+        dashes = DASHES[index] if named else DASHES[0]
         thickness = 1.4 if named else 0.9
         angle, pressure, shear = frame.curves(state)
         axes[0].plot(angle, factor * pressure, color=colour, linestyle=dashes, linewidth=thickness)
@@ -288,6 +123,11 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     figure.align_ylabels(axes)
     _name_states(figure, axes, states, colours, title, named)
     return figure
+
+
+def drawn_places(count: int) -> list[int]:
+    """Places of the states that a figure draws of `count`: all of a few, evenly spread ones of many."""
+    return spread(count, MAX_LINES)
 
 
 class _Frame:
@@ -396,7 +236,7 @@ def _name_states(
     for index, state in enumerate(states):
         parts = ",  ".join(_load_text(states, index, name) for name in varying)
         text = f"{load_point(state):.4g}:  {parts}" if parts else f"{load_point(state):.4g}"
-        handles.append(Line2D([], [], color=colours[index], linestyle=_DASHES[index], label=text))
+        handles.append(Line2D([], [], color=colours[index], linestyle=DASHES[index], label=text))
     styles: list[Artist] = []
     if not states[0].problem.frictionless:
         friction = states[0].problem.friction
@@ -408,26 +248,7 @@ def _name_states(
             styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip, → counter-clockwise"))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
     if handles:
-        _fitted_legend(figure, handles, columns)
-
-
-def _fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
-    """A legend below the panels, in a font small enough for the figure's width."""
-    size = 8.0
-    while True:
-        legend = figure.legend(
-            handles=handles,
-            loc="outside lower center",
-            ncols=columns,
-            fontsize=size,
-            handlelength=2.8,
-            columnspacing=2.0,
-        )
-        share = legend.get_window_extent().width / figure.bbox.width
-        if share <= 0.98 or size <= 4.0:
-            return
-        legend.remove()
-        size = max(4.0, size * 0.96 / share)
+        fitted_legend(figure, handles, columns)
 
 
 def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:

@@ -28,10 +28,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.jit import compiled, inner
-from fastpin.state import OPEN, STICK
-from fastpin.state import SLIP_NEGATIVE as NEGATIVE
-from fastpin.state import SLIP_POSITIVE as POSITIVE
+from fastpin.kernels.jit import compiled, inner
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.kernels.status import SLIP_NEGATIVE as NEGATIVE
+from fastpin.kernels.status import SLIP_POSITIVE as POSITIVE
 
 WIDTH = 32
 """Columns in a block."""
@@ -43,13 +43,16 @@ CHUNK = 64
 REACHED = 0  # the requested point of the step
 STALE = 1  # a column is needed whose block is not up to date: counts[ASKED]
 REBUILD = 2  # a pivot was small, or there is no room for more updates: rebuild the tableau and call again
-WHOLESALE = 3  # all statuses of the queue were changed at once; it has the old ones: rebuild and call again
+
+ALL_AT_ONCE = 3  # all statuses of the queue were changed at once; it has the old ones: rebuild and call again
+
 NO_SUPPORT = 4  # nothing holds the pin any more
 CYCLING = 5  # the statuses did not settle
 ARC_END = 6  # the contact reaches an end node
 
 # Slots of `counts`.
-UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, ASKED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7
+UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7
+
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
 
@@ -90,7 +93,7 @@ class Contact(NamedTuple):
     motion: np.ndarray
 
 
-class LoadWork(NamedTuple):
+class LoadTerms(NamedTuple):
     """What enters the work of the loads: the weights (2n,) of traction rates and the force (Q, -P) at the beginning of
     the step, and how much both grow along it; and the weights of the nodes."""
 
@@ -168,7 +171,7 @@ def _add_column(tableau, updates, target, source, factor):
 
 
 @inner
-def _asked(tableau, updates, node, old, new, tie):
+def _needed_column(tableau, updates, node, old, new, tie):
     """The first column that a change of status needs and that is not up to date; -1 if there is none."""
     tangential = tableau.matrix.shape[1] // 2 + node
     if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
@@ -395,7 +398,7 @@ def _work(contact, rates, friction, load, time, step):
 
 
 @inner
-def _work_off(tableau, contact, queue, friction, typical, closed_grid):
+def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
     """Make the changes of status that are waiting; returns REACHED when there are none left."""
     counts = queue.counts
     n = contact.status.size
@@ -411,8 +414,8 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
         if updates + MOST_UPDATES_A_CHANGE > tableau.left.shape[1]:
             return REBUILD
         new = POSITIVE if old == STICK and wanted == OPEN else wanted  # a sticking node slips before it opens
-        counts[ASKED] = _asked(tableau, updates, node, old, new, np.int64(contact.tie[node]))
-        if counts[ASKED] >= 0:
+        counts[NEEDED_COLUMN] = _needed_column(tableau, updates, node, old, new, np.int64(contact.tie[node]))
+        if counts[NEEDED_COLUMN] >= 0:
             return STALE
         updates, size = _change_status(tableau, updates, contact, friction, typical, node, new)
         if size == 0.0:
@@ -423,8 +426,10 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
             if other < 0:
                 return NO_SUPPORT
             slipping, stick = np.int64(contact.status[other]), np.int64(STICK)
-            counts[ASKED] = _asked(tableau, updates, other, slipping, stick, np.int64(contact.tie[other]))
-            if counts[ASKED] >= 0:
+            counts[NEEDED_COLUMN] = _needed_column(
+                tableau, updates, other, slipping, stick, np.int64(contact.tie[other])
+            )
+            if counts[NEEDED_COLUMN] >= 0:
                 return STALE
             updates, _ = _change_status(tableau, updates, contact, friction, typical, other, stick)
             counts[UPDATES] = updates
@@ -443,7 +448,7 @@ def _work_off(tableau, contact, queue, friction, typical, closed_grid):
 
 
 @inner
-def _change_wholesale(contact, queue, queued, closed_grid):
+def _change_all_at_once(contact, queue, queued, closed_grid):
     """Give all queued nodes their new statuses at once, for a new tableau; the queue keeps the old ones."""
     n = contact.status.size
     for k in range(queued):
@@ -454,11 +459,11 @@ def _change_wholesale(contact, queue, queued, closed_grid):
         contact.touched[node] = contact.touched[node] or new != OPEN
     queue.counts[NEXT] = queue.counts[QUEUED]
     queue.counts[EXCHANGES] += queued
-    return WHOLESALE
+    return ALL_AT_ONCE
 
 
 @compiled
-def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, wholesale):
+def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, all_at_once):
     """Follow the load from sums[TIME] to `stop`, status change by status change.
 
     Parameters
@@ -484,7 +489,7 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     counts, sums, rates = queue.counts, queue.sums, tableau.rates
     settled = False
     while True:
-        code = _work_off(tableau, contact, queue, friction, typical, closed_grid)
+        code = _apply_queue(tableau, contact, queue, friction, typical, closed_grid)
         if code != REACHED:
             return code
         traction_rate, length_rate = _rate_scales(rates, contact, friction)
@@ -507,8 +512,8 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
                 counts[ROUND] += 1
                 if counts[ROUND] > 4 * contact.status.size + 200:
                     return CYCLING
-                if queued > wholesale:
-                    return _change_wholesale(contact, queue, queued, closed_grid)
+                if queued > all_at_once:
+                    return _change_all_at_once(contact, queue, queued, closed_grid)
                 continue
             settled = True
             counts[ROUND] = 0

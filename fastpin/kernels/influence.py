@@ -28,7 +28,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import zeta
 
-from fastpin.jit import compiled
+from fastpin.kernels.jit import compiled
 
 TWO_PI = 2.0 * math.pi
 TWO_PI_LOW = 2.4492935982947064e-16
@@ -303,7 +303,16 @@ def cauchy_columns(seen, nodes, h_left, h_right, out):
             out[i, j] = hat_cauchy(seen[i] - nodes[j], h_left[j], h_right[j])
 
 
-def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, operator):
+def fill_operator(
+    theta: np.ndarray,
+    left: np.ndarray,
+    right: np.ndarray,
+    uniform: bool,
+    closed: bool,
+    ratio: float,
+    uniform_part: float,
+    operator: np.ndarray,
+) -> None:
     """The symmetric part of the displacements (30), (31): (gap, slip) of tractions (N, T), without the motion.
 
     Parameters
@@ -335,7 +344,9 @@ def fill_operator(theta, left, right, uniform, closed, ratio, uniform_part, oper
         _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
 
 
-def fill_cauchy(theta, left, right, uniform, closed, out):
+def fill_cauchy(
+    theta: np.ndarray, left: np.ndarray, right: np.ndarray, uniform: bool, closed: bool, out: np.ndarray
+) -> None:
     """Principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
 
     Parameters as in :func:`fill_operator`. The half hats of an arc have no principal value at their own nodes:

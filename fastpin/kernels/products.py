@@ -16,12 +16,13 @@ from contextvars import ContextVar
 
 import numpy as np
 
-from fastpin.jit import blas_address
+from fastpin.kernels.jit import blas_address
 
 WORTHWHILE = 4_000_000
 """Multiplications from which on a product is made in two threads."""
 
 _POINTER = ctypes.c_void_p
+
 # Called in this way it leaves the interpreter free, and works on parts of arrays in place.
 _dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
@@ -48,7 +49,7 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
         return
     half = m // 2
     lower = out[half:], left[half:], right
-    other = None if _alone.get() else _started(*lower)
+    other = None if _alone.get() else _start(*lower)
     try:
         if other is None:
             _add(*lower)
@@ -58,7 +59,7 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
             other.result()
 
 
-def _started(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> Future[None] | None:
+def _start(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> Future[None] | None:
     """The product on its way in the second thread; None if the interpreter is about to end."""
     global _second
     if _second is None:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import matmul_toeplitz
 
-from fastpin.jit import compiled
+from fastpin.kernels.jit import compiled
 
 TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 """D B D of a block B."""
@@ -82,7 +82,7 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     forward, error = np.empty((4, m)), np.empty(4)
     _predictor(first, second, cross, forward, error)
     with np.errstate(divide="ignore", invalid="ignore"):
-        column = _divided(forward, error)
+        column = _divide_blocks(forward, error)
     backward, last = (TURNED[:, np.newaxis] * blocks[:, ::-1] for blocks in (forward, column))
     out = np.empty((2 * m, 2 * m))
     for r in range(2):
@@ -96,7 +96,7 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     return out
 
 
-def _divided(column: np.ndarray, error: np.ndarray) -> np.ndarray:
+def _divide_blocks(column: np.ndarray, error: np.ndarray) -> np.ndarray:
     """column error^-1, block by block."""
     a, b, c, d = error
     one, two, three, four = column
@@ -105,7 +105,7 @@ def _divided(column: np.ndarray, error: np.ndarray) -> np.ndarray:
     )
 
 
-class Beside:
+class NeighbourResponses:
     """What a set of neighbours, all other nodes free, does to the nodes beside it, without a product of matrices.
 
     With the nodes of the set 0 to m-1, b_j the block column of T that a node j beside it makes in the rows of the set

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fastpin.checks import finite, whole_number
 from fastpin.errors import InputError
+from fastpin.model.angles import angle_between
+from fastpin.model.checks import number, whole_number
 
 LEAST_NODES = 5
+MAX_NODES = 20_000
+"""Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,18 +50,18 @@ class Grid:
     @classmethod
     def arc(cls, start: float, stop: float, nodes: int) -> Grid:
         """`nodes` equally spaced nodes from angle `start` to angle `stop`, rad, both included."""
-        a, b = finite("arc start", start), finite("arc stop", stop)
+        a, b = number("arc start", start), number("arc stop", stop)
         if not 0.0 < b - a < 2.0 * math.pi:
             raise InputError(
                 "arc", f"must run from a smaller to a larger angle, less than a full turn, not {a:g} to {b:g}"
             )
-        return cls(np.linspace(a, b, whole_number("nodes", nodes, LEAST_NODES)))
+        return cls(np.linspace(a, b, whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)))
 
     @classmethod
     def circle(cls, nodes: int, start: float = -1.5 * math.pi) -> Grid:
         """`nodes` equally spaced nodes on the whole circle, the first one at angle `start`."""
-        count = whole_number("nodes", nodes, LEAST_NODES)
-        return cls(finite("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
+        count = whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)
+        return cls(number("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
 
     def with_nodes(self, nodes: int) -> Grid:
         """`nodes` equally spaced nodes on the same arc or circle."""
@@ -107,11 +110,6 @@ class Grid:
         return total.real, total.imag
 
 
-def apart(angles: np.ndarray | float, angle: np.ndarray | float) -> np.ndarray:
-    """How far `angles` are from `angle`, rad, the short way round: -pi to pi, positive counter-clockwise."""
-    return np.remainder(np.asarray(angles) - angle + math.pi, 2.0 * math.pi) - math.pi
-
-
 def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
     """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0."""
     even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
@@ -120,3 +118,31 @@ def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
         series = length**2 / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
     odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
     return even + 1j * sense * odd
+
+
+BESIDE = 2
+"""Nodes at each end of the coarse arc beyond the fine one: a coarse contact may be wider."""
+
+
+def halved(grid: Grid, direction: float | None) -> Grid:
+    """The grid with half the intervals: every second node, among them the one nearest to the angle `direction`.
+
+    Equal spacings become twice as large, also where the number of intervals is odd: an arc then ends beyond that of
+    `grid`, which changes nothing, for the nodes there are open. Other grids keep their first and last node.
+    """
+    n = grid.size
+    if not grid.uniform:
+        ends = grid.theta[-1:] if not grid.closed else grid.theta[:1]
+        return Grid(np.union1d(grid.theta[::2], ends), grid.closed)
+    parity = 0 if direction is None else int(np.argmin(np.abs(angle_between(grid.theta, direction)))) % 2
+    if grid.closed:
+        return Grid.circle((n + 1) // 2, float(grid.theta[parity]))
+    spacing = float(grid.theta[-1] - grid.theta[0]) / (n - 1)
+    first, last = -parity, n - 1 + (n - 1 + parity) % 2
+    room = math.floor((2.0 * math.pi / spacing - (last - first)) / 4.0 - 0.5)  # at each end, in coarse nodes
+    if room < 0:
+        last -= 2
+    beside = 2 * max(0, min(BESIDE, room))
+    first, last = first - beside, last + beside
+    start = float(grid.theta[0]) + spacing * first
+    return Grid.arc(start, start + spacing * (last - first), (last - first) // 2 + 1)

@@ -8,41 +8,28 @@ from __future__ import annotations
 
 import bisect
 import csv
-import difflib
 import math
-import re
-from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 
-from fastpin.checks import finite, whole_number
 from fastpin.errors import CaseFileError, InputError
-from fastpin.problem import Problem
-
-LOADS = ("P", "Q", "M", "sxx", "syy", "rotation")
-"""Names of the loads, in the order of every load vector.
-
-* ``P``: force on the pin downwards (-y), N/m.
-* ``Q``: force on the pin along +x, N/m.
-* ``M``: moment on the pin, counter-clockwise, N (per unit thickness); only for a pin that rotates freely.
-* ``sxx``, ``syy``: remote stresses in the plate, Pa.
-* ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed.
-"""
+from fastpin.model.checks import number, whole_number
+from fastpin.model.history_csv import read_corners
+from fastpin.model.loads import LOADS, Corner, check_corner, load_index
+from fastpin.model.problem import Problem
 
 POINTS = 24
 """Corners a cycle of loads that are out of phase, unless said otherwise."""
 
 MOST_POINTS = 100_000
+"""Corners a cycle of loads that are out of phase, at most."""
 
-MOST_FAULTS = 20
-"""Faulty lines of a CSV file that are reported."""
-
-Corner = Mapping[str, float]
+MOST_SHOWN = 6
+"""Blocks that the short form of a history shows."""
 
 CycleKey = tuple[int, int]
 """A cycle of a history: its block, and which of the cycles inside, counted from 1, or 0 for the block itself."""
@@ -139,7 +126,7 @@ class LoadHistory:
                 raise InputError("history", f"corner {index + 1} must map load names to numbers, not {corner!r}")
             row = np.full(len(LOADS), np.nan)
             for name, value in corner.items():
-                row[_load_index(name, f"corner {index + 1}")] = finite(f"{name} of corner {index + 1}", value)
+                row[load_index(name, f"corner {index + 1}")] = number(f"{name} of corner {index + 1}", value)
             rows.append(row)
         self._set([_plain(np.array(rows).reshape(-1, len(LOADS)))])
 
@@ -186,8 +173,8 @@ class LoadHistory:
         whole_number("count", count, 1)
         if start not in (1, -1):
             raise InputError("start", f"must be 1 or -1, not {start!r}")
-        _check_corner("mean", mean)
-        _check_corner("amplitude", amplitude)
+        check_corner("mean", mean)
+        check_corner("amplitude", amplitude)
         plus = {k: mean.get(k, 0.0) + start * v for k, v in amplitude.items()}
         minus = {k: mean.get(k, 0.0) - start * v for k, v in amplitude.items()}
         history = cls([mean, plus]) + cls([minus, plus]).repeated(count)
@@ -216,7 +203,7 @@ class LoadHistory:
         whole_number("count", count, 1)
         phase = {} if phase is None else phase
         for field, loads in (("mean", mean), ("amplitude", amplitude), ("phase", phase)):
-            _check_corner(field, loads)
+            check_corner(field, loads)
         if not amplitude:
             raise InputError("amplitude", "must give at least one load")
         for name in phase:
@@ -246,7 +233,7 @@ class LoadHistory:
         InputError
             If a load is unknown or named twice, the shape does not fit or a value is infinite.
         """
-        columns = [_load_index(name, "loads") for name in loads]
+        columns = [load_index(name, "loads") for name in loads]
         array = np.asarray(corners, dtype=float)
         if len(set(columns)) < len(columns):
             raise InputError("loads", "a load is named twice")
@@ -274,7 +261,7 @@ class LoadHistory:
         path = Path(path)
         try:
             with path.open(encoding="utf-8-sig", newline="") as file:
-                return cls.of_blocks([_plain(_read_csv(file, str(path)))])
+                return cls.of_blocks([_plain(read_corners(file, str(path)))])
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             reason = getattr(error, "strerror", None) or error
             raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
@@ -296,6 +283,16 @@ class LoadHistory:
                 once[-1] = once[-1] or len(lengths)
             ends.append(np.tile(once, block.count))
         return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
+
+    def __repr__(self) -> str:
+        given = ~np.all([np.all(np.isnan(block.given), axis=0) for block in self._blocks], axis=0)
+        names = ", ".join(name for name, is_given in zip(LOADS, given, strict=True) if is_given)
+        parts = [
+            f"{len(block.given):,} corners" + (f" x {block.count:,}" if block.count > 1 else "")
+            for block in self._blocks[:MOST_SHOWN]
+        ]
+        more = [f"{len(self._blocks) - MOST_SHOWN} more blocks"] * (len(self._blocks) > MOST_SHOWN)
+        return f"<LoadHistory: {len(self):,} corners of {names or 'no load'}; {' + '.join(parts + more)}>"
 
     def __add__(self, other: LoadHistory) -> LoadHistory:
         """This history followed by `other`."""
@@ -420,16 +417,6 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed"')
 
 
-def named_load(vector: np.ndarray) -> dict[str, float]:
-    """A load vector as a dict from load name to value."""
-    return {name: float(value) for name, value in zip(LOADS, vector, strict=True)}
-
-
-def filled(given: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """The loads at a corner where `given` acts, and `last` where it says nothing."""
-    return np.where(np.isnan(given), last, given) + 0.0  # -0 is 0
-
-
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:
     first = np.zeros(len(LOADS)) if initial is None else np.asarray(initial, dtype=float)
     values = np.vstack([first, *parts])
@@ -451,59 +438,3 @@ def _cos_degrees(angle: float) -> float:
     """The cosine, exact where it is 0 or 1."""
     quarters = angle / 90.0
     return (1.0, 0.0, -1.0, 0.0)[int(quarters) % 4] if quarters.is_integer() else math.cos(math.radians(angle))
-
-
-def _read_csv(file: TextIO, name: str) -> np.ndarray:
-    """The corners of a CSV file, shape (corners, loads). All its faults are raised together."""
-    faults: list[tuple[int, str]] = []
-    header: list[int] | None = None
-    numbers = array("d")  # grows in place, and becomes the table without a copy
-    nothing = array("d", [math.nan] * len(LOADS))
-    for number, line in enumerate(file, start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        cells = next(csv.reader([line], skipinitialspace=True))
-        if header is None:
-            if len(cells) == 1 and (separator := re.search(r"[;\t]", line)):
-                name_of = {";": "semicolons", "\t": "tabs"}[separator[0]]
-                raise CaseFileError(name, [(number, f"cells must be separated by commas, not {name_of}")])
-            try:
-                header = [_load_index(cell.strip(), f"column {k}") for k, cell in enumerate(cells, start=1)]
-            except InputError as error:
-                raise CaseFileError(name, [(number, error.reason)]) from None
-            if len(set(header)) < len(header):
-                raise CaseFileError(name, [(number, "a load is named twice")])
-            continue
-        if len(cells) != len(header):
-            faults.append((number, f"{len(cells)} cells where the header has {len(header)}"))
-        else:
-            numbers.extend(nothing)
-            for index, cell in zip(header, cells, strict=True):
-                if cell and not cell.isspace():
-                    try:
-                        numbers[index - len(LOADS)] = finite(LOADS[index], float(cell.replace("_", "x")))
-                    except ValueError:
-                        faults.append((number, f"{LOADS[index]} must be a finite number, not {cell.strip()!r}"))
-        if len(faults) >= MOST_FAULTS:
-            faults.append((number, "that is enough; what follows was not read"))
-            break
-    if faults:
-        raise CaseFileError(name, faults)
-    if not numbers:
-        raise CaseFileError(name, [(0, "holds no load corners")])
-    return np.frombuffer(numbers).reshape(-1, len(LOADS))
-
-
-def _check_corner(field: str, loads: Corner) -> None:
-    for name, value in loads.items():
-        _load_index(name, field)
-        finite(f"{name} of {field}", value)
-
-
-def _load_index(name: object, where: str) -> int:
-    if name in LOADS:
-        return LOADS.index(str(name))
-    folded = {load.lower(): load for load in LOADS}
-    close = difflib.get_close_matches(str(name).lower(), folded, n=1)
-    hint = f', did you mean "{folded[close[0]]}"?' if close else ""
-    raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")

@@ -16,14 +16,14 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fastpin.checks import finite, one_of
 from fastpin.errors import InputError
+from fastpin.model.checks import choice, number
 
 Plane = Literal["strain", "stress"]
 Convention = Literal["usual", "paper"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Material:
     """An isotropic elastic material.
 
@@ -47,14 +47,18 @@ class Material:
     name: str = ""
 
     def __post_init__(self) -> None:
-        modulus = self.E if math.inf == self.E else finite("E", self.E)
+        modulus = self.E if math.inf == self.E else number("E", self.E)
         if modulus <= 0.0:
             raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
-        ratio = finite("nu", self.nu)
+        ratio = number("nu", self.nu)
         if not 0.0 <= ratio <= 0.5:
             raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")
         object.__setattr__(self, "E", float(modulus))
         object.__setattr__(self, "nu", ratio)
+
+    def __repr__(self) -> str:
+        name = f", {self.name!r}" if self.name else ""
+        return f"Material({self.E:g}, {self.nu:g}{name})"
 
     @classmethod
     def rigid(cls) -> Material:
@@ -92,7 +96,7 @@ MATERIALS: dict[str, Material] = {
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MaterialPair:
     """The pin's and the plate's material and their composite constants.
 
@@ -113,12 +117,15 @@ class MaterialPair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
-        one_of("plane", self.plane, ("strain", "stress"))
+        choice("plane", self.plane, ("strain", "stress"))
         for field, body in (("pin", self.pin), ("plate", self.plate)):
             if not isinstance(body, Material):
                 raise InputError(field, f"must be a Material, not {body!r}")
         if self.pin.is_rigid and self.plate.is_rigid:
             raise InputError("plate", "pin and plate can't both be rigid")
+
+    def __repr__(self) -> str:
+        return f"{self.pin!r} in {self.plate!r}, plane {self.plane}"
 
     @classmethod
     def from_dundurs(
@@ -149,22 +156,21 @@ class MaterialPair:
         InputError
             If no plate with 0 <= nu <= 0.5 gives these parameters.
         """
-        one_of("convention", convention, ("usual", "paper"))
-        one_of("plane", plane, ("strain", "stress"))
+        choice("convention", convention, ("usual", "paper"))
+        choice("plane", plane, ("strain", "stress"))
         sign = 1.0 if convention == "usual" else -1.0
-        a = sign * finite("alpha", alpha)
-        b = sign * finite("beta", beta)
-        scale = finite("beta_star", beta_star)
+        a = sign * number("alpha", alpha, -1.0, 1.0)
+        b = sign * number("beta", beta)
+        scale = number("beta_star", beta_star)
         if scale <= 0.0:
             raise InputError("beta_star", f"must be positive, not {scale:g}")
-        if not -1.0 <= a <= 1.0:
-            raise InputError("alpha", f"Dundurs' first parameter lies between -1 and 1, not {alpha:g}")
+        nu_pin = number("nu_pin", nu_pin, 0.0, 0.5)
         k_pin = Material(1.0, nu_pin).kolosov(plane)
         inverse_g_pin = (1.0 - a) * scale / (k_pin + 1.0)
         plus = (1.0 + a) * scale  # (k + 1)/G of the plate
         minus = 2.0 * b * scale + (k_pin - 1.0) * inverse_g_pin  # (k - 1)/G of the plate
         inverse_g = 0.5 * (plus - minus)
-        pin = Material.rigid() if a == 1.0 else _from_compliance(inverse_g_pin, finite("nu_pin", nu_pin))
+        pin = Material.rigid() if a == 1.0 else _from_compliance(inverse_g_pin, nu_pin)
         if a == -1.0:
             if abs(minus) > 1e-12 * scale:
                 needed = -sign * 0.5 * (k_pin - 1.0) * inverse_g_pin / scale
@@ -238,7 +244,7 @@ class MaterialPair:
 
     def dundurs(self, convention: Convention = "usual") -> tuple[float, float]:
         """Dundurs' parameters (alpha, beta) in the given sign convention (see the module's docstring)."""
-        sign = 1.0 if one_of("convention", convention, ("usual", "paper")) == "usual" else -1.0
+        sign = 1.0 if choice("convention", convention, ("usual", "paper")) == "usual" else -1.0
         plate = (self.plate_kolosov + 1.0) * self.plate_compliance
         pin = (self.pin_kolosov + 1.0) * self.pin_compliance
         return sign * (plate - pin) / (plate + pin), sign * 0.5 * self.alpha_star / self.beta_star

@@ -6,15 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fastpin.checks import finite, one_of
 from fastpin.errors import InputError
-from fastpin.materials import MaterialPair
+from fastpin.model.checks import choice, number
+from fastpin.model.materials import MaterialPair
 
 PinLoad = Literal["centre", "body"]
 Rotation = Literal["free", "fixed"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Problem:
     """An elastic pin in the hole of an infinite elastic plate, with Coulomb friction.
 
@@ -57,17 +57,17 @@ class Problem:
     def __post_init__(self) -> None:
         if not isinstance(self.pair, MaterialPair):
             raise InputError("pair", f"must be a MaterialPair, not {self.pair!r}")
-        radius = finite("hole_radius", self.hole_radius)
+        radius = number("hole_radius", self.hole_radius)
         if radius <= 0.0:
             raise InputError("hole_radius", f"must be positive, not {radius:g}")
-        clearance = finite("clearance", self.clearance)
+        clearance = number("clearance", self.clearance)
         if not self.dimensionless and abs(clearance) >= radius:
             raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
-        friction = finite("friction", self.friction)
+        friction = number("friction", self.friction)
         if friction < 0.0:
             raise InputError("friction", f"must not be negative, not {friction:g}")
-        one_of("pin_load", self.pin_load, ("centre", "body"))
-        one_of("rotation", self.rotation, ("free", "fixed"))
+        choice("pin_load", self.pin_load, ("centre", "body"))
+        choice("rotation", self.rotation, ("free", "fixed"))
         if self.pin_load == "body" and self.rotation == "fixed":
             raise InputError(
                 "rotation",
@@ -75,7 +75,7 @@ class Problem:
                 "forces leave that moment's singularity at the centre (section 4 of the paper)",
             )
         if self.hub_radius is not None:
-            hub = finite("hub_radius", self.hub_radius)
+            hub = number("hub_radius", self.hub_radius)
             if self.rotation == "free":
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
             if not 0.0 < hub <= radius:
@@ -84,6 +84,16 @@ class Problem:
         object.__setattr__(self, "hole_radius", radius)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
+
+    def __repr__(self) -> str:
+        size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
+        if not self.dimensionless:
+            size = f"hole radius {self.hole_radius:.6g} m, clearance {self.clearance:.6g} m"
+        hub = "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
+        return (
+            f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
+            f" load at the {self.pin_load}, rotation {self.rotation}{hub}>"
+        ).replace("load at the body", "body load")
 
     @classmethod
     def from_load_parameter(
@@ -100,7 +110,7 @@ class Problem:
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`; tractions come out as N R/F,
         displacements in units of F beta*, rotations in F beta*/R, remote stresses are given in F/R.
         """
-        value = finite("load_parameter", load_parameter)
+        value = number("load_parameter", load_parameter)
         if not isinstance(pair, MaterialPair):
             raise InputError("pair", f"must be a MaterialPair, not {pair!r}")
         return cls(pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, dimensionless=True)

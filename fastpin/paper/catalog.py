@@ -1,6 +1,6 @@
 """The figures of the paper and those that go beyond it: found, computed, written.
 
-Each figure is a script of its own in ``scripts/figures`` (installed as ``fastpin.figures``) with
+Each figure is a file of this folder with
 
 * ``TITLE``, what the figure shows, and ``LEAST_NODES``, the fewest nodes with which it shows it;
 * ``compute(nodes, progress)``, which solves and returns curves;
@@ -9,25 +9,20 @@ Each figure is a script of its own in ``scripts/figures`` (installed as ``fastpi
 
 from __future__ import annotations
 
-import csv
 import importlib
-import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
+from typing import Protocol, cast
 
-import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin import __version__
-from fastpin.checks import whole_number
 from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
-from fastpin.state import OPEN, State
-
-if TYPE_CHECKING:
-    from fastpin.plot import Figure
+from fastpin.figures.style import draw_with
+from fastpin.model.checks import whole_number
+from fastpin.paper.curves import Curve, Report, write_csv
+from fastpin.storage.files import check_writable
+from fastpin.version import __version__
 
 PAPER = tuple(str(number) for number in range(3, 18))
 """Names of the figures of the paper (1 and 2 are sketches)."""
@@ -39,33 +34,9 @@ NODES = 400
 
 UNITS = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
 
-Report = Callable[[float], None]
-"""Called with the fraction of a figure that is computed."""
-
-Item = TypeVar("Item")
-
-
-@dataclass(frozen=True, eq=False)
-class Curve:
-    """One curve of a figure.
-
-    Attributes
-    ----------
-    parameters : dict
-        What tells this curve from the others of its figure: L_p, mu, the pair, the load.
-    columns : dict of ndarray, all of one length
-        The numbers, by a name with its unit. NaN breaks the curve.
-    """
-
-    parameters: dict[str, Any]
-    columns: dict[str, np.ndarray] = field(repr=False)
-
-    def __getitem__(self, column: str) -> np.ndarray:
-        return self.columns[column]
-
 
 class Script(Protocol):
-    """What a script in ``scripts/figures`` offers."""
+    """A figure's file: it computes curves and draws them."""
 
     TITLE: str
     LEAST_NODES: int
@@ -75,7 +46,7 @@ class Script(Protocol):
     def draw(self, curves: Sequence[Curve]) -> Figure: ...
 
 
-def known(name: str | int) -> str:
+def figure_name(name: str | int) -> str:
     """The name of a figure as it stands in :data:`PAPER` or :data:`BEYOND`.
 
     Raises
@@ -96,7 +67,7 @@ def known(name: str | int) -> str:
 
 def stem(name: str | int) -> str:
     """The first part of the names of a figure's files: ``figure03``, ``half-plane``."""
-    text = known(name)
+    text = figure_name(name)
     return f"figure{int(text):02d}" if text in PAPER else text
 
 
@@ -108,13 +79,7 @@ def script(name: str | int) -> Script:
     InputError
         If there is no such figure.
     """
-    module = stem(name).replace("-", "_")
-    try:
-        return cast(Script, importlib.import_module(f"fastpin.figures.{module}"))
-    except ModuleNotFoundError as error:
-        if error.name != "fastpin.figures":
-            raise
-        raise InputError("figure", "the scripts of the figures are not installed; install fastpin with pip") from None
+    return cast(Script, importlib.import_module(f"fastpin.paper.{stem(name).replace('-', '_')}"))
 
 
 def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None:
@@ -125,7 +90,7 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None
     InputError
         If there is no such figure, `nodes` are too few for what one of them shows, or its files can't be written.
     """
-    scripts = {known(name): script(name) for name in names}
+    scripts = {figure_name(name): script(name) for name in names}
     for name, needed in scripts.items():
         if whole_number("nodes", nodes, -sys.maxsize) < needed.LEAST_NODES:
             raise InputError("nodes", f"figure {name} needs at least {needed.LEAST_NODES} nodes, not {nodes}")
@@ -155,8 +120,6 @@ def make(
     InputError
         As :func:`check`.
     """
-    from fastpin.plot import draw_with
-
     check([name], directory, nodes)
     chosen = script(name)
     curves = chosen.compute(nodes, progress)
@@ -164,71 +127,3 @@ def make(
     write_csv(curves, numbers, (chosen.TITLE, f"fastpin {__version__}, {nodes} nodes", UNITS))
     draw_with(chosen.draw, curves, picture)
     return picture, numbers
-
-
-def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) -> None:
-    """Write curves one below the other: their parameters repeated, then their columns.
-
-    NaN is an empty cell, and a comma in a text becomes a semicolon, for readers that do not know quotes.
-    """
-    names = list(dict.fromkeys(name for curve in curves for name in (*curve.parameters, *curve.columns)))
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        file.writelines(f"# {remark}\n" for remark in remarks)
-        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
-        writer.writeheader()
-        for curve in curves:
-            parameters = {name: _parameter(value) for name, value in curve.parameters.items()}
-            rows = zip(*curve.columns.values(), strict=True)
-            for row in rows:
-                writer.writerow({**parameters, **dict(zip(curve.columns, map(_cell, row), strict=True))})
-
-
-def _parameter(value: float | str) -> float | str:
-    if isinstance(value, str):
-        return value.replace(",", ";")
-    return "" if math.isnan(value) else value
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, str):
-        return value
-    return "" if math.isnan(value) else f"{value:.9g}"
-
-
-def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
-    """The items one after the other, reporting the fraction that is done."""
-    for index, item in enumerate(items):
-        yield item
-        if progress is not None:
-            progress((index + 1) / len(items))
-
-
-def traction_curve(state: State, force: float = 1.0, **parameters: float | str) -> Curve:
-    """Pressure and shear traction of a state from edge to edge, with zeros at the edges read between nodes.
-
-    Parameters
-    ----------
-    state : State
-        Of a dimensionless problem, :meth:`fastpin.Problem.from_load_parameter`.
-    force : float
-        What the tractions are divided by: the pin's load F in the units of the problem.
-    parameters
-        The curve's parameters.
-
-    Returns
-    -------
-    Curve
-        Columns ``angle_deg`` (from the bottom, counter-clockwise), ``N`` and ``T`` in F/R. Several contacts are
-        separated by NaN.
-    """
-    parts: list[np.ndarray] = []
-    for start, stop in state.contact:
-        along = np.mod(state.theta - start, 2.0 * math.pi)
-        inside = np.flatnonzero((state.status != OPEN) & (along < stop - start))
-        inside = inside[np.argsort(along[inside])]
-        part = np.array([start + along, state.pressure / force, state.shear / force])[:, inside]
-        if stop - start < 2.0 * math.pi:  # else there are no edges
-            part = np.hstack([[[start], [0.0], [0.0]], part, [[stop], [0.0], [0.0]]])
-        parts += [np.full((3, 1), np.nan), part] if parts else [part]
-    angle, pressure, shear = np.hstack(parts) if parts else np.empty((3, 0))
-    return Curve(dict(parameters), {"angle_deg": np.degrees(angle) + 90.0, "N": pressure, "T": shear})

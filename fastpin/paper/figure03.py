@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report
-from fastpin.plot import Figure, line
+from matplotlib.figure import Figure
 
-from .tractions import Panel, chosen, pushed_curves, traction_figure
+from fastpin.figures.style import line
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.tractions import Panel, chosen, pushed_curves, traction_figure
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium), L_p = 0.01 and 0.1"
 LEAST_NODES = 101

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report
-from fastpin.plot import Figure, key, line, panels
+from matplotlib.figure import Figure
 
-from .sweep import load_parameter_axis, swept
+from fastpin.figures.style import key, line, panels
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.sweep import load_parameter_axis, swept
 
 TITLE = "Contact and stick half-angles in body force loading (Ti-6Al-4V on aluminium)"
 LEAST_NODES = 201

@@ -5,9 +5,8 @@ As figure 3. The material is our choice, Ti-6Al-4V; of similar materials only Po
 
 from __future__ import annotations
 
-from fastpin.paper import Curve, Report
-
-from . import figure03
+from fastpin.paper import figure03
+from fastpin.paper.curves import Curve, Report
 
 TITLE = "Tractions in body force loading of similar materials (Ti-6Al-4V), L_p = 0.01 and 0.1"
 LEAST_NODES = figure03.LEAST_NODES

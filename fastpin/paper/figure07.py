@@ -6,9 +6,8 @@ choice, Ti-6Al-4V; of similar materials only Poisson's ratio enters.
 
 from __future__ import annotations
 
-from fastpin.paper import Curve, Report
-
-from . import figure04
+from fastpin.paper import figure04
+from fastpin.paper.curves import Curve, Report
 
 TITLE = "Tractions in body force loading of similar materials (Ti-6Al-4V) at high L_p and different mu"
 LEAST_NODES = figure04.LEAST_NODES

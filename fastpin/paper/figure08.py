@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin.paper import Curve, Report
-from fastpin.plot import Figure, key, line, panels
-
-from .sweep import load_parameter_axis, swept
+from fastpin.figures.style import key, line, panels
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.sweep import load_parameter_axis, swept
 
 TITLE = "Peak pressures and tan(rho/2)/tan(epsilon/2) in body force loading"
 LEAST_NODES = 201

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report, steps, traction_curve
-from fastpin.plot import Figure, line
-from fastpin.problem import PinLoad
+from matplotlib.figure import Figure
 
-from .tractions import Panel, pushed, traction_figure
+from fastpin.figures.style import line
+from fastpin.model.problem import PinLoad
+from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.tractions import Panel, pushed, traction_figure
 
 TITLE = "Centre loading and body force loading, Ti-6Al-4V/aluminium, mu = 0.4"
 LEAST_NODES = 101

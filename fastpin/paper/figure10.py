@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report, steps, traction_curve
-from fastpin.plot import Figure, line
+from matplotlib.figure import Figure
 
-from .tractions import PAIRS, Panel, pushed, traction_figure
+from fastpin.figures.style import line
+from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.tractions import PAIRS, Panel, pushed, traction_figure
 
 TITLE = "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75"
 LEAST_NODES = 101

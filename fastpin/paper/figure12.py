@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fastpin.paper import Curve, Report
-
-from . import figure11
+from fastpin.paper import figure11
+from fastpin.paper.curves import Curve, Report
 
 TITLE = "Fretting type loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
 LEAST_NODES = figure11.LEAST_NODES

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report
-from fastpin.plot import Figure
+from matplotlib.figure import Figure
 
-from .fretting import cycle_figure, cycled
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.fretting import cycle_figure, cycled
 
 TITLE = "Fretting type loads with body forces, free rotation, L_p = 0.05, mu = 0.55, dissimilar pairs"
 LEAST_NODES = 101

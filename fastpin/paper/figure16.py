@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin.paper import Curve, Report
-from fastpin.plot import Figure
+from matplotlib.figure import Figure
 
-from .fretting import cycle_figure, cycled
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.fretting import cycle_figure, cycled
 
 TITLE = "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 0.25 and 0.50, |eta| = 1"
 LEAST_NODES = 101

@@ -6,10 +6,9 @@ one takes more than a thousand nodes to see.
 
 from __future__ import annotations
 
-from fastpin.paper import Curve, Report
-
-from . import figure16
-from .fretting import cycled
+from fastpin.paper import figure16
+from fastpin.paper.curves import Curve, Report
+from fastpin.paper.fretting import cycled
 
 TITLE = "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 1.0, |eta| = 1"
 LEAST_NODES = 201

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fastpin import Problem, solve
-from fastpin.paper import Curve, Report, steps, traction_curve
-from fastpin.plot import Figure, line
-from fastpin.problem import PinLoad, Rotation
+from matplotlib.figure import Figure
 
-from .tractions import PAIRS, Panel, chosen, traction_figure
+from fastpin.figures.style import line
+from fastpin.model.problem import PinLoad, Problem, Rotation
+from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
+from fastpin.solver.solving import solve
 
 FRICTION = 0.55
 LOADS: dict[PinLoad, tuple[str, str, str]] = {"centre": ("P", "+Q", "-Q"), "body": ("By", "+Bx", "-Bx")}

@@ -27,14 +27,18 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from fastpin import MATERIALS, MaterialPair, Problem, State, analytic, solve
-from fastpin.paper import Curve, Report, steps
-from fastpin.plot import Axes, Figure, Line, line, panels
-from fastpin.problem import PinLoad
-
-from .tractions import BOTTOM
+from fastpin.figures.style import Line, line, panels
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import PinLoad, Problem
+from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.tractions import BOTTOM
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from fastpin.verification import closed_forms
 
 TITLE = "Relative error of half-plane formulas against the load parameter"
 LEAST_NODES = 201
@@ -138,18 +142,18 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
     problem = Problem.from_load_parameter(SIMILAR, load_parameter, friction, "centre", "fixed")
     Q = ratio * friction
     pushed, forward, back = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}], nodes=nodes)
-    half = float(analytic.hertz_half_angle(load_parameter))
-    peak = float(analytic.hertz_peak_pressure(load_parameter))
+    half = float(closed_forms.hertz_half_angle(load_parameter))
+    peak = float(closed_forms.hertz_peak_pressure(load_parameter))
     low = "" if friction == FRICTION else f", mu = {friction:g}"
     if not low:
-        exact = float(analytic.persson_half_angle(load_parameter))
+        exact = float(closed_forms.persson_half_angle(load_parameter))
         yield "Hertz", "half-width", half / exact - 1.0
-        yield "Hertz", "peak pressure", peak / float(analytic.persson_pressure(0.0, exact)) - 1.0
+        yield "Hertz", "peak pressure", peak / float(closed_forms.persson_pressure(0.0, exact)) - 1.0
         yield "Hertz", "half-width, with friction", half / stick_and_contact(pushed)[3] - 1.0
         yield "Hertz", "peak pressure, with friction", peak / pushed.peak_pressure - 1.0
-    half_plane_stick = float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    half_plane_stick = float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     half_plane_shear = friction * peak * math.sqrt(ratio)  # at the border of the stick zone
-    corners: list[tuple[State, str, float, analytic.Branch]] = [
+    corners: list[tuple[State, str, float, closed_forms.Branch]] = [
         (forward, "+Q", ratio, "loading"),
         (back, "-Q", -ratio, "unloading"),
     ]
@@ -160,7 +164,7 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
         for moved, origin in (("", BOTTOM), (", moved", middle)):
             x = state.theta - origin
             # The shear on the pin opposes Q.
-            shear = -analytic.cattaneo_mindlin_shear(x, half, peak, friction, now, ratio, branch)
+            shear = -closed_forms.cattaneo_mindlin_shear(x, half, peak, friction, now, ratio, branch)
             weights = state.grid.weights
             difference = weights @ np.abs(state.shear - shear) / (friction * weights @ state.pressure)
             yield "Cattaneo-Mindlin", f"distribution{moved}, {load}{low}", float(difference)
@@ -177,7 +181,7 @@ def shift(state: State) -> float:
 def bulk_shift(problem: Problem, stress: str, e: float, nodes: int) -> float:
     """Shift after P and then +Q with the remote stress that should make it `e` (negative: compression)."""
     load_parameter = problem.load_parameter(1.0)
-    sigma = 4.0 * problem.friction * float(analytic.hertz_peak_pressure(load_parameter)) * e
+    sigma = 4.0 * problem.friction * float(closed_forms.hertz_peak_pressure(load_parameter)) * e
     remote = {name: sigma * part for name, part in REMOTE[stress].items()}
     return shift(solve(problem, [{"P": 1.0}, {"Q": RATIO * problem.friction, **remote}], nodes=nodes)[-1])
 

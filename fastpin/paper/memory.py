@@ -11,13 +11,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin import Grid, LoadHistory, Problem, Result, State, solve
-from fastpin.paper import Curve, Report, steps
-from fastpin.plot import Figure, key, line, panels
-
-from .fretting import FRICTION
-from .tractions import BOTTOM, PAIRS
+from fastpin.figures.style import key, line, panels
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
+from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.fretting import FRICTION
+from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 TITLE = "System memory: what the first direction of Q leaves behind, against load parameter and amplitude"
 LEAST_NODES = 61

@@ -11,13 +11,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin import MATERIALS, Material, MaterialPair, Problem, State, solve
-from fastpin.paper import Curve, Report, steps, traction_curve
-from fastpin.plot import Figure, angle_axis, key, line, panels
-from fastpin.problem import PinLoad
-
-from .tractions import BOTTOM
+from fastpin.figures.style import angle_axis, key, line, panels
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import PinLoad, Problem
+from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.tractions import BOTTOM
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 TITLE = "Rigid pin in aluminium, mu = 0.4, L_p = 0.1: tractions, and how elastic pins tend to them"
 LEAST_NODES = 101

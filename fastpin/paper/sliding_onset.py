@@ -11,12 +11,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from fastpin import Problem, State, solve
-from fastpin.paper import Curve, Report, steps
-from fastpin.plot import Figure, key, line, panels
-
-from .tractions import PAIRS
+from fastpin.figures.style import key, line, panels
+from fastpin.model.problem import Problem
+from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.tractions import PAIRS
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 TITLE = "Onset of full sliding against load parameter and friction, on the first way and on the way back"
 LEAST_NODES = 61

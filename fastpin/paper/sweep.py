@@ -12,12 +12,14 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from fastpin import STICK, Problem, State, solve
-from fastpin.paper import Curve, Report, steps
-from fastpin.plot import Axes
-
-from .tractions import BOTTOM, PAIRS
+from fastpin.kernels.status import STICK
+from fastpin.model.problem import Problem
+from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 LIMITS = np.geomspace(2.2, 0.005, 12)
 """Load parameters at which one history ends and the next one takes over."""

@@ -6,10 +6,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from fastpin import MATERIALS, MaterialPair, Problem, State, solve
-from fastpin.paper import Curve, Report, steps, traction_curve
-from fastpin.plot import Figure, Line, angle_axis, key, panels
-from fastpin.problem import PinLoad
+from matplotlib.figure import Figure
+
+from fastpin.figures.style import Line, angle_axis, key, panels
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import PinLoad, Problem
+from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
 
 BOTTOM = -0.5 * math.pi
 TITANIUM, ALUMINIUM = MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"]

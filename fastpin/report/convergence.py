@@ -13,13 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fastpin import __version__
-from fastpin.convergence import ROUNDING, Convergence, Series, Study
-from fastpin.extrapolate import Verdict
-from fastpin.files import replacing
-from fastpin.problem import Problem
-from fastpin.quantities import quantity
-from fastpin.report import bar_in_degrees, in_degrees, named_loads, plain, scaled, table, units
+from fastpin.model.problem import Problem
+from fastpin.model.units import named_loads, scaled, units
+from fastpin.report.summary import plain
+from fastpin.report.table import table
+from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
+from fastpin.storage.files import replacing
+from fastpin.studies.convergence import ROUNDING, Convergence, QuantitySeries, Study
+from fastpin.studies.extrapolate import Verdict
+from fastpin.version import __version__
 
 COLUMNS = (
     "corner", "solver", "nodes", "increments", "quantity", "unit", "value", "verdict", "order", "limit", "bar", "path",
@@ -29,7 +31,7 @@ is what the path solver gives on the grid of the increment solver."""
 
 
 @dataclass(frozen=True)
-class Shown:
+class ReportedSeries:
     """A series in the units in which it is reported; see :class:`fastpin.convergence.Series`."""
 
     corner: int
@@ -45,13 +47,13 @@ class Shown:
     negligible: float
 
     @classmethod
-    def of(cls, series: Series, problem: Problem) -> Shown:
+    def of(cls, series: QuantitySeries, problem: Problem) -> ReportedSeries:
         """A series of a problem."""
         kind, estimate, last = quantity(series.name).kind, series.estimate, series.values[-1]
-        reported = in_degrees(series.name, last)
+        reported_series = in_degrees(series.name, last)
 
         def shown(value: float) -> float:  # next to the last value, also across 180 degrees
-            return reported + bar_in_degrees(series.name, value - last)
+            return reported_series + bar_in_degrees(series.name, value - last)
 
         return cls(
             series.corner, series.name, quantity(series.name).label, units(problem).get(kind, "deg"),
@@ -61,9 +63,9 @@ class Shown:
         )  # fmt: skip
 
 
-def reported(study: Study, problem: Problem, corner: int) -> list[Shown]:
+def reported_series(study: Study, problem: Problem, corner: int) -> list[ReportedSeries]:
     """The series of a study at one corner."""
-    return [Shown.of(series, problem) for series in study.series if series.corner == corner]
+    return [ReportedSeries.of(series, problem) for series in study.series if series.corner == corner]
 
 
 def text(convergence: Convergence) -> str:
@@ -72,7 +74,11 @@ def text(convergence: Convergence) -> str:
     for corner, load in convergence.loads.items():
         parts.append(f"corner {corner}: {named_loads(convergence.problem, load)}")
         for study in convergence.studies:
-            parts += [_heading(study, convergence), _table(study, reported(study, convergence.problem, corner)), ""]
+            parts += [
+                _heading(study, convergence),
+                _table(study, reported_series(study, convergence.problem, corner)),
+                "",
+            ]
     legend = "bar: error bar of the last value"
     if len(convergence.studies) > 1:
         legend += "; path: the path solver on the same grid, within: whether the bar reaches it"
@@ -87,7 +93,7 @@ def _heading(study: Study, convergence: Convergence) -> str:
     return f"path solver; nodes on {where}:"
 
 
-def _table(study: Study, rows: Sequence[Shown]) -> str:
+def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
     cells = [_cells(row, study.method == "increment") for row in rows]
     names = ["quantity", "unit", *map(str, study.counts), "order", "limit", "bar", "path", "within"]
     columns = [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
@@ -95,7 +101,7 @@ def _table(study: Study, rows: Sequence[Shown]) -> str:
     return "\n".join([lines[0], *lines[2:]])  # units have a column
 
 
-def _cells(row: Shown, with_path: bool) -> list[str]:
+def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     zero = row.verdict == "to rounding" and abs(row.limit) <= row.negligible
     factor, unit = scaled([0.0] if zero else [row.values[-1]], row.unit) if row.unit != "deg" else (1.0, "deg")
     if row.verdict == "to rounding":
@@ -120,7 +126,7 @@ def _cells(row: Shown, with_path: bool) -> list[str]:
     return cells
 
 
-def _within(row: Shown) -> str:
+def _within(row: ReportedSeries) -> str:
     """Whether the path's value lies within the error bar of the increments' last."""
     if math.isnan(row.path) or math.isnan(row.bar):
         return "-"
@@ -134,7 +140,7 @@ def write_csv(convergence: Convergence, path: Path) -> None:
         writer.writerow(COLUMNS)
         for study in convergence.studies:
             for corner in convergence.loads:
-                for row in reported(study, convergence.problem, corner):
+                for row in reported_series(study, convergence.problem, corner):
                     for count, value in zip(study.counts, row.values, strict=True):
                         grid = (count, "") if study.method == "path" else (study.nodes, count)
                         known = [value, row.verdict, row.order, row.limit, row.bar, row.path]
@@ -168,7 +174,7 @@ def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
                             "path": row.path,
                         }
                         for corner in convergence.loads
-                        for row in reported(study, convergence.problem, corner)
+                        for row in reported_series(study, convergence.problem, corner)
                     ],
                 }
                 for study in convergence.studies

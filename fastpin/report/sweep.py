@@ -12,15 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from fastpin import __version__
-from fastpin.caselines import closest, shown
 from fastpin.errors import InputError
-from fastpin.files import check_writable, replacing
-from fastpin.index import DONE, FAILED
-from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import Plan
-from fastpin.report import LOAD_KIND, table, units
-from fastpin.report import scaled as with_prefix
+from fastpin.model.checks import as_toml, closest
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.units import scaled as with_prefix
+from fastpin.model.units import units
+from fastpin.report.table import table
+from fastpin.storage.files import check_writable, replacing
+from fastpin.studies.index import DONE, FAILED
+from fastpin.studies.outcome import KEY_FIGURES
+from fastpin.studies.plan import Plan
+from fastpin.version import __version__
 
 Row = dict[str, Any]
 
@@ -232,7 +234,7 @@ def _brief(value: Any) -> str:
     """A value as text, numbers with six digits."""
     if isinstance(value, list):
         return f"[{', '.join(map(_brief, value))}]"
-    return f"{value:.6g}" if _is_number(value) else shown(value)
+    return f"{value:.6g}" if _is_number(value) else as_toml(value)
 
 
 def _is_number(value: Any) -> bool:

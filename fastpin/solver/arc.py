@@ -8,12 +8,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fastpin.collocation import System
-from fastpin.errors import ArcError, SolveError
-from fastpin.grid import Grid
-from fastpin.loading import LoadHistory
-from fastpin.problem import Problem
-from fastpin.run import Progress, Run
+from fastpin.elasticity.system import System
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import ArcError, SolveError
+from fastpin.solver.run import Progress, Run
 
 COARSE_NODES = 121
 WHOLE = 5.6  # an arc wider than this, rad, becomes the whole circle
@@ -22,10 +23,8 @@ MOST_CORNERS = 200
 
 DIRECTIONS = 16
 
-CORNERS_ONLY = np.array([1.0])
 
-
-def grids_to_try(
+def candidate_grids(
     problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
 ) -> Iterator[Grid]:
     """Grids of `nodes` nodes, each wider than the one before; the last one is the whole circle.
@@ -56,7 +55,7 @@ def _touched_arc(
             arc = None
         grid = Grid.circle(COARSE_NODES) if arc is None else Grid.arc(*arc, COARSE_NODES)
         try:
-            run = Run(history, System.build(problem, grid, force), "path", 1, CORNERS_ONLY, progress=progress)
+            run = Run(history, System.build(problem, grid, force), SolveOptions(), progress=progress)
             run.follow()
             margin = 4
         except ArcError:

@@ -5,94 +5,27 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 
-from fastpin.collocation import MAX_RESIDUAL, ROTATION, SYY, Configuration, M, P, Q, System
-from fastpin.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError
-from fastpin.increment import implicit_step
-from fastpin.state import OPEN
-from fastpin.zones import runs
+from fastpin.elasticity.system import System
+from fastpin.model.loads import ROTATION, SYY, M, P, Q
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    dissipation_between,
+    elastic_energy,
+    reaches_end,
+    resting_status,
+    worst_residual,
+)
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.rest import hole_gap, put_at_rest, release
+from fastpin.states.zones import runs
 
 FIRST_NODES = (2, 4)  # closed nodes wanted in the first contact
 FIRST_BESIDE = 2  # nodes on either side of the nearest one with which its iteration begins
 LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
-
-
-def unloaded(system: System) -> Configuration:
-    """The configuration before any load: concentric without contact, or an interference fit's uniform pressure."""
-    n = system.grid.size
-    zeros = np.zeros(n)
-    configuration = Configuration(
-        pressure=zeros.copy(),
-        shear=zeros.copy(),
-        gap=np.full(n, system.gap0),
-        slip=zeros.copy(),
-        status=np.full(n, OPEN, dtype=np.int8),
-        motion=np.zeros(3),
-        load=np.zeros(system.loads.shape[1]),
-        origin=np.full(2, np.nan),
-        rest=np.zeros(2),
-        rest_gap=np.full(n, system.gap0),
-        rest_slip=zeros.copy(),
-    )
-    if system.gap0 >= 0.0:
-        return configuration
-    configuration.status[:] = system.resting_status
-    solution = system.solve(configuration.status, zeros, configuration.load, configuration.rest_gap)
-    if solution is None or solution.pressure.min() <= 0.0:
-        raise ConvergenceError("the uniform pressure of the interference fit was not found; use more nodes")
-    configuration.origin = np.zeros(2)
-    configuration.pressure = solution.pressure
-    configuration.gap = zeros.copy()
-    configuration.work = system.energy(configuration)  # of the assembly
-    return configuration
-
-
-def released(system: System, last: Configuration, load: np.ndarray) -> Configuration:
-    """The configuration after contact was lost: no tractions, the slip history forgotten, the pin where it was.
-
-    What indentation is left from the last nodes is taken back towards the concentric position.
-    """
-    n = system.grid.size
-    new = last.copy()
-    new.work -= system.energy(last)  # what elastic energy is left goes back to the loads
-    new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
-    new.load = load.copy()
-    position = new.rest + new.motion[:2]
-    width = hole_gap(system, load, system.grid.theta)[0]
-    approach = -system.motion[:n, :2] @ position
-    deep = approach > width
-    if deep.any():
-        position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
-    _put_at_rest(system, new, load, position, system.gap0 + system.motion[:n, :2] @ position)
-    return new
-
-
-def _put_at_rest(
-    system: System, configuration: Configuration, load: np.ndarray, rest: np.ndarray, rest_gap: np.ndarray
-) -> None:
-    """Let motion and slip count from the position `rest`, in which nothing is in contact, under the load `load`."""
-    n = system.grid.size
-    configuration.rest, configuration.rest_gap = rest, rest_gap
-    held = system.problem.rotation == "fixed"
-    configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
-    free = system.loads @ load
-    configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
-    configuration.slip = free[n:] + configuration.motion[2]
-    configuration.rest_slip = configuration.slip.copy()
-
-
-def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
-    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and its two derivatives."""
-    _, _, _, sxx, syy, _ = load
-    mean, oval = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy)
-    double = 2.0 * np.asarray(theta)
-    return np.array(
-        [
-            system.gap0 + mean + oval * np.cos(double),
-            -2.0 * oval * np.sin(double),
-            -4.0 * oval * np.cos(double),
-        ]
-    )
 
 
 def at_rest(
@@ -123,7 +56,7 @@ def at_rest(
         begins = _pinch(system, before, after)
         if begins >= 1.0:
             return None
-        rest, rest_gap = np.zeros(2), np.full(system.grid.size, system.gap0)
+        rest, rest_gap = np.zeros(2), np.full(system.grid.size, system.rest_clearance)
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         limit = system.friction / math.hypot(1.0, system.friction)
@@ -137,7 +70,7 @@ def at_rest(
     resting = floating.copy()
     if np.isnan(resting.origin).any():
         resting.origin = rest.copy()
-    _put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
+    put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
     nearness = resting.gap
     if np.ptp(nearness) == 0.0:  # a neat fit: where the load will close it
         nearness = system.loads[: system.grid.size] @ (after - before)
@@ -149,7 +82,7 @@ def at_rest(
     beside = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
     first = (lowest[:, None] + beside).ravel()
     resting.status[first % system.grid.size if system.grid.closed else first.clip(1, system.grid.size - 2)] = (
-        system.resting_status
+        resting_status(system)
     )
     return resting, begins
 
@@ -191,7 +124,7 @@ def first_contact(
     """
     resting = at_rest(system, floating, before, after)
     if resting is None:
-        return released(system, floating, after), 1.0
+        return release(system, floating, after), 1.0
     return _first_patch(system, *resting, before, after)
 
 
@@ -205,17 +138,18 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     fine = np.linspace(-math.pi, math.pi, 1441)
     values, _, curvature = hole_gap(system, load, fine)
     if np.all(values + curvature >= 0.0):  # the pin touches at one point, where the normal is
-        widened = gap - system.gap0
+        widened = gap - system.rest_clearance
         shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
         half = 0.5 * (system.grid.theta - angle)
-        rest_gap = 2.0 * system.gap0 * np.sin(half) ** 2 + system.motion[: system.grid.size, :2] @ shift
-        return system.gap0 * np.array([cos, sin]) + shift, rest_gap
-    from scipy.optimize import linprog  # an oval hole tighter than the pin: it touches at two points
-
-    found = linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
+        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.motion[: system.grid.size, :2] @ shift
+        return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
+    # an oval hole tighter than the pin: it touches at two points
+    found = scipy.optimize.linprog(
+        [-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None)
+    )
     if not found.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return found.x, system.gap0 + system.motion[: system.grid.size, :2] @ found.x
+    return found.x, system.rest_clearance + system.motion[: system.grid.size, :2] @ found.x
 
 
 def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
@@ -241,7 +175,7 @@ def _first_patch(
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
-    self_similar = system.gap0 == 0.0 and not before[: SYY + 1].any()  # everything grows in proportion
+    self_similar = system.rest_clearance == 0.0 and not before[: SYY + 1].any()  # everything grows in proportion
     part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
@@ -249,7 +183,7 @@ def _first_patch(
         load = before + fraction * (after - before)
         rough = self_similar or not load[[P, Q]].any() or (system.problem.rotation == "free" and load[M] != 0.0)
         found = implicit_step(system, resting, load) if rough else _shearless_step(system, resting, load)
-        if found is None or system.worst_residual(found) > MAX_RESIDUAL:
+        if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             part *= 0.7
             continue
         count = int(found.closed.sum())
@@ -264,23 +198,23 @@ def _first_patch(
             "nodes or leave that load out"
         )
     _, found, fraction = best
-    if system.reaches_end(found):
+    if reaches_end(system, found):
         raise ArcError(CUT_OFF)
-    dissipated = system.dissipated(resting, found)
+    dissipated = dissipation_between(system, resting, found)
     found.dissipation += dissipated
-    found.work += system.energy(found) + dissipated
+    found.work += elastic_energy(system, found) + dissipated
     return found, fraction
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
     """The implicit increment without friction, after which the closed nodes stick where they are."""
     smooth, start, held = system.without_friction(), resting.copy(), load.copy()
-    start.status[start.closed] = smooth.resting_status
+    start.status[start.closed] = resting_status(smooth)
     if system.problem.rotation == "free":
         held[ROTATION] = resting.motion[2]
     found = implicit_step(smooth, start, held)
     if found is not None:
-        found.status[found.closed] = system.resting_status
+        found.status[found.closed] = resting_status(system)
         found.load = load
     return found
 

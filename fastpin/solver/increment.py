@@ -10,11 +10,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.collocation import Configuration, Solution, System
-from fastpin.state import OPEN, STICK
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.loads import M
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    Solution,
+    dissipation_between,
+    reaches_end,
+    resting_status,
+    solve_statuses,
+    work_between,
+    worst_residual,
+)
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError
+from fastpin.solver.rest import release
+from fastpin.solver.step import Piece, Position, Report, is_pushed
 
 MOST_ITERATIONS = 200
 TOLERANCE = 1e-11
+
+MOST_HALVINGS = 12
+"""Times that an increment whose iteration cycles is halved."""
 
 
 def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
@@ -32,7 +50,7 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Con
     Configuration or None
         None if the iteration cycles, meets a mechanism or does not end. Work and dissipation are left as they were.
     """
-    attempts = [start.status, np.where(start.closed, system.resting_status, OPEN).astype(np.int8)]
+    attempts = [start.status, np.where(start.closed, resting_status(system), OPEN).astype(np.int8)]
     for one_at_a_time in (False, True):
         for first in attempts:
             found = _iterate(system, start, load, first, one_at_a_time)
@@ -53,13 +71,13 @@ def _iterate(
         if key in seen:
             return None
         seen.add(key)
-        solution = system.solve(status, start.slip, load, start.rest_gap)
+        solution = solve_statuses(system, status, start.slip, load, start.rest_gap)
         if solution is None:
             return None
         wanted = _wanted_status(system, start, solution, status)
         changes = np.flatnonzero(wanted != status)
         if changes.size == 0:
-            return _accepted(start, solution, status, load)
+            return _accept(start, solution, status, load)
         if one_at_a_time:
             status[changes[0]] = wanted[changes[0]]
         else:
@@ -105,7 +123,7 @@ def _hold_one(wanted: np.ndarray, status: np.ndarray, solution: Solution, fricti
         wanted[others[np.argmin(np.abs(slid[others]))]] = STICK
 
 
-def _accepted(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
+def _accept(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
     new = start.copy()
     closed = status != OPEN
     new.status = status
@@ -116,3 +134,71 @@ def _accepted(start: Configuration, solution: Solution, status: np.ndarray, load
     new.motion = solution.motion
     new.load = load.copy()
     return new
+
+
+class IncrementStepper:
+    """The increment solver as a stepper: implicit increments, first order in their size.
+
+    Parameters
+    ----------
+    system : System
+    increments : int
+        Increments a step: of equal size, or growing linearly after the first contact.
+    statistics : dict of str to float
+        To which "increments" are added.
+    """
+
+    def __init__(self, system: System, increments: int, statistics: dict[str, float]) -> None:
+        self._system = system
+        self._increments = increments
+        self._statistics = statistics
+
+    def begin_piece(self) -> None:
+        """Nothing is kept from one piece to the next."""
+
+    def leave(self, position: Position) -> None:
+        """Everything is in the position already."""
+
+    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+        """Go to the fraction `stop` of the step in implicit increments."""
+        load, before, begin = piece.load_at(stop), position.now.load, position.reached
+        for part in self._parts(position, stop):
+            target = load if part == 1.0 else before + part * (load - before)
+            self._increment(position, position.now, target, MOST_HALVINGS)
+            position.reached = begin + float(part) * (stop - begin)
+            report(position.reached)
+
+    def _parts(self, position: Position, stop: float) -> np.ndarray:
+        """Ends of the increments up to the fraction `stop` of the step, in parts of the way there."""
+        if position.fresh > 0.0:  # growing linearly from the first contact
+            ends = np.arange(1, self._increments + 1) * np.arange(2, self._increments + 2)
+            ends = ends / ends[-1]
+            parts = (ends[ends > position.fresh] - position.fresh) / (1.0 - position.fresh)
+            position.fresh = 0.0
+            return parts
+        count = max(1, round(self._increments * (stop - position.reached)))
+        return np.arange(1, count + 1) / count
+
+    def _increment(self, position: Position, start: Configuration, load: np.ndarray, halvings: int) -> None:
+        """One implicit increment from `start` to `load`, halved where its iteration cycles."""
+        system = self._system
+        found = implicit_step(system, start, load)
+        if found is None or worst_residual(system, found) > MAX_RESIDUAL:
+            if not is_pushed(load) and load[M] == 0.0:  # unloaded completely
+                position.now = release(system, start, load)
+                return
+            if halvings == 0:
+                raise ConvergenceError(
+                    "no state that meets the contact conditions was found; either none carries a larger load, or the "
+                    "increments are too large"
+                )
+            self._increment(position, start, 0.5 * (start.load + load), halvings - 1)
+            self._increment(position, position.now, load, halvings - 1)
+            return
+        if reaches_end(system, found):
+            raise ArcError(CUT_OFF)
+        found.work = start.work + work_between(system, start, found)
+        found.dissipation = start.dissipation + dissipation_between(system, start, found)
+        position.now = found
+        position.touched |= found.closed
+        self._statistics["increments"] += 1

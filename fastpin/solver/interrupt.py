@@ -11,7 +11,7 @@ from types import FrameType
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Asked:
+class StopRequest:
     """Whether somebody asked to stop."""
 
     def __init__(self) -> None:
@@ -19,18 +19,18 @@ class Asked:
 
 
 @contextmanager
-def held_back() -> Iterator[Asked]:
+def deferred_interrupts() -> Iterator[StopRequest]:
     """Note a first Ctrl-C instead of raising; a second one raises KeyboardInterrupt as ever.
 
     So does a first one where this is not possible: outside the main thread, or where the program has its own handlers.
     SIGTERM is treated in the same way where the program has asked for it, by Python's handler of SIGINT.
     """
-    asked = Asked()
+    request = StopRequest()
 
     def note(number: int, frame: FrameType | None) -> None:
-        if asked.stop:
+        if request.stop:
             signal.default_int_handler(number, frame)
-        asked.stop = True
+        request.stop = True
 
     held = []
     if threading.current_thread() is threading.main_thread():
@@ -38,7 +38,7 @@ def held_back() -> Iterator[Asked]:
     for number in held:
         signal.signal(number, note)
     try:
-        yield asked
+        yield request
     finally:
         for number in held:
             signal.signal(number, signal.default_int_handler)

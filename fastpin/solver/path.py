@@ -11,11 +11,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fastpin import tableau
-from fastpin.basis import FactoredSet, StuckSet, solvable_set
-from fastpin.collocation import Configuration, P, Q, Solution, System
-from fastpin.columns import Columns, Memory
-from fastpin.state import OPEN, STICK
+from fastpin.elasticity.system import System
+from fastpin.kernels import exchange
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.loads import M, P, Q
+from fastpin.solver.configuration import Configuration, Solution, solve_statuses
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.rest import release
+from fastpin.solver.step import Piece, Position, Report, force_of, is_pushed
+from fastpin.solver.tableau import Columns, TableauMemory
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
 
 MOST_REBUILDS = 400
 MOST_DRIFT = 1e-10
@@ -32,6 +37,18 @@ MOST_SETTLINGS = 3
 
 SAMPLED_NODES = 16
 """Nodes at which gap and slip are compared with the matrices after every chunk."""
+
+FEW_NODES = 8
+"""A contact of at most this many nodes that is lost during a complete unloading has just opened."""
+
+NEGLIGIBLE = 1e-3
+"""Part of a step's force below which a contact narrower than the grid is given up and looked for again."""
+
+MOST_RELEASES = 20
+"""Times that this may happen in one piece of a step."""
+
+ALMOST_UNLOADED = 1.0 - 1e-8
+"""Beyond this part of a complete unloading everything falls to zero together; the order of events is rounding."""
 
 
 class StepLostError(Exception):
@@ -58,16 +75,16 @@ class PathStep:
     """
 
     def __init__(
-        self, system: System, configuration: Configuration, after: np.ndarray, memory: Memory | None = None
+        self, system: System, configuration: Configuration, after: np.ndarray, memory: TableauMemory | None = None
     ) -> None:
         self.system = system
-        self._memory = Memory(system.grid.size) if memory is None else memory
+        self._memory = TableauMemory(system.grid.size) if memory is None else memory
         self.now = configuration.copy()
         self.before = configuration.load.copy()
         self.rate = after - self.before
         n, now = system.grid.size, self.now
         weights = np.r_[system.weights, system.weights]
-        self._contact = tableau.Contact(
+        self._contact = exchange.Contact(
             now.pressure,
             now.shear,
             now.gap,
@@ -77,29 +94,29 @@ class PathStep:
             np.zeros(n, dtype=bool),
             now.motion,
         )
-        self._load = tableau.LoadWork(
+        self._load = exchange.LoadTerms(
             column=weights * (system.loads @ self.before),
             column_rate=weights * (system.loads @ self.rate),
             force=np.array([self.before[Q], -self.before[P]]),
             force_rate=np.array([self.rate[Q], -self.rate[P]]),
             weights=system.weights,
         )
-        self._queue = tableau.Queue(
+        self._queue = exchange.Queue(
             node=np.zeros(2 * n, dtype=np.int64),
             status=np.zeros(2 * n, dtype=np.int8),
-            counts=np.zeros(tableau.COUNTS, dtype=np.int64),
-            sums=np.zeros(tableau.SUMS),
+            counts=np.zeros(exchange.COUNTS, dtype=np.int64),
+            sums=np.zeros(exchange.SUMS),
         )
-        self._queue.sums[tableau.DISSIPATION] = configuration.dissipation
-        self._queue.sums[tableau.WORK] = configuration.work
+        self._queue.sums[exchange.DISSIPATION] = configuration.dissipation
+        self._queue.sums[exchange.WORK] = configuration.work
         self._typical = float(np.median(np.abs(np.diagonal(system.operator))))
-        self._wholesale = max(32, n // 20)
+        self._all_at_once = max(32, n // 20)
         nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
         self._sample = np.r_[nodes, n + nodes]
         self._sampled = system.operator[self._sample]
         self.rebuilds = 0
         self._columns: Columns
-        basis = self._turned()
+        basis = self._sticking_after_reversal()
         if basis is None:
             self._rebuild()
         else:
@@ -109,15 +126,15 @@ class PathStep:
     @property
     def fraction(self) -> float:
         """Fraction of the step that has been followed."""
-        return float(self._queue.sums[tableau.TIME])
+        return float(self._queue.sums[exchange.TIME])
 
     @property
     def events(self) -> int:
-        return int(self._queue.counts[tableau.EVENTS])
+        return int(self._queue.counts[exchange.EVENTS])
 
     @property
     def exchanges(self) -> int:
-        return int(self._queue.counts[tableau.EXCHANGES])
+        return int(self._queue.counts[exchange.EXCHANGES])
 
     @property
     def touched(self) -> np.ndarray:
@@ -137,35 +154,35 @@ class PathStep:
         system, counts = self.system, self._queue.counts
         n, checked, settlings = system.grid.size, 0, 0
         while True:
-            code = tableau.follow(
+            code = exchange.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.grid.closed, self._typical, stop, 1000 * n, self._wholesale,
+                system.friction, system.grid.closed, self._typical, stop, 1000 * n, self._all_at_once,
             )  # fmt: skip
-            updates = int(counts[tableau.UPDATES])
-            if code == tableau.STALE:
-                if updates // tableau.CHUNK > checked:
-                    checked = updates // tableau.CHUNK
+            updates = int(counts[exchange.UPDATES])
+            if code == exchange.STALE:
+                if updates // exchange.CHUNK > checked:
+                    checked = updates // exchange.CHUNK
                     if report is not None:
                         report(self.fraction)
-                    if self._drifted():
+                    if self._has_drifted():
                         self._mend()
                         checked = 0
                         continue
-                self._columns.refresh(int(counts[tableau.ASKED]), updates)
-            elif code in (tableau.REBUILD, tableau.WHOLESALE):
+                self._columns.refresh(int(counts[exchange.NEEDED_COLUMN]), updates)
+            elif code in (exchange.REBUILD, exchange.ALL_AT_ONCE):
                 self._book()
-                self._rebuild(wholesale=code == tableau.WHOLESALE)
+                self._rebuild(all_at_once=code == exchange.ALL_AT_ONCE)
                 checked = 0
             else:
                 self._book()
-                if code != tableau.REACHED:
+                if code != exchange.REACHED:
                     raise StepLostError(code, self.fraction)
-                solution = self._corrected()
-                settled = _settled(system, self.now, solution)
-                if not _cut_off(settled, solution):
+                solution = self._correct()
+                settled = _snap_to_bounds(system, self.now, solution)
+                if not _exceeds_bounds(settled, solution):
                     return settled
                 if settlings == MOST_SETTLINGS:
-                    raise StepLostError(tableau.CYCLING, self.fraction)
+                    raise StepLostError(exchange.CYCLING, self.fraction)
                 # Rounding, when a load is almost gone, has kept a status too long: from its limit it changes at once.
                 self._take(settled)
                 settlings += 1
@@ -173,16 +190,16 @@ class PathStep:
     def _book(self) -> None:
         """Write load, work and dissipation into the present configuration."""
         self.now.load = self.before + self.fraction * self.rate
-        self.now.dissipation = float(self._queue.sums[tableau.DISSIPATION])
-        self.now.work = float(self._queue.sums[tableau.WORK])
+        self.now.dissipation = float(self._queue.sums[exchange.DISSIPATION])
+        self.now.work = float(self._queue.sums[exchange.WORK])
 
-    def _turned(self) -> StuckSet | None:
+    def _sticking_after_reversal(self) -> StickingRun | None:
         """The set in which all closed nodes stick, if the load has turned so that most of the slipping ones do.
 
         None if it has not, or if that set can't be had fast.
         """
         status = self.now.status
-        basis = StuckSet.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
+        basis = StickingRun.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
         if basis is None:
             return None
         rates = basis.rates(self.rate)
@@ -193,28 +210,28 @@ class PathStep:
             return None
         return basis
 
-    def _begin(self, basis: StuckSet | FactoredSet) -> None:
-        self._queue.counts[tableau.UPDATES] = 0
+    def _begin(self, basis: StickingRun | DenseUnknowns) -> None:
+        self._queue.counts[exchange.UPDATES] = 0
         self._columns = Columns(self.system, basis, self._contact, self.rate, self._memory)
 
-    def _rebuild(self, wholesale: bool = False) -> None:
+    def _rebuild(self, all_at_once: bool = False) -> None:
         """Tableau of the present statuses from the matrices; after a `wholesale` change that can be taken back."""
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS:
-            raise StepLostError(tableau.CYCLING, self.fraction)
-        basis, queue = solvable_set(self.system, self.now.status), self._queue
-        if basis is None and wholesale:
+            raise StepLostError(exchange.CYCLING, self.fraction)
+        basis, queue = solvable_unknowns(self.system, self.now.status), self._queue
+        if basis is None and all_at_once:
             # Changing all at once left nothing that holds the pin: change one by one instead.
-            changed = slice(0, queue.counts[tableau.QUEUED])
+            changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
-            self._wholesale = 2 * self.now.status.size
-            queue.counts[tableau.NEXT] = queue.counts[tableau.QUEUED] = 0
-            basis = solvable_set(self.system, self.now.status)
+            self._all_at_once = 2 * self.now.status.size
+            queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
+            basis = solvable_unknowns(self.system, self.now.status)
         if basis is None:
-            raise StepLostError(tableau.NO_SUPPORT, self.fraction)
+            raise StepLostError(exchange.NO_SUPPORT, self.fraction)
         self._begin(basis)
 
-    def _drifted(self) -> bool:
+    def _has_drifted(self) -> bool:
         """Whether gap and slip at a sample of the nodes have lost touch with the matrices."""
         system, now = self.system, self.now
         rows, load = self._sample, self.before + self.fraction * self.rate
@@ -227,7 +244,7 @@ class PathStep:
     def _mend(self) -> None:
         """Compute the present configuration anew, by a factorisation, and the tableau."""
         self._book()
-        self._take(resolved(self.system, self.now))
+        self._take(recompute(self.system, self.now))
         self._rebuild()
 
     def _take(self, better: Configuration) -> None:
@@ -235,18 +252,18 @@ class PathStep:
         for name in ("pressure", "shear", "gap", "slip", "motion"):
             getattr(self.now, name)[:] = getattr(better, name)
 
-    def _corrected(self) -> Solution:
+    def _correct(self) -> Solution:
         """The present tractions and motion, corrected until statuses, held slip and load hold to rounding."""
         system, now, n = self.system, self.now, self.system.grid.size
         pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
         closed, stick = now.closed, now.status == STICK
         pressure[~closed] = shear[~closed] = 0.0
         slipping = closed & ~stick
-        updates, last = int(self._queue.counts[tableau.UPDATES]), np.inf
+        updates, last = int(self._queue.counts[exchange.UPDATES]), np.inf
         while True:
             tractions = np.r_[pressure, shear]
             elastic = system.operator @ tractions
-            true = system.moved(elastic, motion, now.load, now.rest_gap)
+            true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
             balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
             # of the elastic part and of the force at work, however little is left of them in an unloading
@@ -263,20 +280,22 @@ class PathStep:
             shear[slipping] = -system.friction * now.status[slipping] * pressure[slipping]
             motion += change[2 * n :]
         if not error <= MOST_ERROR:
-            exact = system.solve(now.status, now.slip, now.load, now.rest_gap)
+            exact = solve_statuses(system, now.status, now.slip, now.load, now.rest_gap)
             if exact is not None:
                 self.rebuilds += 1
                 return exact
         return Solution(pressure, shear, true[:n], true[n:], motion)
 
 
-def resolved(system: System, configuration: Configuration) -> Configuration:
+def recompute(system: System, configuration: Configuration) -> Configuration:
     """The same configuration with its tractions, gap and slip computed anew from statuses, held slip and load."""
-    solution = system.solve(configuration.status, configuration.slip, configuration.load, configuration.rest_gap)
-    return configuration.copy() if solution is None else _settled(system, configuration, solution)
+    solution = solve_statuses(
+        system, configuration.status, configuration.slip, configuration.load, configuration.rest_gap
+    )
+    return configuration.copy() if solution is None else _snap_to_bounds(system, configuration, solution)
 
 
-def _settled(system: System, configuration: Configuration, solution: Solution) -> Configuration:
+def _snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
     """The configuration with the solution of its statuses; what is beyond a bound, or almost at it, is put there."""
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
@@ -294,7 +313,7 @@ def _settled(system: System, configuration: Configuration, solution: Solution) -
     return new
 
 
-def _cut_off(settled: Configuration, solution: Solution) -> bool:
+def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
     """Whether a solution was beyond the bounds of its statuses by more than rounding."""
     stick, gaping = settled.status == STICK, ~settled.closed
     traction, length = MOST_DRIFT * settled.pressure.max(), MOST_DRIFT * settled.gap.max()
@@ -303,3 +322,79 @@ def _cut_off(settled: Configuration, solution: Solution) -> bool:
         or np.abs(settled.shear - solution.shear)[stick].max(initial=0.0) > traction
         or np.abs(settled.gap - solution.gap)[gaping].max(initial=0.0) > length
     )
+
+
+class PathStepper:
+    """The path solver as a stepper: exact in load, from event to event.
+
+    Parameters
+    ----------
+    system : System
+    statistics : dict of str to float
+        To which "events", "exchanges" and "rebuilds" are added.
+    """
+
+    def __init__(self, system: System, statistics: dict[str, float]) -> None:
+        self._system = system
+        self._statistics = statistics
+        self._memory = TableauMemory(system.grid.size)
+        self._step: PathStep | None = None
+        self._begin = 0.0  # fraction of the history's step at which it starts
+        self._releases = 0
+
+    def begin_piece(self) -> None:
+        """Get ready for another straight piece."""
+        self._releases = 0
+
+    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+        """Follow a piece exactly, up to the fraction `stop` of the step or to where the contact is lost."""
+        try:
+            if self._step is None:
+                self._begin = position.reached
+                self._step = PathStep(self._system, position.now, piece.after, self._memory)
+            begin, length = self._begin, piece.end - self._begin
+            part = 1.0 if stop == piece.end else (stop - begin) / length
+            position.now = self._step.follow(part, lambda done: report(begin + done * length))
+            position.now.load = piece.load_at(stop)
+        except StepLostError as lost:
+            if self._step is not None:
+                position.reached = self._begin + lost.fraction * (piece.end - self._begin)
+                position.now = self._step.now
+            if not self._has_just_opened(position.now, piece, lost):
+                raise _solve_error(lost.code, position.now, self._system.problem.rotation == "fixed") from None
+            self.leave(position)
+            position.now = release(self._system, position.now, position.now.load)
+
+    def leave(self, position: Position) -> None:
+        """Forget the path that is being followed, note the nodes it touched, and count its events."""
+        if self._step is None:
+            return
+        position.touched |= self._step.touched
+        self._statistics["events"] += self._step.events
+        self._statistics["exchanges"] += self._step.exchanges
+        self._statistics["rebuilds"] += self._step.rebuilds
+        self._step = None
+
+    def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:
+        """Whether a contact that lost its support has only become too small for the grid, or carried nothing."""
+        if lost.code == exchange.ARC_END:
+            return False
+        unloading = not is_pushed(piece.after) and piece.after[M] == 0.0
+        if unloading and lost.fraction > ALMOST_UNLOADED:
+            return True
+        if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_NODES or self._releases == MOST_RELEASES:
+            return False
+        self._releases += 1
+        return unloading or force_of(now.load) <= NEGLIGIBLE * max(force_of(piece.before), force_of(piece.after))
+
+
+def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
+    """The error of a path that is lost at the configuration `lost`; `held` if the pin can't rotate freely."""
+    closed = int(lost.closed.sum())
+    if code == exchange.ARC_END:
+        return ArcError(CUT_OFF)
+    if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
+        return ConvergenceError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
+    if code == exchange.NO_SUPPORT:
+        return NoEquilibriumError("nothing holds the pin any more: it spins, slides away or loses contact")
+    return ConvergenceError("the stick and slip zones did not settle")

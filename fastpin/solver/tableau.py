@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import blas
 
-from fastpin.basis import FactoredSet, StuckSet
-from fastpin.collocation import System
-from fastpin.products import add_product
-from fastpin.state import OPEN, STICK
-from fastpin.tableau import CHUNK, WIDTH, Contact, Tableau
+from fastpin.elasticity.system import System
+from fastpin.kernels.exchange import CHUNK, WIDTH, Contact, Tableau
+from fastpin.kernels.products import add_product
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 ROOM = 2
 """Updates a node for which there is room; with more, the tableau is built anew."""
 
 
-class Memory:
+class TableauMemory:
     """Where tableaus are kept, one at a time, step after step. Fresh memory comes page by page, which takes time."""
 
     def __init__(self, nodes: int) -> None:
@@ -47,10 +47,10 @@ class Columns:
     def __init__(
         self,
         system: System,
-        basis: StuckSet | FactoredSet,
+        basis: StickingRun | DenseUnknowns,
         contact: Contact,
         load_rate: np.ndarray,
-        memory: Memory,
+        memory: TableauMemory,
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._system, self._basis = system, basis

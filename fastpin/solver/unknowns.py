@@ -7,17 +7,14 @@ are those of the gap and of the slip at the same nodes, and three of equilibrium
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import lapack
 
-from fastpin import toeplitz
-from fastpin.products import add_product
-from fastpin.state import OPEN, STICK
-
-if TYPE_CHECKING:
-    from fastpin.collocation import System
+from fastpin.elasticity.system import System
+from fastpin.kernels import toeplitz
+from fastpin.kernels.products import add_product
+from fastpin.kernels.status import OPEN, STICK
 
 SINGULAR = 1e-13
 """A system whose reciprocal condition number is below this is a mechanism."""
@@ -96,7 +93,7 @@ class Unknowns:
         result[:, -3:] = system.motion[self.others]
         return result
 
-    def loaded(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def unit_responses(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (2n, k) and resultants (3, k) of tractions of size one among the others.
 
         With a `coupling` other than zero the slot is a pressure N that comes with a shear coupling N.
@@ -109,7 +106,7 @@ class Unknowns:
         return acting, balance
 
 
-class FactoredSet(Unknowns):
+class DenseUnknowns(Unknowns):
     """Any statuses, by a factorisation. ``singular`` if the closed nodes can't hold the pin."""
 
     def __init__(self, system: System, status: np.ndarray) -> None:
@@ -144,12 +141,12 @@ class FactoredSet(Unknowns):
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
-        acting, balance = self.loaded(slots, coupling)
+        acting, balance = self.unit_responses(slots, coupling)
         unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
         return unknowns, self.at_others(unknowns, acting[self.others])
 
 
-class StuckSet(Unknowns):
+class StickingRun(Unknowns):
     """Neighbours on equally spaced nodes that all stick: a block Toeplitz matrix, inverted in O(n^2).
 
     The three motions and conditions of equilibrium are added by the complement that they leave.
@@ -173,7 +170,7 @@ class StuckSet(Unknowns):
             self.singular = not self._probe() < MOST_RESIDUAL
 
     @classmethod
-    def of(cls, system: System, status: np.ndarray) -> StuckSet | None:
+    def of(cls, system: System, status: np.ndarray) -> StickingRun | None:
         """The set of given statuses; None if they or the grid are not of this kind."""
         closed, n = np.flatnonzero(status != OPEN), system.grid.size
         if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
@@ -187,8 +184,8 @@ class StuckSet(Unknowns):
         return None if found.singular else found
 
     @cached_property
-    def _beside(self) -> toeplitz.Beside:
-        return toeplitz.Beside(self._entries, self._core, int(self.normal[0]))
+    def _beside(self) -> toeplitz.NeighbourResponses:
+        return toeplitz.NeighbourResponses(self._entries, self._core, int(self.normal[0]))
 
     @cached_property
     def _responses(self) -> np.ndarray:
@@ -220,7 +217,7 @@ class StuckSet(Unknowns):
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
-        acting, balance = self.loaded(slots, coupling)
+        acting, balance = self.unit_responses(slots, coupling)
         places, pairs = np.searchsorted(self.others, slots), np.flatnonzero(coupling)
         shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
         free = -self._responses[:, places]
@@ -249,10 +246,10 @@ class StuckSet(Unknowns):
         return float(np.abs(np.r_[self.displacement(found)[self.rows], balance] - wanted).max())
 
 
-def solvable_set(system: System, status: np.ndarray) -> StuckSet | FactoredSet | None:
+def solvable_unknowns(system: System, status: np.ndarray) -> StickingRun | DenseUnknowns | None:
     """The system of given statuses, solved in the fastest way; None if the closed nodes can't hold the pin."""
-    stuck = StuckSet.of(system, status)
+    stuck = StickingRun.of(system, status)
     if stuck is not None:
         return stuck
-    factored = FactoredSet(system, status)
+    factored = DenseUnknowns(system, status)
     return None if factored.singular else factored

@@ -8,16 +8,14 @@ are all there is to choose; ``scripts/error_bars.py`` counts how often the bars 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 import numpy as np
 
-from fastpin.extrapolate import pair_bar
-from fastpin.grid import Grid, apart
-from fastpin.quantities import QUANTITIES, compared, intervals, quantity, size, values, width
-
-if TYPE_CHECKING:
-    from fastpin.state import State
+from fastpin.model.angles import angle_between
+from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, values, width
+from fastpin.states.state import State
 
 ORDER = 1.0
 """The order that is assumed: that of borders beside older ones. All else has 1.5 to 2, with some scatter."""
@@ -52,33 +50,6 @@ LEAST_COARSE = 51
 SAME_TOP = 1.5
 """Node distances from a peak within which a local maximum of the nodal values is the peak itself."""
 
-BESIDE = 2
-"""Nodes at each end of the coarse arc beyond the fine one: a coarse contact may be wider."""
-
-
-def halved(grid: Grid, direction: float | None) -> Grid:
-    """The grid with half the intervals: every second node, among them the one nearest to the angle `direction`.
-
-    Equal spacings become twice as large, also where the number of intervals is odd: an arc then ends beyond that of
-    `grid`, which changes nothing, for the nodes there are open. Other grids keep their first and last node.
-    """
-    n = grid.size
-    if not grid.uniform:
-        ends = grid.theta[-1:] if not grid.closed else grid.theta[:1]
-        return Grid(np.union1d(grid.theta[::2], ends), grid.closed)
-    parity = 0 if direction is None else int(np.argmin(np.abs(apart(grid.theta, direction)))) % 2
-    if grid.closed:
-        return Grid.circle((n + 1) // 2, float(grid.theta[parity]))
-    spacing = float(grid.theta[-1] - grid.theta[0]) / (n - 1)
-    first, last = -parity, n - 1 + (n - 1 + parity) % 2
-    room = math.floor((2.0 * math.pi / spacing - (last - first)) / 4.0 - 0.5)  # at each end, in coarse nodes
-    if room < 0:
-        last -= 2
-    beside = 2 * max(0, min(BESIDE, room))
-    first, last = first - beside, last + beside
-    start = float(grid.theta[0]) + spacing * first
-    return Grid.arc(start, start + spacing * (last - first), (last - first) // 2 + 1)
-
 
 def bars(state: State, coarse: State) -> dict[str, float]:
     """Error bars of all quantities of a state, in their units, angles in rad.
@@ -92,11 +63,11 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     state, coarse : State
         At the same load, `coarse` on a grid with about twice the node distance.
     """
-    mine, theirs = values(state), compared(state, coarse)
+    mine, theirs = values(state), matching_values(state, coarse)
     found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
     for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
         highest = state.theta[_as_high(state, traction, found[name])]
-        others = np.abs(apart(highest, mine[f"{name}_angle"]))
+        others = np.abs(angle_between(highest, mine[f"{name}_angle"]))
         others = others[others > SAME_TOP * float(state.grid.weights.max())]
         if others.size:
             known = found[f"{name}_angle"]
@@ -152,3 +123,41 @@ def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
         before[0] = after[-1] = 0.0
     highest = (traction > 0.0) & (traction >= before) & (traction >= after)
     return np.flatnonzero(highest & (traction >= traction.max() - 2.0 * bar))
+
+
+SAFETY = 1.25
+
+
+def pair_bar(fine: float, coarse: float, order: float, ratio: float = 2.0) -> float:
+    """Roache's grid convergence index of two grids: the error bar of the fine value for an order that is assumed.
+
+    `ratio` is that of the spacings, coarse to fine.
+    """
+    return SAFETY * abs(fine - coarse) / (ratio**order - 1.0)
+
+
+class ErrorBars(Mapping[str, float]):
+    """Error bars of one state, computed when they are first read; see :func:`bars`.
+
+    Parameters
+    ----------
+    state, coarse : State
+        At the same load, `coarse` on a grid with half the intervals.
+    """
+
+    def __init__(self, state: State, coarse: State) -> None:
+        self._state = state
+        self.coarse = coarse
+
+    @cached_property
+    def _bars(self) -> dict[str, float]:
+        return bars(self._state, self.coarse)
+
+    def __getitem__(self, name: str) -> float:
+        return self._bars[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bars)
+
+    def __len__(self) -> int:
+        return len(self._bars)

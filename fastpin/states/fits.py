@@ -231,7 +231,7 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
             if np.count_nonzero(taken) < degree + 1 + terms + SPARE:
                 continue
             columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
-            coefficients, error = _fitted(columns, bound[taken])
+            coefficients, error = _fit_windows(columns, bound[taken])
             if best is None or error < best.error:
                 best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
     if best is None or best.error > BORDER_ERROR * float(bound.max()):
@@ -255,7 +255,7 @@ def _windows(x: np.ndarray, sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[
             yield half, (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
 
 
-def _fitted(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
+def _fit_windows(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
     """Coefficients of a least-squares fit, and the standard error of the first one."""
     inverse = np.linalg.pinv(columns)
     coefficients = inverse @ values
@@ -365,7 +365,7 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
             if y.size < 2 * degree + 1 + SPARE:
                 continue
             columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
-            coefficients, error = _fitted(columns, wanted)
+            coefficients, error = _fit_windows(columns, wanted)
             bend = -coefficients[degree + 1] / half
             falling = bend > max(abs(coefficients[1]) / half, CORNER_BEND * error)
             if falling and (best is None or error < best.error):

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.grid import apart
-
-if TYPE_CHECKING:
-    from fastpin.state import State
-    from fastpin.zones import Interval
+from fastpin.model.angles import angle_between, from_bottom
+from fastpin.states.state import State
+from fastpin.states.zones import Interval
 
 
 class Quantity(NamedTuple):
@@ -93,7 +91,7 @@ def values(state: State) -> dict[str, float]:
     return found
 
 
-def compared(state: State, other: State) -> dict[str, float]:
+def matching_values(state: State, other: State) -> dict[str, float]:
     """The quantities of `state` as `other` has them, which is the same load on another grid.
 
     Angles are those next to the ones of `state`, whole turns apart. The peak shear, which may be at one of two places
@@ -104,7 +102,7 @@ def compared(state: State, other: State) -> dict[str, float]:
     if mine["peak_shear"] * theirs["peak_shear"] < 0.0:
         theirs |= {"peak_shear": -theirs["peak_shear"], "peak_shear_angle": math.nan}
     for zone in ZONES:
-        theirs |= _ends(zone, _matched(intervals(state, zone), intervals(other, zone)))
+        theirs |= _ends(zone, _match_intervals(intervals(state, zone), intervals(other, zone)))
     return {
         name: _beside(value, theirs[name]) if quantity(name).kind == "angle" else theirs[name]
         for name, value in mine.items()
@@ -141,13 +139,31 @@ def _beside(angle: float, other: float) -> float:
     return angle + math.remainder(other - angle, 2.0 * math.pi)
 
 
-def _matched(mine: Sequence[Interval], theirs: Sequence[Interval]) -> list[Interval]:
+def _match_intervals(mine: Sequence[Interval], theirs: Sequence[Interval]) -> list[Interval]:
     """Their intervals in the order of mine, which may begin elsewhere on a circle; NaN where they are not as many."""
     if len(mine) != len(theirs):
         return [(math.nan, math.nan)] * len(mine)
 
     def away(turned: Sequence[Interval]) -> float:
         ends = np.subtract(turned, mine)
-        return float(np.abs(apart(ends, 0.0)).sum())
+        return float(np.abs(angle_between(ends, 0.0)).sum())
 
     return min(([*theirs[k:], *theirs[:k]] for k in range(len(theirs))), key=away, default=[])
+
+
+def in_degrees(name: str, value: float) -> float:
+    """A quantity as it is reported: angles from the bottom of the hole and widths in degrees, all else as it is."""
+    kind = quantity(name).kind
+    if kind == "angle":
+        return from_bottom(value) if math.isfinite(value) else math.nan
+    return math.degrees(value) if kind == "width" else value
+
+
+def bar_in_degrees(name: str, bar: float) -> float:
+    """The error bar of a quantity as it is reported."""
+    return math.degrees(bar) if quantity(name).kind in ("angle", "width") else bar
+
+
+def load_point(state: State) -> float:
+    """Where in the history a state is: 1 at the first corner, 1.5 halfway from there to the second."""
+    return state.step + state.fraction

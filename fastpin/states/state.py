@@ -1,30 +1,24 @@
-"""States of the contact and the result of a solution; edges and peaks read between nodes."""
+"""One state of the contact; edges and peaks are read between nodes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 
-from fastpin import errorbars, zones
-from fastpin.grid import Grid
-from fastpin.loading import LoadHistory
-from fastpin.problem import Problem
-
-if TYPE_CHECKING:
-    from fastpin.run import Restart
-
-SLIP_NEGATIVE, STICK, SLIP_POSITIVE, OPEN = -1, 0, 1, 2
-"""Status of a node: slipping clockwise, sticking, slipping counter-clockwise (pin over plate), open."""
-
-Interval = zones.Interval
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.model.units import named_loads, units, with_unit
+from fastpin.states import peaks, zones
+from fastpin.states.zones import Interval
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class State:
     """The contact at one load. Its arrays can't be written to: steps that repeat share them.
 
@@ -55,8 +49,9 @@ class State:
     residuals : dict of str to float
         Largest violation, recomputed from the matrices: "gap" and "slip" relative to the largest displacement,
         "cone" and "equilibrium" relative to the largest traction and the load.
-    coarse : State or None
-        The same load on a grid with half the intervals; only where error bars were asked for.
+    error_bars : Mapping of str to float, or None
+        Largest likely error of each quantity and of each end of a zone, see
+        :class:`fastpin.states.error_bars.ErrorBars`. None unless ``solve(..., error_bars=True)``.
     """
 
     step: int
@@ -75,18 +70,31 @@ class State:
     work: float
     energy: float
     residuals: dict[str, float]
-    problem: Problem = field(repr=False)
-    grid: Grid = field(repr=False)
-    coarse: State | None = field(default=None, repr=False)
+    problem: Problem
+    grid: Grid
+    error_bars: Mapping[str, float] | None = None
 
-    @cached_property
-    def error_bars(self) -> dict[str, float] | None:
-        """By how much the quantities of :data:`fastpin.quantities.QUANTITIES` and the ends of zones may be off.
+    def __repr__(self) -> str:
+        unit = units(self.problem)["traction"]
+        head = f"<State at load point {self.step + self.fraction:.4g}: {named_loads(self.problem, self.load)}"
+        if not self.in_contact:
+            return f"{head}, no contact, {self.grid.size} nodes>"
+        peaks_ = [
+            f"peak {name} {with_unit(value, unit)} at {from_bottom(angle):z.2f} deg"
+            for name, value, angle in (
+                ("pressure", self.peak_pressure, self.peak_pressure_angle),
+                ("shear", self.peak_shear, self.peak_shear_angle),
+            )
+            if value != 0.0
+        ]
+        zones_ = [f"{name} {_in_degrees(found)}" for name, found in (("contact", self.contact), ("stick", self.stick))]
+        return f"{head}\n {', '.join(peaks_)}\n {', '.join(zones_)} deg, {self.grid.size} nodes>"
 
-        In the units of the quantities, angles in rad; see :func:`fastpin.errorbars.bars`. None where they were not
-        asked for (``solve(..., error_bars=True)``).
-        """
-        return None if self.coarse is None else errorbars.bars(self, self.coarse)
+    def _repr_html_(self) -> str:
+        """A small table and a figure, for notebooks."""
+        import fastpin
+
+        return fastpin.figures.state_html(self)
 
     @property
     def in_contact(self) -> bool:
@@ -139,13 +147,13 @@ class State:
 
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
-        return zones.pressure_peak(self.grid, self.pressure, self._tilt != 0.0) if self.in_contact else (0.0, math.nan)
+        return peaks.pressure_peak(self.grid, self.pressure, self._tilt != 0.0) if self.in_contact else (0.0, math.nan)
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
-        peak, place = zones.shear_peak(
+        peak, place = peaks.shear_peak(
             self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick, self._tilt
         )
         most = self.problem.friction * self.peak_pressure
@@ -189,132 +197,7 @@ class State:
         }
 
 
-class Cycle(NamedTuple):
-    """What a cycle of a load history has changed, from its beginning to its end.
-
-    Attributes
-    ----------
-    corner : int
-        Index of the corner at which the cycle ends.
-    length : int
-        Corners of the cycle.
-    number : int
-        How many times its block has been run through: 1 for the first cycle.
-    pressure_change, shear_change : float
-        Largest difference of the tractions at a node, relative to the largest pressure; 0 where the contact is
-        periodic. NaN where it is not known, because the cycle began before the history.
-    dissipation : float
-        Energy dissipated by friction in this cycle, J/m.
-    rotation_change : float
-        By how much the pin has turned (ratcheting), rad, counter-clockwise.
-    solved : bool
-        False where the cycle was known from before and not solved again.
-    """
-
-    corner: int
-    length: int
-    number: int
-    pressure_change: float
-    shear_change: float
-    dissipation: float
-    rotation_change: float
-    solved: bool
-
-
-def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
-    """The first of the cycles from which on all left the tractions the same, to rounding; None if there is none."""
-    same = [cycle.pressure_change == 0.0 and cycle.shear_change == 0.0 for cycle in cycles]
-    changing = max((k for k, steady in enumerate(same) if not steady), default=-1)
-    return cycles[changing + 1] if changing + 1 < len(cycles) else None
-
-
-def series(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
-    """Cycles that follow on one another, block by block."""
-    found: list[list[Cycle]] = []
-    latest: dict[int, list[Cycle]] = {}
-    for cycle in cycles:
-        before = latest.get(cycle.length)
-        if before is None or before[-1].number + 1 != cycle.number or before[-1].corner + cycle.length != cycle.corner:
-            before = latest[cycle.length] = []
-            found.append(before)
-        before.append(cycle)
-    return found
-
-
-class Result(Sequence[State]):
-    """The states of one solution, in the order of the history.
-
-    Attributes
-    ----------
-    problem : Problem
-    history : LoadHistory
-    grid : Grid
-    method : str
-        "path" or "increment".
-    statistics : dict of str to float
-        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (tableaus built anew, and states that a
-        factorisation computed), "increments", "repeated" (steps that were known from before) and "seconds".
-    complete : bool
-        Whether the whole history was followed; False in the result that an error carries.
-    cycles : tuple of Cycle
-        What each cycle of the history has changed, in order; empty where the history has no blocks that are repeated.
-    restart : Restart
-        For ``solve(..., start=result)``.
-    coarse : Result or None
-        The same history on a grid with half the intervals, where error bars were asked for.
-    """
-
-    def __init__(
-        self,
-        states: Sequence[State],
-        problem: Problem,
-        history: LoadHistory,
-        grid: Grid,
-        method: str,
-        statistics: dict[str, float],
-        complete: bool,
-        restart: Restart | None = None,
-        cycles: Sequence[Cycle] = (),
-    ) -> None:
-        self._states = list(states)
-        self.problem = problem
-        self.history = history
-        self.grid = grid
-        self.method = method
-        self.statistics = statistics
-        self.complete = complete
-        self.restart = restart
-        self.cycles = tuple(cycles)
-        self.coarse: Result | None = None
-
-    def with_coarse(self, coarse: Result) -> Result:
-        """This result with error bars, from the states of the same history on a coarser grid."""
-        states = []
-        for state, other in zip(self, coarse, strict=True):
-            assert (state.step, state.fraction) == (other.step, other.fraction)
-            states.append(replace(state, coarse=other))
-        result = Result(
-            states, self.problem, self.history, self.grid, self.method, self.statistics, self.complete, self.restart,
-            self.cycles,
-        )  # fmt: skip
-        result.coarse = coarse
-        return result
-
-    @overload
-    def __getitem__(self, index: int) -> State: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[State]: ...
-
-    def __getitem__(self, index: int | slice) -> State | list[State]:
-        return self._states[index]
-
-    def __len__(self) -> int:
-        return len(self._states)
-
-    def __iter__(self) -> Iterator[State]:
-        return iter(self._states)
-
-    def __repr__(self) -> str:
-        whole = "complete" if self.complete else "incomplete"
-        return f"<Result: {len(self)} states, {self.grid.size} nodes, {self.method}, {whole}>"
+def _in_degrees(intervals: list[Interval]) -> str:
+    """Intervals in degrees from the bottom, as text."""
+    ends = [interval_from_bottom(start, stop) for start, stop in intervals]
+    return " and ".join(f"{start:z.2f} to {stop:z.2f}" for start, stop in ends) or "none"

@@ -16,15 +16,18 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 
 import h5py
 
 from fastpin.errors import InputError
 
+fcntl: ModuleType | None
 try:
     import fcntl
 except ImportError:  # no such locks on this system: nobody else may write to the file
-    fcntl = None  # type: ignore[assignment]
+    fcntl = None
+
 
 _RECORD = struct.Struct("<QIII")  # place in the file, length, checksums of what follows and of what came in its place
 
@@ -60,7 +63,7 @@ class JournaledFile:
             self._file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
         except OSError as error:
             raise InputError(str(path), f"can't be written: {error.strerror}") from None
-        if not _locked(self._file):
+        if not _try_lock(self._file):
             os.close(self._file)
             raise InputError(str(path), "another run is writing to it")
         try:
@@ -175,7 +178,7 @@ class JournaledFile:
 
 
 @contextmanager
-def settled(path: Path) -> Iterator[None]:
+def consistent_view(path: Path) -> Iterator[None]:
     """Keep a file as its last transaction left it, while it is being read.
 
     Raises
@@ -224,7 +227,7 @@ def check_free(path: Path) -> None:
     if fcntl is None or not path.is_file():
         return
     with path.open("rb") as file:
-        if not _locked(file.fileno()):
+        if not _try_lock(file.fileno()):
             raise InputError(str(path), "another run is writing to it")
 
 
@@ -290,7 +293,7 @@ def _write_all(file: int, data: bytes, place: int) -> None:
         view, place = view[done:], place + done
 
 
-def _locked(file: int) -> bool:
+def _try_lock(file: int) -> bool:
     """Take the lock of the only writer, unless somebody has it."""
     if fcntl is None:
         return True

@@ -16,6 +16,7 @@ Every array says its unit. Dimensions are named in the way of netCDF, so that xa
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import platform
 from collections.abc import Mapping, Sequence
@@ -26,14 +27,20 @@ from typing import Any
 import h5py
 import numpy as np
 
-from fastpin import __version__
 from fastpin.errors import InputError
-from fastpin.grid import Grid
-from fastpin.loading import LOADS, Block, LoadHistory, named_load
-from fastpin.materials import Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.report import LOAD_KIND, units
-from fastpin.state import Cycle, State
+from fastpin.model.grid import Grid
+from fastpin.model.history import Block, LoadHistory
+from fastpin.model.loads import LOAD_KIND, LOADS, named_load
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+from fastpin.solver.configuration import Configuration
+from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
+from fastpin.solver.result import Restart
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+from fastpin.version import __version__
 
 FORMAT = "fastpin result"
 FORMAT_VERSION = 2
@@ -48,6 +55,7 @@ NODE_FIELDS = {
     "slip": "displacement",
     "status": "",
 }
+
 NUMBER_FIELDS = {
     "step": "",
     "fraction": "",
@@ -58,7 +66,11 @@ NUMBER_FIELDS = {
     "work": "energy",
     "energy": "energy",
 }
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "coarse")
+
+OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars")
+FIELD_KINDS = {**NODE_FIELDS, **NUMBER_FIELDS}
+"""Kind of quantity of each array that has a unit."""
+
 STATE_ROWS = (*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals")
 """Arrays that have a row for every state."""
 
@@ -73,6 +85,7 @@ CYCLE_FIELDS = {
     "rotation_change": "rotation",
     "solved": "",
 }
+
 WHOLE_NUMBERS = ("step", "corner", "length", "number")
 
 _PROBLEM_FIELDS = (
@@ -84,6 +97,7 @@ _PROBLEM_FIELDS = (
     "hub_radius",
     "dimensionless",
 )
+
 _ROWS = 128  # of numbers, in a chunk
 
 Rows = dict[str, np.ndarray]
@@ -139,15 +153,14 @@ def read_problem(file: h5py.File) -> Problem:
     for name in ("pin", "plate"):
         attributes = group[name].attrs
         bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]))
-    given = {name: plain(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
+    given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
     return Problem(MaterialPair(bodies["pin"], bodies["plate"], group.attrs["plane"]), **given)
 
 
 def _write_history(group: h5py.Group, problem: Problem, history: LoadHistory) -> None:
-    unit = units(problem)
     corners = group.create_dataset("corners", data=np.vstack([block.given for block in history.blocks]), **_PACKED)
     corners.attrs["columns"] = list(LOADS)
-    corners.attrs["unit"] = [unit[LOAD_KIND[name]] for name in LOADS]
+    corners.attrs["unit"] = load_units(problem)
     group.create_dataset("ends", data=np.concatenate([block.ends for block in history.blocks]), **_PACKED)
     blocks = [(len(block.given), block.count, block.cycle, block.size, len(block.lengths)) for block in history.blocks]
     group["blocks"] = np.array(blocks, dtype=np.int64)
@@ -172,6 +185,28 @@ def read_grid(file: h5py.File) -> Grid:
     return Grid(file["grid/theta"][()], bool(file["grid"].attrs["closed"]))
 
 
+def option_attributes(options: SolveOptions) -> dict[str, Any]:
+    """The options of a run as attributes of ``/solver``."""
+    kept = options.keywords()
+    del kept["between"], kept["error_bars"]
+    return {**kept, "fractions": options.fractions}
+
+
+def read_options(file: h5py.File) -> SolveOptions:
+    """The options of a result; of one that :func:`fastpin.save` wrote only the nodes and the method are known."""
+    stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
+    options: dict[str, Any] = {"nodes": stored.get("nodes", len(file["grid/theta"])), "method": stored["method"]}
+    if options["method"] == "increment":
+        options["increments"] = stored.get("increments")
+    if "fractions" in stored:
+        options["between"] = stored["fractions"][:-1].tolist()
+    if "arc" in stored:
+        start, stop = stored["arc"].tolist()
+        options["arc"] = (start, min(stop, start + 2.0 * np.pi))  # earlier versions took longer arcs for a circle
+    options |= {name: stored[name] for name in ("keep", "shortcut") if name in stored}
+    return SolveOptions(**options)
+
+
 def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
     """Write what the solver counted."""
     file["solver/statistics"].attrs.update(statistics)
@@ -179,7 +214,7 @@ def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
     """What the solver counted."""
-    return {str(name): plain(value) for name, value in file["solver/statistics"].attrs.items()}
+    return {str(name): as_python(value) for name, value in file["solver/statistics"].attrs.items()}
 
 
 # -- what grows ----------------------------------------------------------------------------------------------
@@ -221,11 +256,17 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
         dataset.dims[0].attach_scale(scales["state"])
         if dimension:
             dataset.dims[1].attach_scale(scales[dimension])
-    loads = _growing(group, "loads", (len(LOADS),), float, [unit[LOAD_KIND[name]] for name in LOADS])
+    loads = _growing(group, "loads", (len(LOADS),), float, load_units(problem))
     residuals = _growing(group, "residuals", (len(RESIDUALS),), float, "")
     for dataset, dimension in ((loads, "load_name"), (residuals, "residual_name")):
         dataset.dims[0].attach_scale(scales["state"])
         dataset.dims[1].attach_scale(scales[dimension])
+
+
+def load_units(problem: Problem) -> list[str]:
+    """The unit of each load, in the order of a load vector."""
+    unit = units(problem)
+    return [unit[LOAD_KIND[name]] for name in LOADS]
 
 
 def rows_of(states: Sequence[State]) -> Rows:
@@ -318,6 +359,65 @@ def check_format(file: h5py.File, path: str) -> None:
         raise InputError(path, f"was written by fastpin {made_by} in a format that this version can't read")
 
 
-def plain(value: Any) -> Any:
+def as_python(value: Any) -> Any:
     """An attribute as a Python value."""
     return value.item() if isinstance(value, np.generic) else value
+
+
+_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in ("dissipation", "work")]
+
+
+def write_restart(group: h5py.Group, restart: Restart) -> None:
+    """Write a restart into an empty group, without units: tractions in F/R, displacements in F beta*."""
+    met, marks = list(restart.repeats), list(restart.marks.items())
+    configurations: list[Configuration] = []
+    places: dict[int, int] = {}
+
+    def place(configuration: Configuration) -> int:
+        """Where a configuration is stored; those that share their arrays are stored once."""
+        known = places.setdefault(id(configuration.slip), len(configurations))
+        if known == len(configurations):
+            configurations.append(configuration)
+        return known
+
+    group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
+    group.attrs["configuration"] = place(restart.configuration)
+    group["load"] = restart.load
+    group["met"] = np.array(
+        [(place(one.configuration), one.ends_cycle, one.last, one.period, one.since) for one in met], dtype=np.int64
+    ).reshape(-1, 5)
+    group["marks"] = np.array(
+        [(*key, place(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
+    ).reshape(-1, 5)
+    group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
+    for name in _ARRAYS:
+        group[f"configurations/{name}"] = np.array([getattr(one, name) for one in configurations])
+    group.create_group("statistics").attrs.update(restart.statistics)
+
+
+def read_restart(group: h5py.Group) -> Restart:
+    """Read what :func:`write_restart` wrote."""
+    arrays = {name: group[f"configurations/{name}"][()] for name in _ARRAYS}
+    count = len(arrays["load"])
+    all_of_them = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(count)]
+    met = [
+        KnownConfiguration(all_of_them[place], bool(ends), int(last), int(period), int(since))
+        for place, ends, last, period, since in group["met"][()]
+    ]
+    marks = {
+        (int(block), int(inner)): CycleEnd(int(corner), int(number), all_of_them[place], float(dissipation))
+        for (block, inner, place, corner, number), dissipation in zip(
+            group["marks"][()], group["marks_dissipation"][()], strict=True
+        )
+    }
+    return Restart(
+        corner=int(group.attrs["corner"]),
+        load=group["load"][()],
+        force=float(group.attrs["force"]),
+        configuration=all_of_them[int(group.attrs["configuration"])],
+        dissipation=float(group.attrs["dissipation"]),
+        work=float(group.attrs["work"]),
+        repeats=Repeats(met),
+        marks=marks,
+        statistics={str(name): float(value) for name, value in group["statistics"].attrs.items()},
+    )

@@ -9,40 +9,36 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
 
-from fastpin.checks import whole_number
 from fastpin.errors import InputError
-from fastpin.files import check_exists, check_writable, replacing
-from fastpin.journal import check_free, open_h5, settled
-from fastpin.keep import Keep
-from fastpin.layout import (
+from fastpin.model.checks import whole_number
+from fastpin.model.history import LoadHistory
+from fastpin.solver.result import Restart, Result
+from fastpin.solver.task import Task
+from fastpin.storage.files import check_exists, check_writable, replacing
+from fastpin.storage.journal import check_free, consistent_view, open_h5
+from fastpin.storage.layout import (
     append,
     check_format,
     count,
     cycle_rows,
-    plain,
     read_cycles,
     read_grid,
     read_history,
+    read_options,
     read_problem,
+    read_restart,
     read_states,
     read_statistics,
     rows_of,
     write_head,
+    write_restart,
     write_statistics,
 )
-from fastpin.loading import LoadHistory
-from fastpin.restart import read_restart, write_restart
-from fastpin.run import Restart
-from fastpin.solver import Task
-from fastpin.state import Result
-
-if TYPE_CHECKING:
-    import xarray
 
 ALL = slice(None)
 
@@ -106,7 +102,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         If the file can't be read, was cut short, or is no result of fastpin; or has no such corner.
     """
     path = Path(path)
-    with opened(path) as file:
+    with open_result(path) as file:
         problem, grid, history = read_problem(file), read_grid(file), read_history(file)
         complete, restart, task = bool(file.attrs["complete"]), None, None
         restarts = file.get("restart", {})
@@ -133,7 +129,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             statistics=read_statistics(file),
             complete=complete,
             restart=restart,
-            cycles=cycles,
+            cycles=tuple(cycles),
         )
     if task is not None and restart is not None and restart.corner < len(task.history):
         result.restart = task.reach(restart, grid)  # the file is free again: this may take a while
@@ -143,13 +139,13 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
 def is_unfinished(path: Path) -> bool:
     """Whether a file holds a run that has not come to its end."""
     try:
-        with opened(path) as file:
+        with open_result(path) as file:
             return "run" in file.attrs and not file.attrs.get("complete", True)
     except InputError:
         return False
 
 
-def size(path: str | Path) -> int:
+def state_count(path: str | Path) -> int:
     """Number of states in a file.
 
     Raises
@@ -157,42 +153,12 @@ def size(path: str | Path) -> int:
     InputError
         See :func:`load`.
     """
-    with opened(Path(path)) as file:
+    with open_result(Path(path)) as file:
         return count(file["states"])
 
 
-def to_xarray(path: str | Path) -> xarray.Dataset:
-    """All states as an xarray.Dataset with the dimensions "state" and "theta", and units as attributes.
-
-    A finished file can also be read piece by piece, without fastpin: ``xarray.open_dataset(path, group="states")``.
-
-    Raises
-    ------
-    InputError
-        See :func:`load`; also if xarray is not installed.
-    """
-    try:
-        import xarray
-    except ImportError:
-        raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
-    with opened(Path(path)) as file:
-        group, variables = file["states"], {}
-        for name, dataset in group.items():
-            scales = [dimension.values() for dimension in dataset.dims]
-            dimensions = [scale[0].name.rpartition("/")[2] if scale else name for scale in scales]
-            values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
-            unit = dataset.attrs.get("unit", "")
-            units = {"units": unit if isinstance(unit, str) else ", ".join(unit)}
-            variables[name] = (dimensions, values, units)
-        attributes = {name: plain(value) for name, value in file.attrs.items()}
-    return xarray.Dataset(variables, attrs=attributes).set_coords([name for name in variables if name in _COORDINATES])
-
-
-_COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fraction")
-
-
 @contextmanager
-def opened(path: Path) -> Iterator[Any]:
+def open_result(path: Path) -> Iterator[Any]:
     """A result open for reading, as its last transaction left it.
 
     Raises
@@ -201,7 +167,7 @@ def opened(path: Path) -> Iterator[Any]:
         If the file can't be read, was cut short, or is no result of fastpin; also where its user found it damaged.
     """
     check_exists(path)
-    with settled(path), open_h5(path) as file:
+    with consistent_view(path), open_h5(path) as file:
         check_format(file, str(path))
         try:
             yield file
@@ -224,26 +190,14 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tu
     if "run" not in file.attrs or not stored:
         raise InputError("after", f"{path} was not written by a run: it can't be gone on from")
     start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
-    return replace(stored_task(file), history=history[:after], shortcut=True, stops=frozenset()), start
+    task = stored_task(file)
+    return replace(task, history=history[:after], options=task.options.changed(shortcut=True), stops=frozenset()), start
 
 
 def stored_task(file: h5py.File) -> Task:
-    """What the run of a file was asked for, on its grid."""
-    options = {name: plain(value) for name, value in file["solver"].attrs.items()}
-    return Task(
-        problem=read_problem(file),
-        history=read_history(file),
-        nodes=options["nodes"],
-        method=options["method"],
-        increments=options["increments"],
-        arc=tuple(options["arc"].tolist()) if "arc" in options else None,
-        grid=read_grid(file),
-        fractions=options["fractions"],
-        keep=Keep.of(options["keep"]),
-        shortcut=bool(options["shortcut"]),
-        progress=None,
-        stops=frozenset(options["save_after"].tolist()),
-    )
+    """The task of the run of a file, on its grid."""
+    stops = frozenset(file["solver"].attrs["save_after"].tolist())
+    return Task(read_problem(file), read_history(file), read_options(file), read_grid(file), stops=stops)
 
 
 def _first_line(error: Exception) -> str:

@@ -10,19 +10,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.arc import first_direction
-from fastpin.casefile import MAX_NODES
-from fastpin.checks import whole_number
-from fastpin.errorbars import PLACE_FLOOR, spacing
-from fastpin.errors import ArcError, InputError, SolveError
-from fastpin.extrapolate import Estimate, estimate
-from fastpin.grid import Grid
-from fastpin.loading import LoadHistory
-from fastpin.problem import Problem
-from fastpin.quantities import compared, quantity, size, values
-from fastpin.run import Method
-from fastpin.solver import Task, solve
-from fastpin.state import Result
+from fastpin.errors import InputError
+from fastpin.model.checks import whole_number
+from fastpin.model.grid import MAX_NODES, Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import Method, SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.solver.arc import first_direction
+from fastpin.solver.errors import ArcError, SolveError
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.solver.task import Task, as_history
+from fastpin.states.error_bars import PLACE_FLOOR, spacing
+from fastpin.states.quantities import matching_values, quantity, size, values
+from fastpin.studies.extrapolate import Estimate, estimate
 
 LEAST_GRIDS = 3
 LEAST_RATIO = 1.1
@@ -44,7 +45,7 @@ NODES = (101, 201, 401, 801)
 Progress = Callable[[float, float, str], None]
 
 
-class Series(NamedTuple):
+class QuantitySeries(NamedTuple):
     """One quantity at one corner.
 
     Attributes
@@ -90,7 +91,7 @@ class Study:
     method: Method
     counts: tuple[int, ...]
     nodes: int
-    series: tuple[Series, ...]
+    series: tuple[QuantitySeries, ...]
 
 
 @dataclass(frozen=True)
@@ -193,30 +194,22 @@ def converge(
     if increment_nodes is not None:
         if not steps:
             raise InputError("increment_nodes", "is for the increment solver: give increments, too")
-        single = _between("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
-    task = Task.checked(problem, history, counts[0], "path", 1, arc, None, 0, "all", True, None)
+        single = whole_number("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
+    task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
     if corner is not None and whole_number("corner", corner, 1) > len(task.history):
         raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {corner}")
-    if arc is not None:
-        next(task.grids())  # checks it
     return _Work(task, counts, steps, single, corner, progress).study()
 
 
-def _increasing(field: str, numbers: Sequence[int], least: int, most: int | None = None) -> tuple[int, ...]:
+def _increasing(field: str, numbers: object, least: int, most: int | None = None) -> tuple[int, ...]:
     numbers = numbers.tolist() if isinstance(numbers, np.ndarray) else numbers
     if not isinstance(numbers, Sequence) or isinstance(numbers, str) or len(numbers) < LEAST_GRIDS:
         raise InputError(field, f"must be at least {LEAST_GRIDS} numbers, not {numbers!r}: an order takes as many")
-    checked = tuple(_between(field, number, least, most) for number in numbers)
+    checked = tuple(whole_number(field, number, least, most) for number in numbers)
     for before, after in pairwise(checked):
         if after <= before:
             raise InputError(field, f"must increase from one to the next, but {after} follows {before}")
     return checked
-
-
-def _between(field: str, number: int, least: int, most: int | None) -> int:
-    if whole_number(field, number, least) > (most or math.inf):
-        raise InputError(field, f"must be at most {most:,}, not {number:,}")
-    return int(number)
 
 
 class _Work:
@@ -249,16 +242,16 @@ class _Work:
         try:
             self._follow()
         except KeyboardInterrupt:
-            raise StudyInterrupted(self._finished()) from None
+            raise StudyInterrupted(self._finished_study()) from None
         except StudyLostError as error:
-            error.study = self._finished()
+            error.study = self._finished_study()
             raise
         if self.lost is not None:
-            self.lost.study = self._finished()
+            self.lost.study = self._finished_study()
             raise self.lost
         return self._convergence(complete=True)
 
-    def _finished(self) -> Convergence | None:
+    def _finished_study(self) -> Convergence | None:
         """The study of the grids that are finished, if they are enough."""
         enough = sum(count in self.found for count in self.counts) >= LEAST_GRIDS
         return self._convergence(complete=False) if enough else None
@@ -271,19 +264,19 @@ class _Work:
         """All grids on the first arc that is wide enough for all of them."""
         common = math.gcd(*(count - 1 for count in self.counts))
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
-        for arc in replace(self.task, nodes=coarsest).grids():
+        for arc in replace(self.task, options=self.task.options.changed(nodes=coarsest)).grids():
             try:
                 self.found, self.done = {}, 0.0
                 for count in (*self.counts, *self._path_apart()):
-                    self.found[count] = self._solved(arc, count, "path", 0)
+                    self.found[count] = self._solve_grid(arc, count, "path", 0)
                 break
             except ArcError:
-                if self.task.arc is not None or arc.closed:
+                if self.task.options.arc is not None or arc.closed:
                     raise
         for count in self.increments:
-            self.found_increments.append(self._solved(arc, self.single, "increment", count))
+            self.found_increments.append(self._solve_grid(arc, self.single, "increment", count))
 
-    def _solved(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
+    def _solve_grid(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
         """The history on one grid."""
         if arc.closed:
             direction = first_direction(self.history.distinct())
@@ -300,7 +293,7 @@ class _Work:
         where = what if method == "path" else f"{what} a step and {nodes} nodes"
         try:
             result = solve(
-                self.task.problem, self.history, method=method, increments=max(increments, 1), grid=grid,
+                self.task.problem, self.history, method=method, increments=increments or None, grid=grid,
                 keep=self.keep, progress=progress,
             )  # fmt: skip
         except ArcError as error:
@@ -340,11 +333,13 @@ class _Work:
         loads = {corner: state.load for corner, state in zip(self.corners, finest, strict=False)}
         return Convergence(self.task.problem, finest.grid, loads, tuple(studies), complete)
 
-    def _series(self, spacings: Sequence[float], results: Sequence[Result], path: Result | None) -> Iterator[Series]:
+    def _series(
+        self, spacings: Sequence[float], results: Sequence[Result], path: Result | None
+    ) -> Iterator[QuantitySeries]:
         for place, corner in enumerate(self.corners):
             last = results[-1][place]
-            rows = [compared(last, result[place]) for result in results]
-            other = {} if path is None else compared(last, path[place])
+            rows = [matching_values(last, result[place]) for result in results]
+            other = {} if path is None else matching_values(last, path[place])
             for name, value in values(last).items():
                 if math.isfinite(value):
                     numbers, natural = tuple(row[name] for row in rows), size(name, last)
@@ -352,7 +347,7 @@ class _Work:
                     if quantity(name).kind in ("angle", "width") and found.bar <= ROUNDING * natural:
                         # read at or between nodes that all grids have
                         found = Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
-                    yield Series(corner, name, numbers, found, natural, other.get(name, math.nan))
+                    yield QuantitySeries(corner, name, numbers, found, natural, other.get(name, math.nan))
 
 
 def _cost(method: Method, nodes: int, increments: int) -> float:

@@ -18,8 +18,12 @@ from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
+import scipy
 
-SAFETY, SAFETY_NOISE = 1.25, 3.0
+from fastpin.states.error_bars import SAFETY, pair_bar
+
+SAFETY_NOISE = 3.0
+
 LATEST = 3
 """Values whose range is the error bar where no order is observed."""
 
@@ -84,22 +88,14 @@ def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float
     return Estimate("observed", order, limit, max(safety * abs(last - limit) + deviation, least))
 
 
-def pair_bar(fine: float, coarse: float, order: float, ratio: float = 2.0) -> float:
-    """Roache's grid convergence index of two grids: the error bar of the fine value for an order that is assumed.
-
-    `ratio` is that of the spacings, coarse to fine.
-    """
-    return SAFETY * abs(fine - coarse) / (ratio**order - 1.0)
-
-
 def _fit(h: np.ndarray, f: np.ndarray) -> tuple[float, float, float]:
     """Order, limit and standard deviation of the best fit; the order is at an end of its range where there is none."""
-    from scipy.optimize import minimize_scalar  # states are read without it
-
     orders = np.linspace(0.5 * LEAST_ORDER, 1.25 * MOST_ORDER, 60)
     best = int(np.argmin([_fit_of_order(h, f, order)[1] for order in orders]))
     near = orders[max(best - 1, 0)], orders[min(best + 1, len(orders) - 1)]
-    order = float(minimize_scalar(lambda p: _fit_of_order(h, f, p)[1], bounds=near, options={"xatol": 1e-6}).x)
+    order = float(
+        scipy.optimize.minimize_scalar(lambda p: _fit_of_order(h, f, p)[1], bounds=near, options={"xatol": 1e-6}).x
+    )
     return order, *_fit_of_order(h, f, order)
 
 

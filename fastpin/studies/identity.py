@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from fastpin import __version__
-from fastpin.casefile import Case, SolveOptions
-from fastpin.loading import LOADS, LoadHistory
-from fastpin.materials import Material
+from fastpin.model.case import Case
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import Material
+from fastpin.model.options import SolveOptions
+from fastpin.version import __version__
 
 ID_LENGTH = 16
 
@@ -82,7 +84,7 @@ def _loads(history: LoadHistory) -> dict[str, Any]:
 
 def _options(options: SolveOptions) -> dict[str, Any]:
     given = options.keywords()
-    del given["shortcut"]  # with which the results are the same
+    del given["shortcut"], given["error_bars"]  # the states are the same with and without
     if options.method == "path":
-        del given["increments"]  # which only the other method reads
+        del given["increments"]
     return given

@@ -8,18 +8,16 @@ while a sweep runs.
 from __future__ import annotations
 
 import json
-import os
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from fastpin import __version__
 from fastpin.errors import InputError
-from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import Plan, Point, Spacing
-from fastpin.worker import Outcome
+from fastpin.studies.outcome import KEY_FIGURES, Outcome
+from fastpin.studies.plan import Plan, Point, Spacing
+from fastpin.version import __version__
 
 FILE = "index.sqlite"
 APPLICATION = 0x6670696E  # "fpin", in the file's header
@@ -38,11 +36,12 @@ _RUN_COLUMNS = {
     "versions": "TEXT",
     "input": "TEXT NOT NULL",
 }
+
 _OUTCOME_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
 _BUSY_SECONDS = 60.0
 
 
-def begun(directory: Path) -> bool:
+def has_index(directory: Path) -> bool:
     """Whether a directory has an index; one that another process is about to make is empty, and none yet."""
     path = directory / FILE
     return path.is_file() and path.stat().st_size > 0
@@ -65,9 +64,9 @@ class Index:
 
     def __init__(self, directory: Path, create: bool = False) -> None:
         self.path = directory / FILE
-        if not create and not begun(directory):
+        if not create and not has_index(directory):
             raise InputError(str(directory), "holds no sweep: there is no index.sqlite")
-        with self._said():
+        with self._as_input_error():
             mode = "rwc" if create else "rw"
             self._database = sqlite3.connect(
                 f"{self.path.resolve().as_uri()}?mode={mode}", uri=True, timeout=_BUSY_SECONDS, isolation_level=None
@@ -107,12 +106,12 @@ class Index:
     def expect(self, plan: Plan, points: Iterable[Point]) -> None:
         """Add the points that are new, waiting, and name the values of all; what is known of them stays."""
         fields = list(plan.fields)
-        with self._said(), self._transaction():
+        with self._as_input_error(), self._transaction():
             self._add_columns(fields)
-            self._note(version=__version__, plan=plan.digest, title=plan.title, text=plan.text)
-            self._note(fields=json.dumps(self.fields | plan.fields))
+            self._write_notes(version=__version__, plan=plan.digest, title=plan.title, text=plan.text)
+            self._write_notes(fields=json.dumps(self.fields | plan.fields))
             columns = ["id", "status", "dimensionless", "input", *fields]
-            update = "".join(f', "{name}" = excluded."{name}"' for name in fields)
+            update = "".join(f", {_quoted([name])} = excluded.{_quoted([name])}" for name in fields)
             self._database.executemany(
                 f"INSERT INTO runs ({_quoted(columns)}) VALUES ({', '.join('?' * len(columns))}) "
                 f"ON CONFLICT (id) DO UPDATE SET input = excluded.input{update}",
@@ -141,7 +140,7 @@ class Index:
             "versions": json.dumps(outcome.versions),
         }
         places = ", ".join(f'"{name}" = ?' for name in _OUTCOME_COLUMNS)
-        with self._said():
+        with self._as_input_error():
             values = [cells[name] for name in _OUTCOME_COLUMNS]
             self._database.execute(f"UPDATE runs SET {places} WHERE id = ?", [*values, outcome.id])
 
@@ -150,15 +149,15 @@ class Index:
     @property
     def fields(self) -> dict[str, Spacing]:
         """All fields that were ever varied here, and how they were spaced."""
-        return json.loads(self.noted("fields") or "{}")
+        return json.loads(self.read_note("fields") or "{}")
 
-    def noted(self, name: str) -> str | None:
+    def read_note(self, name: str) -> str | None:
         """What is kept of the whole sweep: "version", "plan" (its digest), "title", "text", "fields"."""
         return self._one("SELECT value FROM sweep WHERE name = ?", name)
 
     def statuses(self) -> dict[str, tuple[str, str | None]]:
         """Status ("waiting", "done", "failed") and reason of a failure, by id."""
-        with self._said():
+        with self._as_input_error():
             found = self._database.execute("SELECT id, status, reason FROM runs")
             return {run: (status, reason) for run, status, reason in found}
 
@@ -167,7 +166,7 @@ class Index:
 
         Lists (loads, the ends of an arc) are lists again, ``versions`` and ``input`` dicts.
         """
-        with self._said():
+        with self._as_input_error():
             fields = self.fields
             found = self._database.execute("SELECT * FROM runs ORDER BY rowid")
             names = [column[0] for column in found.description]
@@ -181,10 +180,12 @@ class Index:
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
         """Take over these rows of another index of the same plan, and what is known of its sweep."""
-        with self._said(), self._transaction():
+        with self._as_input_error(), self._transaction():
             names = list(other.fields)
             self._add_columns(names)
-            self._note(**{name: other.noted(name) for name in ("version", "plan", "title", "text", "fields")})
+            self._write_notes(
+                **{name: other.read_note(name) for name in ("version", "plan", "title", "text", "fields")}
+            )
             columns = _quoted([*_RUN_COLUMNS, *names])
             marks = ", ".join("?" * (len(_RUN_COLUMNS) + len(names)))
             for run in ids:
@@ -197,13 +198,13 @@ class Index:
         known = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
         for name in fields:
             if name not in known:
-                self._database.execute(f'ALTER TABLE runs ADD COLUMN "{name}"')
+                self._database.execute(f"ALTER TABLE runs ADD COLUMN {_quoted([name])}")
 
-    def _note(self, **values: str | None) -> None:
+    def _write_notes(self, **values: str | None) -> None:
         self._database.executemany("INSERT OR REPLACE INTO sweep VALUES (?, ?)", values.items())
 
     def _one(self, question: str, *values: Any) -> Any:
-        with self._said():
+        with self._as_input_error():
             row = self._database.execute(question, values).fetchone()
         return row[0] if row else None
 
@@ -219,7 +220,7 @@ class Index:
         self._database.execute("COMMIT")
 
     @contextmanager
-    def _said(self) -> Iterator[None]:
+    def _as_input_error(self) -> Iterator[None]:
         """What SQLite complains of, in one sentence."""
         try:
             yield
@@ -230,7 +231,7 @@ class Index:
 
 
 @contextmanager
-def locked(directory: Path) -> Iterator[None]:
+def lock_directory(directory: Path) -> Iterator[None]:
     """Keep other sweeps out of a directory; the lock goes when this process ends, however it does.
 
     Raises
@@ -256,7 +257,8 @@ def locked(directory: Path) -> Iterator[None]:
 
 
 def _quoted(names: Iterable[str]) -> str:
-    return ", ".join(f'"{name}"' for name in names)
+    """Names of columns in SQL. A quote inside a name is doubled: an index to be merged may be foreign."""
+    return ", ".join('"' + name.replace('"', '""') + '"' for name in names)
 
 
 def _cell(value: Any) -> Any:
@@ -270,10 +272,10 @@ def _value(name: str, cell: Any) -> Any:
     return json.loads(cell) if may_be_list and isinstance(cell, str) else cell
 
 
-def made(directory: Path) -> Path:
+def ensure_directory(directory: Path) -> Path:
     """The directory, made if there is none."""
     try:
-        os.makedirs(directory, exist_ok=True)
+        directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(str(directory), f"can't be made: {error.strerror or error}") from None
     return directory

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import Any
 
-from fastpin.quantities import QUANTITIES
-from fastpin.report import in_degrees, interval_from_bottom
-from fastpin.state import Interval, Result
+from fastpin.model.angles import interval_from_bottom
+from fastpin.solver.result import Result
+from fastpin.states.quantities import QUANTITIES, in_degrees
+from fastpin.states.zones import Interval
 
 _PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
 _OTHERS = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
@@ -74,3 +76,33 @@ def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
     if not intervals:
         return None, None
     return interval_from_bottom(*max(intervals, key=lambda interval: interval[1] - interval[0]))
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes
+    ----------
+    id : str
+    reason : str or None
+        Why it failed; None if it did not.
+    figures : dict
+        Key figures (:data:`fastpin.keyfigures.KEY_FIGURES`); empty without a state.
+    seconds : float or None
+        Time in the solver.
+    started : str or None
+        UTC, ISO 8601.
+    host : str or None
+        Name of the machine.
+    versions : dict of str to str
+        Of fastpin, Python and the libraries.
+    """
+
+    id: str
+    reason: str | None
+    figures: dict[str, Any] = field(default_factory=dict)
+    seconds: float | None = None
+    started: str | None = None
+    host: str | None = None
+    versions: dict[str, str] = field(default_factory=dict)

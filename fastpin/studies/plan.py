@@ -19,13 +19,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fastpin.casefile import EXAMPLE, KEYS, Case, case_from, read_text
-from fastpin.caselines import CaseText, Place, Section, choice, closest, number, shown, string, whole
-from fastpin.caseloads import read_history
+from fastpin.casefile.reader import EXAMPLE, KEYS, read_text
+from fastpin.casefile.toml_text import CaseText, Place, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.fields import conflict, other_units, varied
-from fastpin.identity import canonical, canonical_json, run_id
-from fastpin.loading import LOADS, LoadHistory
+from fastpin.model.case import Case
+from fastpin.model.checks import as_toml, choice, closest, number, string, whole_number
+from fastpin.model.loads import LOADS
+from fastpin.studies.identity import canonical, canonical_json, run_id
+from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
@@ -82,7 +83,7 @@ class Plan:
     text: str
     fields: dict[str, Spacing]
     points: list[Point]
-    _base: _Base = field(repr=False)
+    _base: BaseCase = field(repr=False)
 
     @cached_property
     def runs(self) -> dict[str, Point]:
@@ -149,43 +150,9 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     return plan
 
 
-def described(values: dict[str, Any]) -> str:
+def describe_values(values: dict[str, Any]) -> str:
     """The values of a point as text."""
-    return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
-
-
-_TABLES = (("mean",), ("amplitude",), ("phase",))
-"""Keys of a [[load]] block that are tables of loads."""
-
-
-class _Base:
-    """The base case, ready to be varied."""
-
-    def __init__(self, text: str, name: str, folder: Path) -> None:
-        self.name = name
-        self.text = CaseText(text)
-        if self.text.faults:
-            raise CaseFileError(name, self.text.faults)
-        self._folder = folder
-        self._loads: tuple[str, LoadHistory | None] = "", None
-
-    @property
-    def load_blocks(self) -> int:
-        """Number of [[load]] blocks."""
-        blocks = self.text.root.value("load")
-        return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
-
-    def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
-        """The case with these fields; without meaning where the text has faults."""
-        text = self.text.varied(varied(self.text.root.table, values))
-        return text, case_from(text, self._folder, self._read_loads)
-
-    def _read_loads(self, text: CaseText, folder: Path) -> LoadHistory | None:
-        """The load history; the last one is kept, because neighbours in a plan often share it."""
-        given = repr([text.root.table.get(name) for name in ("load", "history")])
-        if given != self._loads[0] or self._loads[1] is None:
-            self._loads = given, read_history(text, folder)
-        return self._loads[1]
+    return ", ".join(f"{name} = {as_toml(value)}" for name, value in values.items())
 
 
 # -- the text ------------------------------------------------------------------------------------------------
@@ -218,20 +185,20 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     return Plan(title, text, {name: spacings[name] for name in places}, points, base)
 
 
-def _base(source: CaseText, folder: Path) -> _Base | None:
+def _base(source: CaseText, folder: Path) -> BaseCase | None:
     name = source.root.checked("case", string)
     try:
         if name is None:
-            return _Base(EXAMPLE, "built-in case", folder)
+            return BaseCase(EXAMPLE, "built-in case", folder)
         path = folder / name
-        return _Base(read_text(path), name, path.parent)
+        return BaseCase(read_text(path), name, path.parent)
     except CaseFileError as error:
         for line, message in error.problems:
             source.report(f"{error.field}{f', line {line}' if line else ''}: {message}", "case")
         return None
 
 
-def _rows(source: CaseText, base: _Base | None) -> list[Row]:
+def _rows(source: CaseText, base: BaseCase | None) -> list[Row]:
     """Places and values of the fields of the [[list]] blocks."""
     given = source.root.value("list")
     blocks = source.blocks("list")
@@ -248,7 +215,7 @@ def _rows(source: CaseText, base: _Base | None) -> list[Row]:
 
 
 def _axes(
-    source: CaseText, base: _Base | None, places: dict[str, Place], spacings: dict[str, Spacing]
+    source: CaseText, base: BaseCase | None, places: dict[str, Place], spacings: dict[str, Spacing]
 ) -> dict[str, list[Any]]:
     """The values of each field of the grid."""
     axes = {}
@@ -264,12 +231,14 @@ def _axes(
             axes[name], spacings[name] = _range(source, place, name, value)
         else:
             allowed = "a list of values, or { from = 0.1, to = 1.0, count = 10 }"
-            source.report(f"{name}: must be {allowed}, not {'an empty list' if value == [] else shown(value)}", *place)
+            source.report(
+                f"{name}: must be {allowed}, not {'an empty list' if value == [] else as_toml(value)}", *place
+            )
     return axes
 
 
 def _fields(
-    source: CaseText, base: _Base | None, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
+    source: CaseText, base: BaseCase | None, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
 ) -> Iterator[tuple[Place, str, Any]]:
     """Place, field and value of all keys of a table; ``contact.friction`` may be a quoted key or a table in a table."""
     for key in table:
@@ -277,7 +246,7 @@ def _fields(
         value = Section(source, place, table).value(key)
         if value is None:  # reported already
             continue
-        if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in _TABLES):
+        if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
             yield from _fields(source, base, value, here, names)
             continue
         fault = _field_fault(names, base)
@@ -287,7 +256,7 @@ def _fields(
             yield here, ".".join(names), value
 
 
-def _field_fault(names: tuple[str, ...], base: _Base | None) -> str | None:
+def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     """What is wrong with a field's name; nothing if it is one."""
     name, section = ".".join(names), names[0]
     if section not in KEYS:
@@ -301,11 +270,11 @@ def _field_fault(names: tuple[str, ...], base: _Base | None) -> str | None:
             return f'"{name}": the case has {blocks or "no"} [[load]] blocks, counted from 1'
     elif len(names) != 2:
         return f'"{name}": a field is written section.key, such as contact.friction'
-    if names[2:3] in _TABLES and (len(names) == 3 or names[3] not in LOADS):
+    if names[2:3] in LOAD_TABLES and (len(names) == 3 or names[3] not in LOADS):
         return f'"{name}": write one load of {names[2]}, such as load.{names[1]}.{names[2]}.Q'
-    if len(names) == 4 and names[2:3] not in _TABLES:
+    if len(names) == 4 and names[2:3] not in LOAD_TABLES:
         return f'"{name}": only mean, amplitude and phase of a block have loads of their own'
-    if names[2:3] not in _TABLES and names[-1] not in KEYS[section]:
+    if names[2:3] not in LOAD_TABLES and names[-1] not in KEYS[section]:
         hint = closest(names[-1], KEYS[section]) or f"; the keys are {', '.join(KEYS[section])}"
         return f'"{name}": there is no key "{names[-1]}" in [{section}]{hint}'
     return other_units(base.text.root.table, name) if base else None
@@ -322,7 +291,7 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
         if key not in table:
             section.report(f"{name}: {key} is missing; a range has from, to and count")
     first, last = section.checked("from", number), section.checked("to", number)
-    count = section.checked("count", whole, 2, MAX_RUNS)
+    count = section.checked("count", whole_number, 2, MAX_RUNS)
     spacing: Any = section.checked("spacing", choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
@@ -340,7 +309,7 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
 
 
 def _points(
-    source: CaseText, base: _Base, places: dict[str, Place], rows: list[Row], axes: dict[str, list[Any]]
+    source: CaseText, base: BaseCase, places: dict[str, Place], rows: list[Row], axes: dict[str, list[Any]]
 ) -> list[Point]:
     """All points; what is wrong with their cases is reported on the line of the field, or of the case."""
     points: list[Point] = []
@@ -356,7 +325,7 @@ def _points(
             continue
         text, case = base.vary(values)
         for place, message in text.placed:
-            faults.setdefault(_located(base, here, values, place, message), []).append(values)
+            faults.setdefault(_locate_fault(base, here, values, place, message), []).append(values)
         if case is not None and not text.placed:
             document = canonical(case)
             points.append(Point(run_id(document), values, canonical_json(document)))
@@ -367,8 +336,8 @@ def _points(
     return points
 
 
-def _located(
-    base: _Base, places: dict[str, Place], values: dict[str, Any], place: Place, message: str
+def _locate_fault(
+    base: BaseCase, places: dict[str, Place], values: dict[str, Any], place: Place, message: str
 ) -> tuple[Place, str]:
     """Where in the plan a fault of a run belongs, and how it reads there."""
     parts = [str(part + 1) if isinstance(part, int) else part for part in place]
@@ -385,4 +354,4 @@ def _located(
 def _which(where: list[dict[str, Any]], count: int) -> str:
     if len(where) == count:
         return ""
-    return f" (in {f'{len(where)} runs, first' if len(where) > 1 else 'the run'} {described(where[0])})"
+    return f" (in {f'{len(where)} runs, first' if len(where) > 1 else 'the run'} {describe_values(where[0])})"

@@ -22,16 +22,14 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from fastpin import __version__
-from fastpin.checks import whole_number
 from fastpin.errors import FastpinError, InputError
-from fastpin.files import replacing
-from fastpin.index import DONE, FAILED, FILE, WAITING, Index, begun, locked, made
-from fastpin.plan import Plan, Point, parse_plan, read_plan
-from fastpin.pool import DIED, BrokenError, cores, handed_out
-from fastpin.worker import Outcome, solve_run
-
-__all__ = ["Plan", "Point", "Summary", "load", "merge", "parse_plan", "read_plan", "rows", "run", "status"]
+from fastpin.model.checks import whole_number
+from fastpin.storage.files import replacing
+from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
+from fastpin.studies.outcome import Outcome
+from fastpin.studies.plan import Plan, Point
+from fastpin.studies.workers import DIED, BrokenError, cores, run_tasks, solve_run
+from fastpin.version import __version__
 
 RESULTS = "results"
 HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -116,11 +114,11 @@ def run(
     """
     points = shard_of(plan, shard)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
-    directory = made(Path(directory))
-    with locked(directory):
+    directory = ensure_directory(Path(directory))
+    with lock_directory(directory):
         _check_plan_copy(directory, plan.text)
         with Index(directory, create=True) as index:
-            results = made(directory / RESULTS).resolve()
+            results = ensure_directory(directory / RESULTS).resolve()
             _clear(results)
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
@@ -146,7 +144,7 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
         If the index can't be used, or `shard` is out of range.
     """
     points, directory = shard_of(plan, shard), Path(directory)
-    if not begun(directory):
+    if not has_index(directory):
         return Summary(0, len(points), [])
     with Index(directory) as index:
         return _summary(index, points, directory / RESULTS)
@@ -174,7 +172,7 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
 
 def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     """As :func:`load`, but one row for each point of a plan and in its order; a point not in the index is waiting."""
-    known = {row["id"]: row for row in load(directory)} if begun(Path(directory)) else {}
+    known = {row["id"]: row for row in load(directory)} if has_index(Path(directory)) else {}
     nothing = {"status": WAITING, "reason": None}
     return [
         {**known.get(point.id, nothing), "id": point.id, **dict.fromkeys(plan.fields), **point.values}
@@ -210,16 +208,16 @@ def _outcomes(
     if not todo:
         return
     # One thread for BLAS, as in every worker, where an executor runs its tasks in this process.
-    ended = handed_out(executor, workers, todo, submit)
+    ended = run_tasks(executor, workers, todo, submit)
     with threadpool_limits(limits=1, user_api="blas"), closing(ended):
         try:
             for run, outcome in ended:
-                yield _checked(run, outcome, results)
+                yield _check_outcome(run, outcome, results)
         except BrokenError:
             raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
 
-def _checked(run: str, outcome: Outcome | BaseException, results: Path) -> Outcome:
+def _check_outcome(run: str, outcome: Outcome | BaseException, results: Path) -> Outcome:
     """The outcome of a run, whatever its worker returned or raised."""
     if isinstance(outcome, BaseException):
         died = type(outcome).__name__ in ("WorkerDiedError", "KilledWorker")  # the latter is dask's
@@ -302,9 +300,9 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
         if source.resolve() == target.resolve():
             raise InputError(str(source), "can't be merged into itself")
     _check_parts([*([target] if (target / FILE).exists() else []), *map(Path, sources)])
-    _check_plan_copy(made(target))
-    with locked(target), Index(target, create=True) as index:
-        made(target / RESULTS)
+    _check_plan_copy(ensure_directory(target))
+    with lock_directory(target), Index(target, create=True) as index:
+        ensure_directory(target / RESULTS)
         for source in map(Path, sources):
             with Index(source) as other:
                 _absorb(index, other, target, source)
@@ -321,7 +319,7 @@ def _check_parts(parts: Sequence[Path]) -> None:
                 ("version", "was made by another version of fastpin"),
                 ("plan", "belongs to another plan"),
             ):
-                if notes.setdefault(name, index.noted(name)) != index.noted(name):
+                if notes.setdefault(name, index.read_note(name)) != index.read_note(name):
                     raise InputError(str(part), f"{words} than {parts[0]}")
             for row in index.rows():
                 if row["status"] == DONE:
@@ -342,7 +340,7 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
             with replacing(target / RESULTS / path.name) as temporary:
                 shutil.copyfile(path, temporary)
     index.absorb(other, wanted)
-    _keep_plan(target, index.noted("text") or "")
+    _keep_plan(target, index.read_note("text") or "")
 
 
 def _check_agreement(one: dict[str, Any], two: dict[str, Any], source: Path) -> None:

@@ -6,9 +6,50 @@ moduli, Dundurs' parameters that of two materials, a file that of load blocks, a
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
-from fastpin.materials import MATERIALS
+from fastpin.casefile.loads import read_history
+from fastpin.casefile.reader import case_from
+from fastpin.casefile.toml_text import CaseText
+from fastpin.errors import CaseFileError
+from fastpin.model.case import Case
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS
+
+LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
+"""Keys of a [[load]] block that are tables of loads."""
+
+
+class BaseCase:
+    """The base case, ready to be varied."""
+
+    def __init__(self, text: str, name: str, folder: Path) -> None:
+        self.name = name
+        self.text = CaseText(text)
+        if self.text.faults:
+            raise CaseFileError(name, self.text.faults)
+        self._folder = folder
+        self._loads: tuple[str, LoadHistory | None] = "", None
+
+    @property
+    def load_blocks(self) -> int:
+        """Number of [[load]] blocks."""
+        blocks = self.text.root.value("load")
+        return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
+
+    def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
+        """The case with these fields; without meaning where the text has faults."""
+        text = self.text.with_tables(with_values(self.text.root.table, values))
+        return text, case_from(text, self._folder, self._read_loads)
+
+    def _read_loads(self, text: CaseText, folder: Path) -> LoadHistory | None:
+        """The load history; the last one is kept, because neighbours in a plan often share it."""
+        given = repr([text.root.table.get(name) for name in ("load", "history")])
+        if given != self._loads[0] or self._loads[1] is None:
+            self._loads = given, read_history(text, folder)
+        return self._loads[1]
+
 
 _REPLACED: dict[str, tuple[str, ...]] = {
     "material": ("E", "nu", "rigid"),
@@ -21,11 +62,10 @@ _REPLACED: dict[str, tuple[str, ...]] = {
 _REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}
 """What sections each section replaces in the base case."""
 
-
 _FILE = "history.csv"
 
 
-def varied(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
     """The tables of a case with other values of some fields; `tables` stay as they are."""
     new = {name: _copied(table) for name, table in tables.items()}
     for name, value in values.items():

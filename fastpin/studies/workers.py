@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
+import functools
 import multiprocessing
 import os
 import signal
+import socket
+import threading
+import time
 from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from multiprocessing import resource_tracker
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
+from threadpoolctl import threadpool_limits
+
 from fastpin.errors import FastpinError
-from fastpin.worker import prepare
+from fastpin.kernels.jit import on_one_thread
+from fastpin.kernels.products import in_one_thread
+from fastpin.model.case import Case
+from fastpin.solver.errors import SolveError
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.storage import store
+from fastpin.storage.layout import versions
+from fastpin.studies.outcome import Outcome, key_figures
+from fastpin.version import __version__
 
 K = TypeVar("K")
 T = TypeVar("T")
@@ -94,7 +110,7 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def handed_out(
+def run_tasks(
     executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T]
 ) -> Generator[tuple[K, T | BaseException], None, None]:
     """Tasks with what they return or raise, in the order in which they end.
@@ -161,3 +177,65 @@ def through_processes(
             yield from ((task, WorkerDiedError(DIED)) for task in suspects)
         elif suspects:
             yield from through_processes(1, suspects, submit, alone=True)
+
+
+def prepare() -> None:
+    """Make this process a worker of ours: one thread, deaf to Ctrl-C, and gone when the main process is."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process decides what an interrupt means
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    on_one_thread()
+    one_thread()
+
+
+@functools.cache
+def one_thread() -> None:
+    """One thread for every BLAS and OpenMP library of this process, from now on."""
+    threadpool_limits(limits=1)
+
+
+def solve_run(run: str, case: Case, path: str, main_process: int, version: str) -> Outcome:
+    """Solve one case and save its result.
+
+    Parameters
+    ----------
+    run : str
+        Id of the run.
+    case : Case
+    path : str
+        Where the result goes. Nothing is written without a state.
+    main_process : int
+        Process id of the sweep: its threads are not touched where the run happens in it.
+    version : str
+        Of fastpin, in the sweep.
+    """
+    if version != __version__:
+        return Outcome(run, f"the worker has fastpin {__version__}, the sweep {version}")
+    if os.getpid() != main_process:
+        one_thread()
+    started = datetime.now(UTC).isoformat(timespec="milliseconds")
+    began = time.perf_counter()
+    reason: str | None = None
+    figures: dict[str, Any] = {}
+    try:
+        try:
+            with in_one_thread():
+                result: Result | None = solve(case.problem, case.history, **case.options.keywords())
+        except SolveError as error:
+            reason, result = str(error), error.result
+        seconds = time.perf_counter() - began
+        if result is not None and len(result):
+            figures = key_figures(result)
+            store.save(result, path, error=reason, restart=False)
+    except MemoryError:
+        seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
+    except Exception as error:  # whatever goes wrong in one run is its own failure, and the others go on
+        seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
+    return Outcome(run, reason, figures, seconds, started, socket.gethostname(), versions())
+
+
+def _end_with_parent() -> None:
+    """A worker waits for work for ever, also after its main process was killed."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -13,22 +13,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fastpin import analytic
-from fastpin.comparison import (
-    BOTTOM,
-    FRETTING,
-    LIKE,
-    UNLIKE,
-    FiniteElements,
-    cattaneo_mindlin,
-    cattaneo_mindlin_differences,
-    residuals_away,
-)
-from fastpin.materials import MATERIALS, Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.sliding import solve_sliding
-from fastpin.solver import solve
-from fastpin.state import Result, State
+from fastpin.model.angles import BOTTOM
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from fastpin.verification import closed_forms
+from fastpin.verification.comparisons import cattaneo_mindlin, cattaneo_mindlin_differences, residuals_away
+from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
+from fastpin.verification.sliding import solve_sliding
 
 NODES = 401
 """Nodes of all cases but those on the nodes of finite elements."""
@@ -178,8 +172,8 @@ def _half_width(interval: tuple[float, float]) -> float:
 
 def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, solving: _Solving) -> Rows:
     (state,) = solving(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}])
-    half = float(analytic.persson_half_angle(load_parameter, mismatch))
-    yield _value("peak N", state.peak_pressure, float(analytic.persson_pressure(0.0, half)))
+    half = float(closed_forms.persson_half_angle(load_parameter, mismatch))
+    yield _value("peak N", state.peak_pressure, float(closed_forms.persson_pressure(0.0, half)))
     yield _angle("half-angle", _half_width(state.contact[0]), half)
 
 
@@ -205,15 +199,15 @@ def _finite_elements(name: str, solving: _Solving) -> Rows:
 
 def _half_plane(solving: _Solving) -> Rows:
     load_parameter, friction, ratio = 2e5, 0.5, 0.6
-    half = float(analytic.hertz_half_angle(load_parameter))
+    half = float(closed_forms.hertz_half_angle(load_parameter))
     pushed, *fretted = solving(
         Problem.from_load_parameter(LIKE, load_parameter, friction, "centre", "fixed"),
         [{"P": 1.0}, *({"Q": part * ratio * friction} for part in (1.0, -1.0, 1.0, BACK))],
         arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half),
     )
-    yield _value("peak N", pushed.peak_pressure, float(analytic.hertz_peak_pressure(load_parameter)), "P")
+    yield _value("peak N", pushed.peak_pressure, float(closed_forms.hertz_peak_pressure(load_parameter)), "P")
     differences = cattaneo_mindlin_differences(fretted[:3], ratio)
-    exact = float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    exact = float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted[:3], differences, strict=True):
         yield _Row("int |dT|", difference, "int mu N", case=case)
         stick = _half_width(state.stick[0]) / _half_width(state.contact[0])
@@ -224,8 +218,8 @@ def _half_plane(solving: _Solving) -> Rows:
 
 def _peak_shear(state: State, ratio: float, part: float) -> float:
     """Largest shear of Cattaneo and Mindlin after unloading from Q to a part of it: where the border of +Q was."""
-    half = float(analytic.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
-    border = half * float(analytic.cattaneo_mindlin_stick_ratio(ratio))
+    half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
+    border = half * float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     return abs(float(cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")))
 
 

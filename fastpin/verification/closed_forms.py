@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from fastpin.checks import one_of
 from fastpin.errors import InputError
+from fastpin.model.checks import choice, numbers
 
 Branch = Literal["loading", "unloading", "reloading"]
 Values = float | np.ndarray
@@ -51,8 +51,8 @@ def persson_load_parameter(half_angle: ArrayLike, mismatch: ArrayLike = 0.0) -> 
     InputError
         If `half_angle` or `mismatch` is out of range.
     """
-    eps = _number("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
-    a = _number("mismatch", mismatch, -1.0, 1.0)
+    eps = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    a = numbers("mismatch", mismatch, -1.0, 1.0)
     return _value(_load_parameter(np.tan(0.5 * eps), a))
 
 
@@ -71,8 +71,8 @@ def persson_half_angle(load_parameter: ArrayLike, mismatch: ArrayLike = 0.0) -> 
     InputError
         If `mismatch` is out of range or the contact goes all round the pin.
     """
-    lp = _number("load_parameter", load_parameter)
-    a = _number("mismatch", mismatch, -1.0, 1.0)
+    lp = numbers("load_parameter", load_parameter)
+    a = numbers("mismatch", mismatch, -1.0, 1.0)
     lp, a = np.broadcast_arrays(lp, a)
     limit = (a - 1.0) / (4.0 * math.pi)
     if np.any(lp <= limit):
@@ -104,8 +104,8 @@ def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
     float or ndarray
         Zero outside the contact.
     """
-    angle = _number("phi", phi, -math.pi, math.pi)
-    eps = _number("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    angle = numbers("phi", phi, -math.pi, math.pi)
+    eps = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
     inside = np.abs(angle) < eps
     b = np.tan(0.5 * eps)
     y = np.tan(0.5 * np.where(inside, angle, 0.0))
@@ -124,7 +124,7 @@ def hertz_half_angle(load_parameter: ArrayLike) -> Values:
     InputError
         If `load_parameter` is not positive.
     """
-    lp = _number("load_parameter", load_parameter, 0.0, open_low=True)
+    lp = numbers("load_parameter", load_parameter, 0.0, open_low=True)
     return _value(1.0 / np.sqrt(math.pi * lp))
 
 
@@ -136,7 +136,7 @@ def hertz_peak_pressure(load_parameter: ArrayLike) -> Values:
     InputError
         If `load_parameter` is not positive.
     """
-    lp = _number("load_parameter", load_parameter, 0.0, open_low=True)
+    lp = numbers("load_parameter", load_parameter, 0.0, open_low=True)
     return _value(2.0 * np.sqrt(lp / math.pi))
 
 
@@ -153,7 +153,7 @@ def cattaneo_mindlin_stick_ratio(load_ratio: ArrayLike) -> Values:
     InputError
         If `load_ratio` is out of range (the contact slides).
     """
-    return _value(np.sqrt(1.0 - np.abs(_number("load_ratio", load_ratio, -1.0, 1.0))))
+    return _value(np.sqrt(1.0 - np.abs(numbers("load_ratio", load_ratio, -1.0, 1.0))))
 
 
 def cattaneo_mindlin_shear(
@@ -197,22 +197,22 @@ def cattaneo_mindlin_shear(
     InputError
         If an argument is out of range.
     """
-    one_of("branch", branch, ("loading", "unloading", "reloading"))
-    place = _number("x", x)
-    a = float(_number("half_width", half_width, 0.0, open_low=True))
-    p0 = float(_number("peak_pressure", peak_pressure, 0.0, open_low=True))
-    mu = float(_number("friction", friction, 0.0))
-    e = float(_number("eccentricity", eccentricity))
+    choice("branch", branch, ("loading", "unloading", "reloading"))
+    place = numbers("x", x)
+    a = float(numbers("half_width", half_width, 0.0, open_low=True))
+    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
+    mu = float(numbers("friction", friction, 0.0))
+    e = float(numbers("eccentricity", eccentricity))
     if branch == "loading":
-        now = float(_number("load_ratio", load_ratio, 0.0, 1.0))
+        now = float(numbers("load_ratio", load_ratio, 0.0, 1.0))
         _inside(e, math.sqrt(1.0 - now) * a, a)
         return _value(mu * p0 * _partial_slip(place, a, now, e))
     if peak_ratio is None:
         raise InputError("peak_ratio", f"the {branch} branch needs it")
     if e != 0.0:
         raise InputError("eccentricity", "only the loading branch takes it")
-    peak = float(_number("peak_ratio", peak_ratio, 0.0, 1.0))
-    now = float(_number("load_ratio", load_ratio, -peak, peak))
+    peak = float(numbers("peak_ratio", peak_ratio, 0.0, 1.0))
+    now = float(numbers("load_ratio", load_ratio, -peak, peak))
     sign = 1.0 if branch == "unloading" else -1.0
     first = _partial_slip(place, a, peak, 0.0)
     change = _partial_slip(place, a, 0.5 * (peak - sign * now), 0.0)
@@ -240,11 +240,11 @@ def bulk_stress_eccentricity(
     InputError
         If an argument is out of range or |e| + c exceeds a: then slip has two directions and the form fails.
     """
-    sigma = float(_number("bulk_stress", bulk_stress))
-    a = float(_number("half_width", half_width, 0.0, open_low=True))
-    p0 = float(_number("peak_pressure", peak_pressure, 0.0, open_low=True))
-    mu = float(_number("friction", friction, 0.0, open_low=True))
-    now = float(_number("load_ratio", load_ratio, 0.0, 1.0))
+    sigma = float(numbers("bulk_stress", bulk_stress))
+    a = float(numbers("half_width", half_width, 0.0, open_low=True))
+    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
+    mu = float(numbers("friction", friction, 0.0, open_low=True))
+    now = float(numbers("load_ratio", load_ratio, 0.0, 1.0))
     e = a * sigma / (4.0 * mu * p0)
     _inside(e, math.sqrt(1.0 - now) * a, a, "bulk_stress")
     return e
@@ -311,34 +311,6 @@ def _modulus(nome: np.ndarray) -> np.ndarray:
     even = sum(nome ** (n * (n + 1)) for n in range(1, 5))
     square = sum(nome ** (n * n) for n in range(1, 5))
     return 4.0 * np.sqrt(nome) * np.square((1.0 + even) / (1.0 + 2.0 * square))
-
-
-def _number(
-    field: str,
-    value: ArrayLike,
-    low: float = -math.inf,
-    high: float = math.inf,
-    *,
-    open_low: bool = False,
-    open_high: bool = False,
-) -> np.ndarray:
-    """`value` as a float array, or :class:`InputError` naming `field` if it is not finite or out of range."""
-    try:
-        number = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(field, f"must be a number, not {value!r}") from None
-    bad = ~np.isfinite(number)
-    bad |= number <= low if open_low else number < low
-    bad |= number >= high if open_high else number > high
-    if np.any(bad):
-        first = number[bad].flat[0]
-        if not math.isfinite(first):
-            raise InputError(field, f"must be finite, not {first}")
-        below = "above" if open_low else "at least"
-        beyond = "below" if open_high else "at most"
-        bounds = [f"{below} {low:g}"] * (low > -math.inf) + [f"{beyond} {high:g}"] * (high < math.inf)
-        raise InputError(field, f"must be {' and '.join(bounds)}, not {first:g}")
-    return number
 
 
 def _value(number: np.ndarray) -> Values:

@@ -12,11 +12,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin import kernels
-from fastpin.checks import finite
 from fastpin.errors import InputError
-from fastpin.grid import Grid
-from fastpin.problem import Problem
+from fastpin.kernels import influence
+from fastpin.model.checks import number
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
 
 
 def cauchy_matrix(grid: Grid) -> np.ndarray:
@@ -26,7 +26,7 @@ def cauchy_matrix(grid: Grid) -> np.ndarray:
     """
     left, right = grid.knots()
     out = np.empty((grid.size, grid.size))
-    kernels.fill_cauchy(grid.theta, left, right, grid.uniform, grid.closed, out)
+    influence.fill_cauchy(grid.theta, left, right, grid.uniform, grid.closed, out)
     return out
 
 
@@ -75,7 +75,7 @@ def residuals(
     InputError
         If an array does not have one number per node or `force` is not positive.
     """
-    unit = finite("force", force)
+    unit = number("force", force)
     if unit <= 0.0:
         raise InputError("force", f"must be positive, not {unit:g}")
     pair, radius = problem.pair, problem.hole_radius
@@ -83,10 +83,10 @@ def residuals(
     N = _nodal("pressure", pressure, grid) * radius / unit
     T = _nodal("shear", shear, grid) * radius / unit
     s = _nodal("total_slip", total_slip, grid) / length
-    C_omega = finite("rotation", rotation) * radius / length
+    C_omega = number("rotation", rotation) * radius / length
     clearance = problem.clearance / length
-    A = (finite("sxx", sxx) + finite("syy", syy)) * radius / unit
-    D = (finite("sxx", sxx) - finite("syy", syy)) * radius / unit
+    A = (number("sxx", sxx) + number("syy", syy)) * radius / unit
+    D = (number("sxx", sxx) - number("syy", syy)) * radius / unit
 
     # composite constants over beta*: kappa'/G of the plate, and (39) or (56)
     alpha = pair.alpha_star / pair.beta_star

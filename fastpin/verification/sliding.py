@@ -25,9 +25,10 @@ from scipy.optimize import minimize_scalar, root
 from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
-from fastpin.checks import finite, whole_number
-from fastpin.errors import ConvergenceError, InputError
-from fastpin.problem import Problem
+from fastpin.errors import InputError
+from fastpin.model.checks import number, whole_number
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import ConvergenceError
 
 LOADS = ("P", "Q", "sxx", "syy")
 """Loads of a sliding contact, as in :data:`fastpin.loading.LOADS`; its moment and rotation are results."""
@@ -139,7 +140,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
     Raises
     ------
     InputError
-        If a load is unknown or not finite, no force acts, or `slip` or `terms` is out of range.
+        If a load is unknown or not number, no force acts, or `slip` or `terms` is out of range.
     ConvergenceError
         If no sliding contact with two ends was found: the hole closes round the pin, the contact has several parts,
         or it is too narrow for the digits of an angle.
@@ -184,7 +185,7 @@ def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
     for name in load:
         if name not in LOADS:
             raise InputError(str(name), f"a sliding contact takes {', '.join(LOADS)}; moment and rotation are results")
-    given = {name: finite(name, load.get(name, 0.0)) for name in LOADS}
+    given = {name: number(name, load.get(name, 0.0)) for name in LOADS}
     if given["P"] == 0.0 and given["Q"] == 0.0:
         raise InputError("P", "P and Q can't both be zero: a force must press the pin on the hole")
     return given

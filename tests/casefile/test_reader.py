@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.casefile import EXAMPLE, CaseFileError, SolveOptions, builtin_case, parse_case, read_case
+from fastpin.casefile.reader import EXAMPLE, CaseFileError, builtin_case, parse_case, read_case
 from fastpin.errors import InputError
-from fastpin.loading import LOADS
-from fastpin.materials import MATERIALS, MaterialPair
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.options import SolveOptions
 
 GOOD = """\
 [pin]
@@ -63,11 +64,13 @@ def test_builtin_case_is_the_example() -> None:
 
 def test_every_commented_line_of_the_example_is_valid() -> None:
     """The alternatives that the example mentions can be switched on as they stand."""
-    text = EXAMPLE.replace("# between", "between").replace("# increments", "increments").replace("# arc", "arc")
+    text = EXAMPLE.replace("# between", "between").replace("# arc", "arc")
     text = text.replace("# repeat = 1\n\n# Instead", "repeat = 1\n\n# Instead")
     case = parse_case(text)
     assert case.options.between == 3
     assert case.options.arc == (-3.5, 0.4)
+    increments = text.replace("# increments", "increments").replace('method = "path"     ', 'method = "increment"')
+    assert parse_case(increments).options.increments == 80
     pins = re.search(r"\[pin\].*?(?=# Instead of \[pin\])", EXAMPLE, re.DOTALL)
     assert pins
     dundurs = EXAMPLE.replace(pins[0], "")
@@ -141,6 +144,7 @@ def test_solver_options() -> None:
         "between": (0.25, 0.5),
         "keep": "every 3",
         "shortcut": False,
+        "error_bars": False,
     }
 
 
@@ -224,7 +228,8 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("P = 1e6", "P = 1e6\n[solve]\nnodes = 4", 12, "nodes: must be a whole number from 5"),
         ("P = 1e6", "P = 1e6\n[solve]\nnodes = 1000000", 12, "nodes: must be a whole number from 5"),
         ("P = 1e6", 'P = 1e6\n[solve]\nmethod = "paht"', 12, 'did you mean "path"'),
-        ("P = 1e6", "P = 1e6\n[solve]\nincrements = 0", 12, "increments: must be"),
+        ("P = 1e6", 'P = 1e6\n[solve]\nmethod = "increment"\nincrements = 0', 13, "increments: must be"),
+        ("P = 1e6", "P = 1e6\n[solve]\nincrements = 80", 12, 'increments: has no effect with method "path"'),
         ("P = 1e6", "P = 1e6\n[solve]\narc = [-90, 90]", 12, "in rad"),
         ("P = 1e6", "P = 1e6\n[solve]\narc = [0, -1]", 12, "from a smaller to a larger"),
         ("P = 1e6", "P = 1e6\n[solve]\narc = 2", 12, "list of two angles"),

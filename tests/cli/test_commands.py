@@ -17,18 +17,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from samples import sample_result
 
-import fastpin.paper
-import fastpin.solver
-from fastpin import __version__
-from fastpin.casefile import EXAMPLE, builtin_case
-from fastpin.cli import main
-from fastpin.errors import NoEquilibriumError
-from fastpin.files import replacing
-from fastpin.report import describe, from_bottom, interval_from_bottom, scaled, state_table
+import fastpin.paper.catalog
+import fastpin.solver.solving
+from fastpin.casefile.reader import EXAMPLE, builtin_case
+from fastpin.cli.main import main
+from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.units import scaled
+from fastpin.report.case import describe
+from fastpin.report.states import state_table
+from fastpin.solver.errors import NoEquilibriumError
+from fastpin.storage.files import replacing
+from fastpin.version import __version__
+from tests.support.samples import sample_result
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
@@ -151,7 +154,7 @@ def test_public_names_are_imported_when_they_are_asked_for() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout == "[]\n"
-    assert fastpin.solve is fastpin.solver.solve
+    assert fastpin.solve is fastpin.solver.solving.solve
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = fastpin.nothing
 
@@ -159,7 +162,7 @@ def test_public_names_are_imported_when_they_are_asked_for() -> None:
 def test_help_names_the_default_of_the_figures(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["paper", "--help"])
-    assert f"number of nodes (default {fastpin.paper.NODES})" in " ".join(capsys.readouterr().out.split())
+    assert f"number of nodes (default {fastpin.paper.catalog.NODES})" in " ".join(capsys.readouterr().out.split())
 
 
 def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]) -> None:
@@ -262,7 +265,7 @@ def test_json_on_standard_output_is_the_only_thing_there(
 
 
 def test_all_outputs(case: Path, tmp_path: Path) -> None:
-    from fastpin.store import load
+    from fastpin.storage.store import load
 
     names = {"--json": "a.json", "--plot": "a.png", "-o": "a.h5"}
     arguments = [word for option, name in names.items() for word in (option, str(tmp_path / name))]
@@ -278,7 +281,7 @@ def test_all_outputs(case: Path, tmp_path: Path) -> None:
 def test_a_lost_load_keeps_what_was_solved(
     stored: bool, case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from fastpin.store import load
+    from fastpin.storage.store import load
 
     text = EXAMPLE.replace("Q = [7.26e5, -7.26e5, 7.26e5]", "M = [0, 3e4, 0]")
     case.write_text(text.replace('pin_load = "body"', 'pin_load = "centre"'))
@@ -331,12 +334,12 @@ def test_a_file_that_can_not_be_written_does_not_cost_the_others(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    import fastpin.plot
+    import fastpin.figures.tractions
 
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(fastpin.plot, "plot_tractions", full)
+    monkeypatch.setattr(fastpin.figures.tractions, "plot_tractions", full)
     path = tmp_path / "a.h5"
     assert main(["run", "--plot", str(tmp_path / "a.png"), "-o", str(path)]) == 1
     assert "No space left" in capsys.readouterr().err
@@ -394,7 +397,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         names.append(name)
         return directory / f"{name}.png", directory / f"{name}.csv"
 
-    monkeypatch.setattr(fastpin.paper, "make", make)
+    monkeypatch.setattr(fastpin.paper.catalog, "make", make)
     return names
 
 
@@ -496,7 +499,7 @@ def test_long_tables_are_cut_in_the_middle() -> None:
 
 
 def test_description_of_other_kinds_of_cases() -> None:
-    from fastpin.casefile import parse_case
+    from fastpin.casefile.reader import parse_case
 
     text = """
     [dundurs]
@@ -692,8 +695,8 @@ def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool
 def test_an_older_result_is_not_shown_for_a_run_that_never_began(
     case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from fastpin import arc
-    from fastpin.errors import Interrupted
+    from fastpin.solver import arc
+    from fastpin.solver.errors import Interrupted
 
     def stopped(*_: object) -> object:
         raise Interrupted

@@ -12,14 +12,17 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pytest
-from plans import FRICTION, MOMENT, Inline
 
-from fastpin import cli_sweep, sweep, sweepplot, sweeptable
-from fastpin.cli import main
+from fastpin.cli import sweep
+from fastpin.cli.main import main
 from fastpin.errors import InputError
-from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import Plan
-from fastpin.sweeptable import Axis, chart, check_axes
+from fastpin.figures import sweep
+from fastpin.report import sweep
+from fastpin.report.sweep import Axis, chart, check_axes
+from fastpin.studies import sweep
+from fastpin.studies.outcome import KEY_FIGURES
+from fastpin.studies.plan import Plan
+from tests.support.plans import FRICTION, MOMENT, Inline
 
 MAP = """
 [grid]
@@ -162,7 +165,7 @@ def test_what_can_not_be_done_is_told_before_the_runs(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(cli_sweep, "CLUSTER_SECONDS", 0.1)
+    monkeypatch.setattr(sweep, "CLUSTER_SECONDS", 0.1)
     assert main(["sweep", str(path), *arguments]) == 2
     captured = capsys.readouterr()
     assert words in captured.err
@@ -219,7 +222,7 @@ def test_the_progress_bar_has_the_time_left(
         assert "{n} of {total}" in text
         return Bar()
 
-    monkeypatch.setattr(cli_sweep, "bar", bar)
+    monkeypatch.setattr(sweep, "bar", bar)
     main(["sweep", str(path)])
     assert shown == [(k, 6) for k in range(7)]
 
@@ -297,11 +300,11 @@ def test_runs_with_different_units_have_none(plan: Plan, rows: list[dict[str, An
     ],
 )
 def test_edges_of_cells(values: list[float], log: bool, edges: list[float]) -> None:
-    assert sweepplot.cell_edges(Axis("", np.array(values), log)) == pytest.approx(edges)
+    assert sweep.cell_edges(Axis("", np.array(values), log)) == pytest.approx(edges)
 
 
 def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweepplot._draw_maps(chart(plan, rows, "peak_pressure"))
+    figure = sweep._draw_maps(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
     mesh = maps[0].collections[0]
     assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
@@ -317,7 +320,7 @@ def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dic
 
 
 def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweepplot._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
+    figure = sweep._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
     (panel,) = figure.axes
     curve, crosses = panel.lines[:2]
     assert curve.get_ydata() == pytest.approx([20.0, np.nan, np.nan], nan_ok=True)
@@ -332,7 +335,7 @@ def test_figures_are_saved_without_a_trace(
 ) -> None:
     before = dict(mpl.rcParams)
     path = tmp_path / "a.pdf"
-    sweepplot.plot_sweep(chart(plan, rows, "peak_pressure", x), path)
+    sweep.plot_sweep(chart(plan, rows, "peak_pressure", x), path)
     assert path.read_bytes().startswith(b"%PDF")
     assert dict(mpl.rcParams) == before
     assert os.listdir(tmp_path) == ["a.pdf"]
@@ -340,18 +343,18 @@ def test_figures_are_saved_without_a_trace(
 
 def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
     for x in (None, "contact.friction"):
-        sweepplot.plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
+        sweep.plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
 
 
 def test_long_tables_are_cut_in_the_middle() -> None:
     plan = sweep.parse_plan(FRICTION.replace("COUNT", "81"))
-    text = sweeptable.text(plan, sweep.rows(plan, Path("nowhere")))
+    text = sweep.text(plan, sweep.rows(plan, Path("nowhere")))
     assert len(text.splitlines()) == 43
     assert "41 more" in text
 
 
 def test_a_printed_table_scales_its_units(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    names, unit, first, second, *_ = (line.split() for line in sweeptable.text(plan, rows).splitlines())
+    names, unit, first, second, *_ = (line.split() for line in sweep.text(plan, rows).splitlines())
     assert names[:6] == ["run", "pin.material", "pin.E", "contact.friction", "contact.clearance", "peak"]
     assert unit[:3] == ["GPa", "um", "MPa"]
     assert first[1:6] == ["steel", "-", "0.2", "1", "20"]

@@ -7,11 +7,12 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
-from samples import PAIR, sample_result
 
 from fastpin.errors import InputError
-from fastpin.plot import MAX_LINES, MAX_NAMED, plot_tractions
-from fastpin.problem import Problem
+from fastpin.figures.style import MAX_NAMED
+from fastpin.figures.tractions import MAX_LINES, plot_tractions
+from fastpin.model.problem import Problem
+from tests.support.samples import PAIR, sample_result
 
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
@@ -159,8 +160,10 @@ def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
 
 
 def test_cycles(tmp_path: Path) -> None:
-    from fastpin.plot import plot_cycles, spread
-    from fastpin.state import Cycle, Result
+    from fastpin.figures.cycles import plot_cycles
+    from fastpin.figures.style import spread
+    from fastpin.solver.result import Result
+    from fastpin.states.cycles import Cycle
 
     result = sample_result()
     with pytest.raises(InputError, match="no repeated blocks"):

@@ -9,10 +9,10 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from integrals import log_integrals
 
-from fastpin import kernels
-from fastpin.grid import Grid
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from tests.support.integrals import log_integrals
 
 RATIO = 0.31
 POINT, WEIGHT = np.polynomial.legendre.leggauss(16)
@@ -111,21 +111,21 @@ def matrices(grid: Grid, uniform: bool) -> tuple[np.ndarray, np.ndarray]:
 def operator(grid: Grid, uniform: bool, uniform_part: float) -> np.ndarray:
     left, right = grid.knots()
     out = np.full((2 * grid.size, 2 * grid.size), np.nan, order="F")
-    kernels.fill_operator(grid.theta, left, right, uniform, grid.closed, RATIO, uniform_part, out)
+    influence.fill_operator(grid.theta, left, right, uniform, grid.closed, RATIO, uniform_part, out)
     return out
 
 
 def cauchy(grid: Grid, uniform: bool) -> np.ndarray:
     left, right = grid.knots()
     out = np.empty((grid.size, grid.size))
-    kernels.fill_cauchy(grid.theta, left, right, uniform, grid.closed, out)
+    influence.fill_cauchy(grid.theta, left, right, uniform, grid.closed, out)
     return out
 
 
 # --- Clausen's function -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("call", [kernels.clausen, python(kernels.clausen)], ids=["compiled", "python"])
+@pytest.mark.parametrize("call", [influence.clausen, python(influence.clausen)], ids=["compiled", "python"])
 def test_clausen_against_mpmath(call):
     points = [0.0, 1e-300, 1e-9, 0.3, 1.999, 2.001, math.pi, 3.5, 6.28, 6.3, 20.0, 1000.0]
     for x in [*points, *(-p for p in points), *np.linspace(-7.0, 7.0, 80)]:
@@ -134,23 +134,23 @@ def test_clausen_against_mpmath(call):
 
 def test_clausen_is_odd_and_periodic():
     for x in (0.2, 1.0, 2.9, 3.1):
-        assert kernels.clausen(-x) == -kernels.clausen(x)
-        assert kernels.clausen(x + 2.0 * math.pi) == pytest.approx(kernels.clausen(x), abs=3e-15)
-    assert kernels.clausen(math.pi) == pytest.approx(0.0, abs=1e-15)
-    assert kernels.clausen(math.pi / 2.0) == pytest.approx(float(mpmath.catalan), abs=1e-15)
+        assert influence.clausen(-x) == -influence.clausen(x)
+        assert influence.clausen(x + 2.0 * math.pi) == pytest.approx(influence.clausen(x), abs=3e-15)
+    assert influence.clausen(math.pi) == pytest.approx(0.0, abs=1e-15)
+    assert influence.clausen(math.pi / 2.0) == pytest.approx(float(mpmath.catalan), abs=1e-15)
 
 
 # --- kernels and antiderivatives --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("call", [kernels.log_kernels, python(kernels.log_kernels)], ids=["compiled", "python"])
+@pytest.mark.parametrize("call", [influence.log_kernels, python(influence.log_kernels)], ids=["compiled", "python"])
 def test_log_kernels_against_their_definition(call):
     for x in (-7.0, -4.0, -1e-3, 1e-6, 0.4, 2.0, 3.2, 6.2, 6.4, 9.0):
         one = np.array([x])
         assert call(x, RATIO) == pytest.approx((direct_kernel(one)[0], cross_kernel(one)[0]), rel=1e-12, abs=1e-13)
 
 
-@pytest.mark.parametrize("call", [kernels.log_antiderivatives, python(kernels.log_antiderivatives)])
+@pytest.mark.parametrize("call", [influence.log_antiderivatives, python(influence.log_antiderivatives)])
 def test_antiderivatives_differentiate_to_the_kernels(call):
     step = 1e-3
     fine = np.array([-2.0, -1.0, 1.0, 2.0])
@@ -159,17 +159,17 @@ def test_antiderivatives_differentiate_to_the_kernels(call):
         around = np.array([call(x + step * k, RATIO) for k in fine])
         rate = coefficient @ around
         here = call(x, RATIO)
-        direct, cross = kernels.log_kernels(x, RATIO)
+        direct, cross = influence.log_kernels(x, RATIO)
         assert (rate[0], rate[2]) == pytest.approx((direct, cross), abs=2e-8)
         assert (rate[1], rate[3]) == pytest.approx((here[0], here[2]), abs=2e-8)
 
 
 def test_antiderivatives_are_continuous_at_full_turns():
     for point in (-2.0 * math.pi, 0.0, 2.0 * math.pi):
-        below = np.array(kernels.log_antiderivatives(point - 1e-9, RATIO))
-        above = np.array(kernels.log_antiderivatives(point + 1e-9, RATIO))
+        below = np.array(influence.log_antiderivatives(point - 1e-9, RATIO))
+        above = np.array(influence.log_antiderivatives(point + 1e-9, RATIO))
         assert np.abs(above - below).max() < 2e-7
-    assert kernels.log_antiderivatives(0.0, RATIO) == (0.0, 0.0, 0.0, 0.0)
+    assert influence.log_antiderivatives(0.0, RATIO) == (0.0, 0.0, 0.0, 0.0)
 
 
 # --- hat integrals ----------------------------------------------------------------------------------------
@@ -187,7 +187,7 @@ def test_hat_log_against_graded_quadrature(n, shape):
     assert largest > 0.0
     for offset in offsets:
         u = offset * h
-        got = kernels.hat_log(u, h_left, h_right, RATIO)
+        got = influence.hat_log(u, h_left, h_right, RATIO)
         assert got[0] == pytest.approx(naive_hat(direct_kernel, u, h_left, h_right), abs=1e-11 * largest)
         assert got[1] == pytest.approx(naive_hat(cross_kernel, u, h_left, h_right), abs=1e-11 * largest)
 
@@ -209,13 +209,13 @@ def test_hat_log_against_mpmath():
         for cross in (False, True):
             right = mpmath.quad(lambda t, u=u, c=cross: kernel(u - t, c) * (1 - t / h), [0, h])
             left = mpmath.quad(lambda t, u=u, c=cross: kernel(u + t, c) * (1 - t / h), [0, h])
-            got = kernels.hat_log(float(u), float(h), float(h), RATIO)[int(cross)]
+            got = influence.hat_log(float(u), float(h), float(h), RATIO)[int(cross)]
             assert got == pytest.approx(float(right + left), abs=1e-13)
 
 
-@pytest.mark.parametrize("function", [kernels.hat_log, kernels.half_hat_log])
+@pytest.mark.parametrize("function", [influence.hat_log, influence.half_hat_log])
 def test_plain_python_hats_agree_with_compiled_ones(function):
-    widths = (0.01, 0.02) if function is kernels.hat_log else (0.02,)
+    widths = (0.01, 0.02) if function is influence.hat_log else (0.02,)
     for u in (-3.0, -0.1, -0.01, 0.0, 0.02, 0.5, math.pi):
         assert python(function)(u, *widths, RATIO) == pytest.approx(function(u, *widths, RATIO), rel=1e-12, abs=1e-15)
 
@@ -223,19 +223,19 @@ def test_plain_python_hats_agree_with_compiled_ones(function):
 def test_hats_wider_than_half_a_turn():
     # a closed ring whose nodes crowd on one side: x leaves (-2 pi, 2 pi)
     for u in (-2.9, -1.0, 0.0, 0.7, 3.0):
-        got = kernels.hat_log(u, 0.5, 5.5, RATIO)
+        got = influence.hat_log(u, 0.5, 5.5, RATIO)
         assert got[0] == pytest.approx(naive_hat(direct_kernel, u, 0.5, 5.5), abs=1e-10)
         assert got[1] == pytest.approx(naive_hat(cross_kernel, u, 0.5, 5.5), abs=1e-10)
 
 
 def test_near_and_far_integration_meet():
     h = 2.0 * math.pi / 1000
-    border = (kernels.NEAR + 1.0) * h
-    inside = np.array(kernels.half_hat_log(border * (1.0 - 1e-13), h, RATIO))
-    outside = np.array(kernels.half_hat_log(border * (1.0 + 1e-13), h, RATIO))
+    border = (influence.NEAR + 1.0) * h
+    inside = np.array(influence.half_hat_log(border * (1.0 - 1e-13), h, RATIO))
+    outside = np.array(influence.half_hat_log(border * (1.0 + 1e-13), h, RATIO))
     assert np.abs(inside - outside).max() < 1e-13
-    inside = kernels.half_hat_cauchy(border * (1.0 - 1e-13), h)
-    assert inside == pytest.approx(kernels.half_hat_cauchy(border * (1.0 + 1e-13), h), abs=2e-12)
+    inside = influence.half_hat_cauchy(border * (1.0 - 1e-13), h)
+    assert inside == pytest.approx(influence.half_hat_cauchy(border * (1.0 + 1e-13), h), abs=2e-12)
 
 
 @pytest.mark.parametrize("n", [20, 240, 4096])
@@ -247,8 +247,8 @@ def test_columns_are_hats_seen_from_everywhere(n, shape, node):
     away = np.concatenate([np.arange(-12.0, 13.0), [0.3, -5.99, 5.99, -6.01, 6.01, n // 3, -n // 3, n // 2 - 0.5]]) * h
     direct, cross = np.empty((2, away.size, 1))
     sides = np.array([shape[0] * h]), np.array([shape[1] * h])
-    kernels.log_columns(node + away, np.array([node]), *sides, RATIO, 2.0, direct, cross)
-    expected = np.array([kernels.hat_log(u, sides[0][0], sides[1][0], RATIO) for u in (node + away) - node])
+    influence.log_columns(node + away, np.array([node]), *sides, RATIO, 2.0, direct, cross)
+    expected = np.array([influence.hat_log(u, sides[0][0], sides[1][0], RATIO) for u in (node + away) - node])
     assert np.abs(direct[:, 0] - 2.0 * expected[:, 0]).max() < 1e-11 * np.abs(expected).max()
     assert np.abs(cross[:, 0] - 2.0 * expected[:, 1]).max() < 1e-11 * np.abs(expected).max()
 
@@ -260,7 +260,7 @@ def test_far_columns_against_mpmath(shape):
     sides = np.array([shape[0] * h]), np.array([shape[1] * h])
     away = np.array([6.01, -6.01, 7.5, 9.0, -20.0, 150.0, 199.0]) * h
     direct, cross = np.empty((2, away.size, 1))
-    kernels.log_columns(away, np.zeros(1), *sides, RATIO, 1.0, direct, cross)
+    influence.log_columns(away, np.zeros(1), *sides, RATIO, 1.0, direct, cross)
 
     def kernel(x):  # cross + i direct
         saw = (x - 2 * mpmath.pi * mpmath.floor(x / (2 * mpmath.pi))) / 2 - mpmath.pi / 2
@@ -282,18 +282,18 @@ def test_hat_cauchy_against_paired_quadrature(n, shape):
     half = 0.0 in shape
     for offset in (-9, -3, -1, -0.4, 0, 0.6, 1, 2, 8, 9.5, n // 3, n // 2):
         u = offset * h
-        got = kernels.hat_cauchy(u, h_left, h_right)
+        got = influence.hat_cauchy(u, h_left, h_right)
         if half and offset == 0:
             assert math.isnan(got)
         else:
             assert got == pytest.approx(naive_cauchy(u, h_left, h_right), abs=1e-11)
-            assert python(kernels.hat_cauchy)(u, h_left, h_right) == pytest.approx(got, abs=1e-14)
+            assert python(influence.hat_cauchy)(u, h_left, h_right) == pytest.approx(got, abs=1e-14)
 
 
 def test_uneven_hat_at_its_own_node_has_a_principal_value():
     # near the node cot(x/2) is 2/x, and PV int hat 2/x dx = 2 ln(h_left/h_right)
-    assert kernels.hat_cauchy(0.0, 0.01, 0.01) == 0.0
-    assert kernels.hat_cauchy(0.0, 0.02, 0.01) == pytest.approx(2.0 * math.log(2.0), abs=1e-4)
+    assert influence.hat_cauchy(0.0, 0.01, 0.01) == 0.0
+    assert influence.hat_cauchy(0.0, 0.02, 0.01) == pytest.approx(2.0 * math.log(2.0), abs=1e-4)
 
 
 # --- the matrices -----------------------------------------------------------------------------------------
@@ -341,7 +341,7 @@ def test_plain_python_fills_agree_with_compiled_ones(grid, uniform, monkeypatch)
     compiled = *matrices(grid, uniform), operator(grid, uniform, 0.7)
     pv = cauchy(grid, uniform)
     for name in ("_columns", "cauchy_columns"):
-        monkeypatch.setattr(kernels, name, python(getattr(kernels, name)))
+        monkeypatch.setattr(influence, name, python(getattr(influence, name)))
     plain = *matrices(grid, uniform), operator(grid, uniform, 0.7)
     for one, other in zip(plain, compiled, strict=True):
         np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-14)

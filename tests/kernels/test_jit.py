@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parents[1] / "fastpin"
+PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 CODE = """
-from fastpin.kernels import clausen
+from fastpin.kernels.influence import clausen
 assert abs(clausen(1.0) - 1.0139591323607684) < 1e-14
 print(clausen.stats.cache_path, sum(clausen.stats.cache_hits.values()))
 """
@@ -27,7 +27,7 @@ def installed(tmp_path: Path) -> Path:
 
 def read_only(installed: Path) -> Path:
     """Nobody, not even root, can make a directory where a file is."""
-    (installed / "fastpin" / "__pycache__").touch()
+    (installed / "fastpin" / "kernels" / "__pycache__").touch()
     return installed
 
 
@@ -44,7 +44,7 @@ def kept(installed: Path, home: Path, **more: str) -> tuple[str, int]:
 
 
 def test_beside_the_package(installed: Path, tmp_path: Path) -> None:
-    place = str(installed / "fastpin" / "__pycache__")
+    place = str(installed / "fastpin" / "kernels" / "__pycache__")
     assert kept(installed, tmp_path) == (place, 0)
     assert kept(installed, tmp_path) == (place, 1)
     assert kept(installed, tmp_path, FASTPIN_CACHE="0") == ("None", 0)
@@ -66,6 +66,6 @@ def test_nowhere_when_nothing_can_be_written(installed: Path) -> None:
 
 
 def test_modules_come_when_they_are_asked_for():
-    code = "import fastpin; print(fastpin.loading.LOADS[0], hasattr(fastpin, 'nothing'))"
+    code = "import fastpin; print(fastpin.model.LOADS[0], hasattr(fastpin, 'nothing'))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["P", "False"]

@@ -10,8 +10,8 @@ import sys
 import numpy as np
 import pytest
 
-from fastpin import products
-from fastpin.products import add_product
+from fastpin.kernels import products
+from fastpin.kernels.products import add_product
 
 
 def arrays(m, k, n):

@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from fastpin import OPEN, STICK, Grid, Material, MaterialPair, Problem, basis, solve, toeplitz
-from fastpin.basis import FactoredSet, StuckSet
-from fastpin.collocation import System
+from fastpin.elasticity.system import System
+from fastpin.kernels import toeplitz
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver import unknowns
+from fastpin.solver.solving import solve
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 BOTTOM = -0.5 * np.pi
 RIGID_PIN = MaterialPair(Material.rigid(), Material(70e9, 0.33))
@@ -50,7 +56,7 @@ def test_a_singular_leading_block_is_not_hidden():
 @pytest.fixture
 def small_sets(monkeypatch):
     """Small sets too are inverted in the fast way."""
-    monkeypatch.setattr(basis, "LEAST_NEIGHBOURS", 2)
+    monkeypatch.setattr(unknowns, "LEAST_NEIGHBOURS", 2)
 
 
 def stuck(size, low, high):
@@ -74,7 +80,7 @@ def test_what_it_does_to_the_nodes_beside(monkeypatch, version, low, size, nodes
     rows = np.r_[low : low + size, nodes + low : nodes + low + size]
     others = np.setdiff1d(np.arange(2 * nodes), rows)
     core = np.linalg.inv(matrix[np.ix_(rows, rows)])
-    beside = toeplitz.Beside(np.array([first, second, cross]), core, low)
+    beside = toeplitz.NeighbourResponses(np.array([first, second, cross]), core, low)
     responses = core @ matrix[np.ix_(rows, others)]
     assert beside.responses() == pytest.approx(responses, rel=1e-10, abs=1e-13)
     complement = matrix[np.ix_(others, others)] - matrix[np.ix_(others, rows)] @ responses
@@ -92,7 +98,7 @@ def test_set_of_sticking_neighbours(small_sets, titanium_in_aluminium, grid, pin
     problem = Problem.from_load_parameter(pair, 0.1, 0.4, pin_load, rotation, hub_radius=hub)
     system = System.build(problem, grid, 1.0)
     status = stuck(121, *ends)
-    fast, slow = StuckSet.of(system, status), FactoredSet(system, status)
+    fast, slow = StickingRun.of(system, status), DenseUnknowns(system, status)
     right = np.cos(np.arange(fast.count + 3.0))
     close(fast.solve(right), slow.solve(right))
     m = ends[1] - ends[0]
@@ -114,14 +120,14 @@ def test_what_it_is_not_for(small_sets, titanium_in_aluminium):
     system = System.build(problem, Grid.circle(60), 1.0)
     split, across, slipping = stuck(60, 20, 40), stuck(60, 50, 60), stuck(60, 20, 40)
     split[30], across[:5], slipping[25] = OPEN, STICK, 1
-    assert StuckSet.of(system, stuck(60, 20, 40)) is not None
+    assert StickingRun.of(system, stuck(60, 20, 40)) is not None
     for status in (split, across, slipping, stuck(60, 0, 0), stuck(60, 20, 21)):
-        assert StuckSet.of(system, status) is None
+        assert StickingRun.of(system, status) is None
     theta = BOTTOM + np.linspace(-1.2, 1.2, 60) ** 3
     graded = System.build(problem, Grid(theta), 1.0)
-    assert StuckSet.of(graded, stuck(60, 20, 40)) is None
+    assert StickingRun.of(graded, stuck(60, 20, 40)) is None
     smooth = System.build(Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0), Grid.circle(60), 1.0)
-    assert StuckSet.of(smooth, stuck(60, 20, 40)) is None
+    assert StickingRun.of(smooth, stuck(60, 20, 40)) is None
 
 
 @pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "fixed")])
@@ -130,7 +136,7 @@ def test_histories_are_those_of_factorisations(small_sets, titanium_in_aluminium
     grid = Grid.arc(BOTTOM - 1.8, BOTTOM + 1.8, 301)
     corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.4, "sxx": 0.1}, {"P": 1.2}]
     fast = solve(problem, corners, grid=grid)
-    monkeypatch.setattr(StuckSet, "of", lambda *_: None)
+    monkeypatch.setattr(StickingRun, "of", lambda *_: None)
     slow = solve(problem, corners, grid=grid)
     for one, two in zip(fast, slow, strict=True):
         assert np.array_equal(one.status, two.status)

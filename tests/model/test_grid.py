@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from fastpin import Grid, InputError
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid
 
 
 @pytest.mark.parametrize("width", [1e-7, 1e-3, 0.2, 0.49])

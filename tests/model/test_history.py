@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin import InputError, LoadHistory
-from fastpin.errors import CaseFileError
-from fastpin.keep import Keep
-from fastpin.loading import LOADS, MOST_FAULTS, filled
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.history import LoadHistory
+from fastpin.model.history_csv import MOST_FAULTS
+from fastpin.model.loads import LOADS, complete_load
+from fastpin.model.options import KeepRule
 
 NEVER = np.full(len(LOADS), np.nan)
 
@@ -54,7 +55,7 @@ def test_helpers() -> None:
 def test_corners_one_by_one_are_the_values(random_program: LoadHistory) -> None:
     load = NEVER
     for index, expected in enumerate(random_program.values(NEVER)):
-        load = filled(random_program.corner(index)[0], load)
+        load = complete_load(random_program.corner(index)[0], load)
         assert np.array_equal(load, expected, equal_nan=True)
 
 
@@ -236,14 +237,19 @@ def test_keep() -> None:
     ends = [False, True, False, True, False]
 
     def kept(which: str) -> list[int]:
-        return [k for k in range(5) if Keep.of(which).corner(k, 5, ends[k])]
+        return [k for k in range(5) if KeepRule.read(which).at_corner(k, 5, ends[k])]
 
     assert kept("all") == kept("corners") == kept("every 1") == [0, 1, 2, 3, 4]
     assert kept("cycles") == [1, 3, 4]
     assert kept("every 2") == kept("every-2") == kept("every2") == [1, 3, 4]
     assert kept("every 9") == [4]
-    assert [Keep.of(which).inside for which in ("all", "corners", "cycles", "every 2")] == [True, False, False, False]
-    assert [str(Keep.of(which)) for which in ("all", "cycles", "every:7")] == ["all", "cycles", "every 7"]
+    assert [KeepRule.read(which).inside for which in ("all", "corners", "cycles", "every 2")] == [
+        True,
+        False,
+        False,
+        False,
+    ]
+    assert [str(KeepRule.read(which)) for which in ("all", "cycles", "every:7")] == ["all", "cycles", "every 7"]
     for wrong in ("", "some", "every", "every 0", "every -1", "every x", 3, None):
         with pytest.raises(InputError, match='"every N"'):
-            Keep.of(wrong)  # type: ignore[arg-type]
+            KeepRule.read(wrong)  # type: ignore[arg-type]

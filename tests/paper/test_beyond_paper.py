@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import Problem, paper, solve
-from fastpin.figures import memory, sliding_onset, tractions
-from fastpin.sliding import solve_sliding
+from fastpin.model.problem import Problem
+from fastpin.paper import catalog, curves, memory, sliding_onset, tractions
+from fastpin.solver.solving import solve
+from fastpin.verification.sliding import solve_sliding
 
 NODES = 81
 
@@ -19,11 +20,11 @@ def held(load_parameter: float, friction: float) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def remembered() -> list[paper.Curve]:
+def remembered() -> list[curves.Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(memory, "LOAD_PARAMETERS", (0.05, 0.2, 0.5, 2.0, 8.0))
         patch.setattr(memory, "AMPLITUDES", (0.5, 1.0, 1.25))
-        return paper.script("memory").compute(NODES)
+        return catalog.script("memory").compute(NODES)
 
 
 def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
@@ -91,7 +92,7 @@ def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "FRICTION", (0.1, 0.5))
     monkeypatch.setattr(sliding_onset, "SHOWN_FRICTION", (0.1, 0.3))
     monkeypatch.setattr(sliding_onset, "SHOWN_LOAD_PARAMETERS", (1.0,))
-    script = paper.script(name)
+    script = catalog.script(name)
     curves = remembered if name == "memory" else script.compute(61)
     figure = script.draw(curves)
     figure.draw_without_rendering()

@@ -8,15 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from samples import sample_result
 
-from fastpin import Grid, Problem, paper, solve
 from fastpin.errors import InputError
-from fastpin.figures import figure10, figure13, sweep, tractions
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.paper import catalog, curves, figure10, figure13, sweep, tractions
+from fastpin.solver.solving import solve
+from tests.support.samples import sample_result
 
 NODES = 81
 SWEEPS = ("5", "8")
-TRACTIONS = tuple(name for name in paper.PAPER if name not in SWEEPS)
+TRACTIONS = tuple(name for name in catalog.PAPER if name not in SWEEPS)
 
 # Panels, and lines in all of them; not counted are the lines at T = 0 and N = 0.
 DRAWN = {
@@ -26,16 +28,16 @@ DRAWN = {
 
 
 @cache
-def computed(name: str) -> list[paper.Curve]:
-    return paper.script(name).compute(NODES)
+def computed(name: str) -> list[curves.Curve]:
+    return catalog.script(name).compute(NODES)
 
 
-def one(curves: list[paper.Curve], **parameters: object) -> paper.Curve:
+def one(curves: list[curves.Curve], **parameters: object) -> curves.Curve:
     (curve,) = tractions.chosen(curves, **parameters)
     return curve
 
 
-def forces(curve: paper.Curve) -> tuple[float, float]:
+def forces(curve: curves.Curve) -> tuple[float, float]:
     """Resultants of the tractions on the pin, upwards and to the left."""
     theta = np.radians(curve["angle_deg"] - 90.0)
     up = curve["T"] * np.cos(theta) - curve["N"] * np.sin(theta)
@@ -59,9 +61,9 @@ def test_tractions_are_in_equilibrium_and_within_coulombs_cone(name: str) -> Non
         assert curve["N"][[0, -1]].tolist() == curve["T"][[0, -1]].tolist() == [0.0, 0.0]
 
 
-@pytest.mark.parametrize("name", paper.PAPER)
+@pytest.mark.parametrize("name", catalog.PAPER)
 def test_drawn_with_all_lines_and_a_legend_inside(name: str) -> None:
-    figure = paper.script(name).draw(computed(name))
+    figure = catalog.script(name).draw(computed(name))
     lines = [line for panel in figure.axes for line in panel.lines if len(line.get_xdata()) > 2]
     assert (len(figure.axes), len(lines)) == DRAWN[name]
     figure.draw_without_rendering()
@@ -157,15 +159,15 @@ def test_a_pin_that_rotates_freely_bears_no_moment() -> None:
 
 def test_progress_counts_up_to_one() -> None:
     reported: list[float] = []
-    paper.script(17).compute(41, reported.append)
+    catalog.script(17).compute(41, reported.append)
     assert reported == [1.0]
-    assert list(paper.steps("abcd", reported.append)) == list("abcd")
+    assert list(curves.steps("abcd", reported.append)) == list("abcd")
     assert reported[1:] == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_csv_round_trip(tmp_path: Path) -> None:
-    curves = [*computed("14"), paper.Curve({"pair": "none"}, {"N": np.array([np.nan, 1.0])})]
-    paper.write_csv(curves, tmp_path / "a.csv", ["a remark"])
+    curves = [*computed("14"), curves.Curve({"pair": "none"}, {"N": np.array([np.nan, 1.0])})]
+    curves.write_csv(curves, tmp_path / "a.csv", ["a remark"])
     first, *rest = (tmp_path / "a.csv").read_text().splitlines()
     assert first == "# a remark"
     rows = list(csv.DictReader(rest))
@@ -184,42 +186,42 @@ def test_csv_round_trip(tmp_path: Path) -> None:
 
 def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
     state = sample_result(closed=True, centre=0.5 * np.pi, nodes=90)[0]
-    whole = paper.traction_curve(state, 2.0)
+    whole = curves.traction_curve(state, 2.0)
     assert whole["N"].max() == pytest.approx(0.5e8, rel=1e-2)
     assert np.ptp(whole["angle_deg"]) == pytest.approx(np.degrees(2.0), rel=0.05)
     state = sample_result(closed=True, nodes=90)[0]
     middle = np.abs(state.theta + 0.5 * np.pi) < 0.3
     state.status[middle], state.pressure[middle] = 2, 0.0
-    split = paper.traction_curve(state)
+    split = curves.traction_curve(state)
     assert np.isnan(split["N"]).sum() == 1
     assert np.sum(split["N"] == 0.0) == 4
     state = sample_result(closed=True, nodes=90)[0]
     state.status[:], state.pressure[:] = 0, 1.0
-    assert paper.traction_curve(state)["N"].tolist() == [1.0] * 90
+    assert curves.traction_curve(state)["N"].tolist() == [1.0] * 90
     state = sample_result()[0]
     state.status[:] = 2
-    assert paper.traction_curve(state)["N"].size == 0
+    assert curves.traction_curve(state)["N"].size == 0
 
 
 @pytest.mark.parametrize("name", [2, 18, "0", "", "3a", "figure03"])
 def test_figures_that_do_not_exist(name: object) -> None:
     with pytest.raises(InputError, match="there are 3 to 17"):
-        paper.script(name)  # type: ignore[arg-type]
+        catalog.script(name)  # type: ignore[arg-type]
 
 
 def test_names() -> None:
-    assert [paper.stem(name) for name in (3, "03", " 17 ", "Half-plane")] == [
+    assert [catalog.stem(name) for name in (3, "03", " 17 ", "Half-plane")] == [
         "figure03",
         "figure03",
         "figure17",
         "half-plane",
     ]
-    assert {paper.script(name).TITLE for name in paper.PAPER} == {paper.script(n).TITLE for n in range(3, 18)}
-    assert len({paper.script(name).TITLE for name in paper.PAPER}) == len(paper.PAPER)
+    assert {catalog.script(name).TITLE for name in catalog.PAPER} == {catalog.script(n).TITLE for n in range(3, 18)}
+    assert len({catalog.script(name).TITLE for name in catalog.PAPER}) == len(catalog.PAPER)
 
 
 def test_a_figure_is_made_with_its_numbers(tmp_path: Path) -> None:
-    picture, numbers = paper.make(17, tmp_path / "new" / "folder", 201)
+    picture, numbers = catalog.make(17, tmp_path / "new" / "folder", 201)
     assert picture.read_bytes().startswith(b"\x89PNG")
     rows = list(csv.DictReader(line for line in numbers.read_text().splitlines() if not line.startswith("#")))
     assert {row["load"] for row in rows} == {"By", "+Bx", "-Bx"}

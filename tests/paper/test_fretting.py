@@ -10,7 +10,13 @@ import math
 
 import numpy as np
 import pytest
-from paper_cases import (
+
+from fastpin.kernels.status import STICK
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from tests.support.paper_cases import (
     BOTTOM,
     EVERY_PAIR,
     MU,
@@ -26,8 +32,6 @@ from paper_cases import (
     shift,
     sliding_onset,
 )
-
-from fastpin import STICK, Material, MaterialPair, Problem, analytic, solve
 
 # --- 5.3: held pin, centre loads -----------------------------------------------------------------------------------
 
@@ -55,7 +59,7 @@ def test_fretting_resembles_half_planes_at_high_load_parameter():
     for load_parameter in (0.05, 0.5, 1.0, 5.0, 100.0):
         state = fretting("Ti/Ti", load_parameter, 0.5, "fixed")[1]
         middle, half = math.radians(shift(state)) + BOTTOM, math.radians(half_contact(state))
-        shear = -analytic.cattaneo_mindlin_shear(state.theta - middle, half, state.peak_pressure, MU, 0.5)
+        shear = -closed_forms.cattaneo_mindlin_shear(state.theta - middle, half, state.peak_pressure, MU, 0.5)
         weights = state.grid.weights
         distances.append(weights @ np.abs(state.shear - shear) / (weights @ np.abs(shear)))
     assert np.all(np.diff(distances) < 0.0)

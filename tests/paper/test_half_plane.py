@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fastpin import Problem, analytic, solve
-from fastpin.comparison import cattaneo_mindlin_differences
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from fastpin.verification.comparisons import cattaneo_mindlin_differences
 
 FRICTION, RATIO = 0.5, 0.6
 
@@ -16,8 +18,8 @@ def half_plane_errors(pair, load_parameter, nodes):
     problem = Problem.from_load_parameter(pair, load_parameter, FRICTION, "centre", "fixed")
     Q = RATIO * FRICTION
     result = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}, {"Q": Q}], nodes=nodes)
-    half = analytic.hertz_half_angle(load_parameter)
-    peak = analytic.hertz_peak_pressure(load_parameter)
+    half = closed_forms.hertz_half_angle(load_parameter)
+    peak = closed_forms.hertz_peak_pressure(load_parameter)
     differences = cattaneo_mindlin_differences(result[1:], RATIO)
     start, stop = result[1].stick[0]
     return differences, 0.5 * (stop - start) / half, result[0].peak_pressure / peak - 1.0

@@ -10,7 +10,11 @@ import math
 
 import numpy as np
 import pytest
-from paper_cases import (
+
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from tests.support.paper_cases import (
     BOTTOM,
     EVERY_PAIR,
     PAIRS,
@@ -26,8 +30,6 @@ from paper_cases import (
     stressed,
     symmetric_arc,
 )
-
-from fastpin import OPEN, STICK, Problem, solve
 
 # --- 5.1: friction and load parameter -----------------------------------------------------------------------------
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import math
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-BENCH = Path(__file__).resolve().parents[1] / "bench"
+BENCH = Path(__file__).resolve().parents[2] / "bench"
 SIZES = (101, 401, 801, 1601)
 
 
@@ -34,11 +33,7 @@ def report() -> ModuleType:
 
 @pytest.fixture(scope="module")
 def compare() -> ModuleType:
-    sys.path.insert(0, str(BENCH))
-    try:
-        return module("compare")
-    finally:
-        sys.path.remove(str(BENCH))
+    return module("compare")
 
 
 def entry(group: str, seconds: float, extra: dict[str, Any] | None = None, **parameters: Any) -> dict[str, Any]:

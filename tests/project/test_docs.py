@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import paper
-from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import parse_plan
+from fastpin.paper import catalog
+from fastpin.studies.outcome import KEY_FIGURES
+from fastpin.studies.plan import parse_plan
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
 
 
@@ -47,8 +47,8 @@ def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> Non
 
 def test_every_figure_is_shown() -> None:
     text = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
-    for name in (*paper.PAPER, *paper.BEYOND):
-        assert f"figures/{paper.stem(name)}.png" in text
+    for name in (*catalog.PAPER, *catalog.BEYOND):
+        assert f"figures/{catalog.stem(name)}.png" in text
 
 
 def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:

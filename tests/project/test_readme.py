@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.cli import _parser
+from fastpin.cli.main import _parser
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 # Stands for Python, for the Python of the environment and for apt-get. What it was called with goes to $LOG.
 FAKE = """#!/bin/bash

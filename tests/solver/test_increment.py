@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fastpin import Problem, solve
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
 
 ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
 

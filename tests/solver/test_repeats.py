@@ -8,35 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import LoadHistory, NoEquilibriumError, Problem, repeats, solve
-from fastpin.collocation import Configuration
-from fastpin.repeats import MOST_KEPT, Repeats
-from fastpin.state import Result, periodic_from, series
-
-CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
-FIELDS = ("pressure", "shear", "gap", "slip", "status")
-NUMBERS = ("step", "fraction", "load", "dx", "dy", "rotation", "dissipation", "work", "energy", "residuals")
-
-
-def q(*values: float) -> LoadHistory:
-    return LoadHistory.from_array(np.array(values)[:, None], ["Q"])
-
-
-P = LoadHistory([{"P": 1.0}])
-RANDOM = np.random.default_rng(0).uniform(-0.28, 0.28, 40)
-PROGRAMS = {
-    "cycles": LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 25),
-    "corners": LoadHistory([{"P": 1.0}, *CYCLE * 25, {"Q": 0.1}]),
-    "two levels": P + (q(0.2, -0.2).repeated(5) + q(0.3, -0.3).repeated(3)).repeated(8) + q(0.1),
-    "spectrum": P + q(*RANDOM, 0.3).repeated(5),
-    "cycles, then corners": P + (q(0.3, -0.3).repeated(4) + q(0.1, 0.2, 0.1)).repeated(5),
-    "loads that come back": P + q(0.2, -0.2).repeated(12) + (q(0.3, -0.3) + q(0.1, -0.1).repeated(5)).repeated(6),
-    "begins inside a period": P
-    + (q(*[0.2, -0.2] * 4) + q(0.2, -0.2, 0.2, -0.2, 0.2, -0.2, 0.3).repeated(2)).repeated(3),
-    "begins before a period": P + (q(*[0.2, -0.2] * 3, 0.2) + q(*[-0.2, 0.2] * 3, -0.2, 0.3).repeated(2)).repeated(3),
-    "minus zero": P + q(*[0.2, 0.0] * 6, -0.0, 0.2, -0.0),
-    "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(10),
-}
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver import repeats
+from fastpin.solver.configuration import Configuration
+from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.repeats import MOST_KEPT, Repeats
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.cycles import consecutive_cycles, periodic_from
+from tests.support.programs import CYCLE, FIELDS, PROGRAMS, RANDOM, P, assert_same, known, q
 
 
 @pytest.fixture(scope="module")
@@ -47,20 +29,6 @@ def held(similar):
 @pytest.fixture(scope="module")
 def free(similar):
     return Problem.from_load_parameter(similar, 0.05, 0.55, "body")
-
-
-def assert_same(one: Result, other: Result) -> None:
-    assert len(one) == len(other)
-    for first, second in zip(one, other, strict=True):
-        for name in FIELDS:
-            assert np.array_equal(getattr(first, name), getattr(second, name)), (name, first.step)
-        for name in NUMBERS:
-            assert getattr(first, name) == getattr(second, name), (name, first.step)
-
-
-def known(result: Result) -> list[tuple]:
-    """Cycles, without whether they were solved; as text, where what is not known is equal to itself."""
-    return [tuple(map(repr, cycle[:-1])) for cycle in result.cycles]
 
 
 @pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
@@ -136,8 +104,6 @@ def test_the_transient_as_numbers(free):
 
 def test_ratcheting_is_seen():
     """A pin pushed round a small moment up and down creeps the same way in every cycle."""
-    from fastpin import MATERIALS, MaterialPair
-
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
     problem = Problem.from_load_parameter(pair, 0.5, 0.3)
     turning = LoadHistory.harmonic({"P": 1.0}, {"Q": 0.4, "M": 0.15}, {"M": 90.0}, count=8, points=12)
@@ -148,9 +114,11 @@ def test_ratcheting_is_seen():
 
 def test_series_are_told_apart(held):
     result = solve(held, PROGRAMS["two levels"], nodes=61)
-    lengths = [(one[0].length, len(one)) for one in series(result.cycles)]
+    lengths = [(one[0].length, len(one)) for one in consecutive_cycles(result.cycles)]
     assert sorted(lengths) == sorted([(2, 5), (2, 3)] * 8 + [(16, 8)])
-    assert all([cycle.number for cycle in one] == list(range(1, len(one) + 1)) for one in series(result.cycles))
+    assert all(
+        [cycle.number for cycle in one] == list(range(1, len(one) + 1)) for one in consecutive_cycles(result.cycles)
+    )
 
 
 def test_a_cycle_that_began_before_the_history_is_not_known(held):
@@ -238,17 +206,17 @@ def configuration(load: float, slip: float = 1.0) -> Configuration:
 
 def test_rounding_is_recognised_and_no_more():
     memory = Repeats()
-    assert memory.meet(configuration(1.0), False, 0) is None
-    met = memory.meet(configuration(1.0, 1.0 + 3e-14), False, 3)
-    assert met is not None
-    assert met.configuration.slip[0] == 1.0
-    assert (met.last, met.period, met.since) == (3, 3, 0)
-    assert memory.meet(configuration(1.0, 1.0 + 1e-13), False, 4) is None
-    assert memory.meet(configuration(1.0 + 1e-15), False, 5) is None
-    met = memory.meet(configuration(1.0), False, 6)
-    assert (met.last, met.period, met.since) == (6, 3, 0)
-    met = memory.meet(configuration(1.0), False, 8)
-    assert (met.last, met.period, met.since) == (8, 2, 6)
+    assert memory.recall(configuration(1.0), False, 0) is None
+    found = memory.recall(configuration(1.0, 1.0 + 3e-14), False, 3)
+    assert found is not None
+    assert found.configuration.slip[0] == 1.0
+    assert (found.last, found.period, found.since) == (3, 3, 0)
+    assert memory.recall(configuration(1.0, 1.0 + 1e-13), False, 4) is None
+    assert memory.recall(configuration(1.0 + 1e-15), False, 5) is None
+    found = memory.recall(configuration(1.0), False, 6)
+    assert (found.last, found.period, found.since) == (6, 3, 0)
+    found = memory.recall(configuration(1.0), False, 8)
+    assert (found.last, found.period, found.since) == (8, 2, 6)
 
 
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(Configuration)][2:11])
@@ -256,20 +224,20 @@ def test_every_part_of_a_configuration_counts(name):
     if name == "load":
         return
     memory, other = Repeats(), configuration(1.0)
-    memory.meet(configuration(1.0), False, 0)
+    memory.recall(configuration(1.0), False, 0)
     setattr(other, name, getattr(other, name) + 1)
-    assert memory.meet(other, False, 1) is None
+    assert memory.recall(other, False, 1) is None
 
 
 def test_the_latest_and_the_ends_of_cycles_are_remembered():
     memory = Repeats()
-    memory.meet(configuration(-1.0), True, 0)
+    memory.recall(configuration(-1.0), True, 0)
     for k in range(1, 200):
-        assert memory.meet(configuration(float(k)), False, k) is None
+        assert memory.recall(configuration(float(k)), False, k) is None
     assert len(list(memory)) == MOST_KEPT + 1
-    assert memory.meet(configuration(-1.0), False, 200) is not None
-    assert memory.meet(configuration(199.0), False, 201) is not None
-    assert memory.meet(configuration(1.0), False, 202) is None
+    assert memory.recall(configuration(-1.0), False, 200) is not None
+    assert memory.recall(configuration(199.0), False, 201) is not None
+    assert memory.recall(configuration(1.0), False, 202) is None
 
 
 def test_little_memory_costs_time_but_changes_nothing(held, monkeypatch):

@@ -6,16 +6,11 @@ import math
 
 import pytest
 
-from fastpin import (
-    MATERIALS,
-    FastpinError,
-    InputError,
-    LoadHistory,
-    Material,
-    MaterialPair,
-    Problem,
-    solve,
-)
+from fastpin.errors import FastpinError, InputError
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
 
 STEEL = Material(210e9, 0.3)
 PAIR = MaterialPair(STEEL, STEEL)
@@ -68,6 +63,8 @@ def plain(**changes):
         (lambda: solve(plain(), [{"P": 1.0}], nodes=100.0), "nodes"),
         (lambda: solve(plain(), [{"P": 1.0}], method="newton"), "method"),
         (lambda: solve(plain(), [{"P": 1.0}], increments=0), "increments"),
+        (lambda: solve(plain(), [{"P": 1.0}], increments=0, method="increment"), "increments"),
+        (lambda: solve(plain(), [{"P": 1.0}], increments=20), "increments"),
         (lambda: solve(plain(), [{"P": 1.0}], arc=(1.0, 0.0)), "arc"),
         (lambda: solve(plain(), [{"P": 1.0}], between=-1), "between"),
         (lambda: solve(plain(), [{"P": 1.0}], between=[0.5, 1.5]), "between"),
@@ -77,8 +74,8 @@ def plain(**changes):
         (lambda: solve(plain(), [{"P": 1.0}], between=[0.5, "a"]), "between"),
         (lambda: solve(plain(), [{"P": 1.0}], arc=(0,)), "arc"),
         (lambda: solve(plain(), [{"P": 1.0}], arc=5), "arc"),
-        (lambda: solve(plain(), [{"P": 1.0}], arc=("a", 1)), "arc start"),
-        (lambda: solve(plain(), [{"P": 1.0}], arc=(0, math.inf)), "arc stop"),
+        (lambda: solve(plain(), [{"P": 1.0}], arc=("a", 1)), "arc"),
+        (lambda: solve(plain(), [{"P": 1.0}], arc=(0, math.inf)), "arc"),
         (lambda: solve(plain(), [{"P": 1.0}], grid=5), "grid"),
         (lambda: solve(plain(), [{"P": 1.0}], start=5), "start"),
         (lambda: solve("problem", [{"P": 1.0}]), "problem"),

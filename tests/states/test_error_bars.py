@@ -11,15 +11,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-import fastpin.solver
-from fastpin import Grid, LoadHistory, MaterialPair, NoEquilibriumError, Problem, Result, analytic, solve
-from fastpin.casefile import EXAMPLE
-from fastpin.cli import main
-from fastpin.errorbars import LEAST_COARSE, bars, halved
-from fastpin.errors import InputError, Interrupted
-from fastpin.keyfigures import KEY_FIGURES, key_figures
-from fastpin.quantities import QUANTITIES, compared, quantity, size, values
-from fastpin.store import load, save
+from fastpin.casefile.reader import EXAMPLE
+from fastpin.cli.main import main
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid, halved
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver import solving
+from fastpin.solver.errors import Interrupted, NoEquilibriumError
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.error_bars import LEAST_COARSE, bars
+from fastpin.states.quantities import QUANTITIES, matching_values, quantity, size, values
+from fastpin.storage.store import load, save
+from fastpin.studies.outcome import KEY_FIGURES, key_figures
+from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi
 CORNERS: list[dict[str, float]] = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}]
@@ -61,22 +68,22 @@ def test_key_figures_say_the_same(problem: Problem) -> None:
 def test_angles_are_compared_across_the_seam_and_shears_across_their_sign(problem: Problem) -> None:
     state = solve(problem, CORNERS[:1], grid=Grid.circle(120, BOTTOM))[-1]
     other = solve(problem, CORNERS[:1], grid=Grid.circle(120, BOTTOM + math.pi))[-1]
-    theirs = compared(state, other)
+    theirs = matching_values(state, other)
     for name, value in values(state).items():
         assert theirs[name] == pytest.approx(value, abs=1e-9)
     mirrored = replace(state, shear=-state.shear)
-    assert compared(state, mirrored)["peak_shear"] == state.peak_shear
-    assert math.isnan(compared(state, mirrored)["peak_shear_angle"])
+    assert matching_values(state, mirrored)["peak_shear"] == state.peak_shear
+    assert math.isnan(matching_values(state, mirrored)["peak_shear_angle"])
 
 
 def test_zones_that_are_not_as_many_are_not_compared(problem: Problem) -> None:
     partial, sliding = solve(problem, CORNERS, nodes=101)[1:]
     none = replace(sliding, status=np.where(sliding.status == 2, 2, 1).astype(np.int8))
-    theirs = compared(partial, none)
+    theirs = matching_values(partial, none)
     assert math.isnan(theirs["stick_1_start"])
     assert theirs["stick_width"] == 0.0
     assert math.isfinite(theirs["contact_1_start"])
-    assert "stick_1_start" not in compared(none, partial)
+    assert "stick_1_start" not in matching_values(none, partial)
     assert bars(partial, none)["stick_1_start"] == math.inf
 
 
@@ -92,8 +99,8 @@ def test_error_bars_leave_the_states_as_they_are(problem: Problem) -> None:
         assert one.error_bars is None
         assert two.error_bars is not None
         assert set(two.error_bars) == set(values(two))
-        assert two.coarse is not None
-        assert (two.coarse.step, two.coarse.fraction) == (two.step, two.fraction)
+        assert two.error_bars is not None
+        assert (two.error_bars.coarse.step, two.error_bars.coarse.fraction) == (two.step, two.fraction)
 
 
 def test_error_bars_hold_against_the_closed_form(similar: MaterialPair) -> None:
@@ -101,9 +108,9 @@ def test_error_bars_hold_against_the_closed_form(similar: MaterialPair) -> None:
         state = solve(Problem.from_load_parameter(similar, parameter, 0.0), [{"P": 1.0}], nodes=101, error_bars=True)[
             -1
         ]
-        half = analytic.persson_half_angle(parameter)
+        half = closed_forms.persson_half_angle(parameter)
         assert state.error_bars is not None
-        error = abs(state.peak_pressure - analytic.persson_pressure(0.0, half))
+        error = abs(state.peak_pressure - closed_forms.persson_pressure(0.0, half))
         assert error <= state.error_bars["peak_pressure"] < 1e-2 * state.peak_pressure
         assert abs(state.contact[0][1] - BOTTOM - half) <= state.error_bars["contact_1_stop"] < 0.1 * half
         assert state.error_bars["P"] < 1e-9
@@ -174,7 +181,7 @@ def test_too_few_nodes_for_error_bars(problem: Problem) -> None:
 
 
 def test_a_coarse_grid_that_loses_the_load_leaves_the_result(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    original, grids = fastpin.solver._solved, []
+    original, grids = solving._solved, []
 
     def lost(task: Any, start: Result | None) -> Result:
         grids.append(task.grid)
@@ -182,7 +189,7 @@ def test_a_coarse_grid_that_loses_the_load_leaves_the_result(problem: Problem, m
             raise NoEquilibriumError("the pin slides away") if stop is None else stop
         return original(task, start)
 
-    monkeypatch.setattr(fastpin.solver, "_solved", lost)
+    monkeypatch.setattr(solving, "_follow_task", lost)
     stop: BaseException | None = None
     with pytest.raises(NoEquilibriumError, match=r"slides away \(on the coarse grid of \d+ nodes") as ended:
         solve(problem, CORNERS, nodes=101, error_bars=True)

@@ -8,7 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import MaterialPair, Problem, analytic, edges, solve
+from fastpin.model.materials import MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.states import fits
+from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi
 CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}]
@@ -34,17 +38,17 @@ def from_an_edge(place, exponent, nodes, decaying=0.0, first=0.7):
 @pytest.mark.parametrize("beyond", [0.1, 0.5, 0.93])
 def test_an_edge_is_found_exactly(exponent, beyond):
     theta, values = from_an_edge(0.7 - 0.01 * beyond, exponent, 40)
-    found = edges.edge(theta, values, exponent, 0.69, 40)
+    found = fits.edge(theta, values, exponent, 0.69, 40)
     assert found == pytest.approx(0.7 - 0.01 * beyond, abs=1e-10)
-    mirrored = edges.edge(-theta, values, exponent, -0.69, 40)
+    mirrored = fits.edge(-theta, values, exponent, -0.69, 40)
     assert mirrored == pytest.approx(-found, abs=1e-14)
 
 
 def test_a_part_that_falls_with_the_distance_does_not_move_an_edge():
     theta, values = from_an_edge(0.694, 0.5, 60, decaying=0.02)
     values[:3] *= [0.9, 1.03, 0.999]  # as nodes beside an edge are
-    assert edges.edge(theta, values, 0.5, 0.69, 60) == pytest.approx(0.694, abs=2e-6)
-    assert edges.edge(theta, values, 0.5, 0.69, 5) == pytest.approx(0.694, abs=2e-6)  # too few to be limited to them
+    assert fits.edge(theta, values, 0.5, 0.69, 60) == pytest.approx(0.694, abs=2e-6)
+    assert fits.edge(theta, values, 0.5, 0.69, 5) == pytest.approx(0.694, abs=2e-6)  # too few to be limited to them
 
 
 def test_an_edge_without_a_shape_is_where_the_outermost_nodes_point():
@@ -52,18 +56,18 @@ def test_an_edge_without_a_shape_is_where_the_outermost_nodes_point():
     noise = np.random.default_rng(1).uniform(0.1, 1.0, 60)
     noise[:2] = 0.2, 0.3
     line = 0.7 - 0.01 * 0.2**2 / (0.3**2 - 0.2**2)
-    assert edges.edge(theta, noise, 0.5, 0.69, 60) == pytest.approx(line)
-    assert edges.edge(theta[:2], noise[:2], 0.5, 0.69, 2) == pytest.approx(line)
-    assert edges.edge(theta[:2], np.array([0.29, 0.3]), 0.5, 0.69, 2) == pytest.approx(0.69)  # no farther
-    assert edges.edge(theta[:5], np.sqrt(np.arange(0.3, 5.0)), 0.5, 0.69, 5) == pytest.approx(0.697)
+    assert fits.edge(theta, noise, 0.5, 0.69, 60) == pytest.approx(line)
+    assert fits.edge(theta[:2], noise[:2], 0.5, 0.69, 2) == pytest.approx(line)
+    assert fits.edge(theta[:2], np.array([0.29, 0.3]), 0.5, 0.69, 2) == pytest.approx(0.69)  # no farther
+    assert fits.edge(theta[:5], np.sqrt(np.arange(0.3, 5.0)), 0.5, 0.69, 5) == pytest.approx(0.697)
     for values in (noise[:1], noise[1::-1], np.ones(60)):
-        assert edges.edge(theta[: values.size], values, 0.5, 0.69, 60) == pytest.approx(0.695)  # halfway
+        assert fits.edge(theta[: values.size], values, 0.5, 0.69, 60) == pytest.approx(0.695)  # halfway
 
 
 def test_beyond_the_next_border_nothing_is_used():
     theta, values = from_an_edge(0.6937, 0.5, 80)
     values[12:] *= 1.0 + 0.2 * np.sqrt(np.arange(68.0))  # a kink at the thirteenth node
-    assert edges.edge(theta, values, 0.5, 0.69, 12) == pytest.approx(0.6937, abs=1e-9)
+    assert fits.edge(theta, values, 0.5, 0.69, 12) == pytest.approx(0.6937, abs=1e-9)
 
 
 @pytest.mark.parametrize("place", [-1.3, 0.0, 0.4, 1.1])
@@ -73,20 +77,20 @@ def test_a_cusp_that_a_border_has_left(place):
     values = 2.0 - 0.01 * x + 1e-4 * x**2 - 0.05 * np.sqrt(before) * (1.0 - 0.01 * before)
     values[np.abs(x) <= 2.0] -= 0.003
     exact = 2.0 - 0.01 * place + 1e-4 * place**2
-    found = edges.cusp(x, values, 0.5)
+    found = fits.cusp(x, values, 0.5)
     assert found is not None
     assert (found.place, found.value) == pytest.approx((place, exact), abs=2e-4)
     falling = values - 0.003 * np.where(x < place, np.maximum(before, 1.0) ** -1.5, 0.0)
-    found = edges.cusp(x, falling, 0.5)
+    found = fits.cusp(x, falling, 0.5)
     assert found is not None
     assert found.place == pytest.approx(place, abs=0.02)
     assert found.value == pytest.approx(exact, abs=3e-4)
-    assert edges.cusp(x[45:56], values[45:56], 0.5) is None  # too few nodes
+    assert fits.cusp(x[45:56], values[45:56], 0.5) is None  # too few nodes
 
 
 def test_no_cusp_where_there_is_none():
     x = np.arange(-50.0, 51.0)
-    found = edges.cusp(x, np.sin(0.2 * x), 0.5)
+    found = fits.cusp(x, np.sin(0.2 * x), 0.5)
     assert found is None or found.error > 1e-4
 
 
@@ -95,29 +99,29 @@ def test_the_bound_beside_a_border(exponent):
     x = np.arange(-40.0, 41.0) + 0.3
     slipping = np.maximum(x, 0.0)
     smooth = 1.0 - 0.01 * x - 1e-4 * x**2
-    falling = edges.border_peak(x, smooth - 0.03 * slipping**exponent, exponent)
+    falling = fits.border_peak(x, smooth - 0.03 * slipping**exponent, exponent)
     assert falling is not None
     assert falling.value == pytest.approx(1.0, abs=1e-9)
     assert falling.place == 0.0
-    rising = edges.border_peak(x, smooth + 0.03 * slipping**exponent, exponent)
+    rising = fits.border_peak(x, smooth + 0.03 * slipping**exponent, exponent)
     fine = np.linspace(0.0, 20.0, 200_001)
     curve = 1.0 - 0.01 * fine - 1e-4 * fine**2 + 0.03 * fine**exponent
     assert rising is not None
     assert rising.value == pytest.approx(curve.max(), abs=1e-9)
     assert rising.place == pytest.approx(fine[np.argmax(curve)], abs=1e-3)
-    assert edges.border_peak(x, np.random.default_rng(2).uniform(0.0, 1.0, x.size), exponent) is None
-    assert edges.border_peak(x[36:45], smooth[36:45], exponent) is None
+    assert fits.border_peak(x, np.random.default_rng(2).uniform(0.0, 1.0, x.size), exponent) is None
+    assert fits.border_peak(x[36:45], smooth[36:45], exponent) is None
 
 
 def test_a_corner_between_two_branches():
     x = np.arange(-40.0, 41.0)
     values = 3.0 - 0.02 * np.abs(x) - 1e-4 * x**2
     values[39:42] = 2.97  # the nodes of the first contact
-    found = edges.corner(x, values)
+    found = fits.corner(x, values)
     assert found is not None
     assert found.value == pytest.approx(3.0, abs=1e-9)
-    assert edges.corner(x, 3.0 - 1e-3 * x**2) is None
-    assert edges.corner(x, 3.0 + 0.01 * x - 0.002 * np.abs(x)) is None
+    assert fits.corner(x, 3.0 - 1e-3 * x**2) is None
+    assert fits.corner(x, 3.0 + 0.01 * x - 0.002 * np.abs(x)) is None
 
 
 # --- solved contacts --------------------------------------------------------------------------------------------
@@ -128,7 +132,7 @@ def test_contact_edges_are_second_order(similar):
     sizes, rng = np.array([101, 201, 401, 801]), np.random.default_rng(7)
     squares = np.zeros(sizes.size)
     for load_parameter in 10.0 ** rng.uniform(-2.0, 0.3, 6):
-        exact = analytic.persson_half_angle(load_parameter)
+        exact = closed_forms.persson_half_angle(load_parameter)
         problem = Problem.from_load_parameter(similar, load_parameter, 0.0)
         for k, nodes in enumerate(sizes):
             wide = exact * rng.uniform(1.1, 1.3)

@@ -8,7 +8,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fastpin import OPEN, STICK, Grid, Problem, solve, zones
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.states import peaks, zones
 
 
 def half_circle(theta, start, stop):
@@ -80,9 +84,9 @@ def test_stick_zones_of_a_contact_all_round():
 def test_peaks_between_nodes():
     grid = Grid.arc(-1.0, 1.0, 60)
     smooth = 2.0 - 3.0 * (grid.theta - 0.1234) ** 2
-    assert zones.pressure_peak(grid, smooth) == pytest.approx((2.0, 0.1234), abs=1e-12)
+    assert peaks.pressure_peak(grid, smooth) == pytest.approx((2.0, 0.1234), abs=1e-12)
     kink = 2.0 - np.abs(grid.theta - grid.theta[20])
-    assert zones.pressure_peak(grid, kink) == (2.0, grid.theta[20])
+    assert peaks.pressure_peak(grid, kink) == (2.0, grid.theta[20])
 
 
 def test_the_parts_of_a_solved_contact_fit_together(similar):

@@ -9,15 +9,14 @@ import sys
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
 
-from fastpin import journal
 from fastpin.errors import InputError
-from fastpin.journal import JournaledFile, check_free, journal_of, open_h5, settled
+from fastpin.storage import journal
+from fastpin.storage.journal import JournaledFile, check_free, journal_of
+from tests.support.rows import ARRAYS, ROWS, SIZE, rows_in
 
-SIZE, ARRAYS = 50, 3
-ROWS = np.random.default_rng(0).random((200, SIZE))
+ROOT = Path(__file__).resolve().parents[2]
 
 
 class Machine:
@@ -41,7 +40,7 @@ class Machine:
         self._truncate(file, size)
 
     def _whose(self, file: int) -> int:
-        return int(os.readlink(f"/proc/self/fd/{file}").endswith(".journal"))
+        return int(Path(f"/proc/self/fd/{file}").readlink().suffix == ".journal")
 
     def disks(self) -> list[tuple[bytes, bytes]]:
         """File and journal after every change."""
@@ -86,15 +85,6 @@ def written(path: Path, transactions: int, machine: Machine | None = None) -> No
     h5.close()
     file.commit()
     file.release()
-
-
-def rows_in(path: Path) -> int:
-    """Number of rows of a file, all of which must be right."""
-    with settled(path), open_h5(path) as h5:
-        count = int(h5.attrs["rows"])
-        for k in range(ARRAYS):
-            assert np.array_equal(h5[f"array{k}"][()], ROWS[:count])
-        return count
 
 
 @pytest.mark.slow
@@ -195,11 +185,9 @@ def test_readers_wait_for_the_end_of_a_transaction(tmp_path: Path) -> None:
     for k in range(ARRAYS):
         h5[f"array{k}"].resize(1, axis=0)
     h5.flush()  # in the midst of a transaction
-    code = "import sys, pathlib; from test_journal import rows_in; print('begun', flush=True)"
+    code = "import sys, pathlib; from tests.support.rows import rows_in; print('begun', flush=True)"
     code += "; print(rows_in(pathlib.Path(sys.argv[1])))"
-    reader = subprocess.Popen(
-        [sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parent
-    )
+    reader = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, text=True, cwd=ROOT)
     assert reader.stdout is not None
     assert reader.stdout.readline() == "begun\n"
     with pytest.raises(subprocess.TimeoutExpired):

@@ -14,27 +14,21 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from test_repeats import PROGRAMS, P, assert_same, known, q
 
-from fastpin import (
-    ArcError,
-    ConvergenceError,
-    Grid,
-    InputError,
-    LoadHistory,
-    NoEquilibriumError,
-    Problem,
-    journal,
-    record,
-    solve,
-    store,
-)
-from fastpin.errors import Interrupted
-from fastpin.journal import journal_of
-from fastpin.record import checkpoint_of, resume, stored_case
-from fastpin.record import record as follow
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, NoEquilibriumError
+from fastpin.solver.solving import solve
+from fastpin.storage import journal, store, writer
+from fastpin.storage.journal import journal_of
+from fastpin.storage.recording import record as follow
+from fastpin.storage.recording import resume, stored_case
+from fastpin.storage.writer import checkpoint_of
+from tests.support.programs import PROGRAMS, P, assert_same, known, q
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
 
 
@@ -93,7 +87,7 @@ def test_a_history_that_begins_inside_a_cycle_goes_on_as_it_was(problem, path):
 
 
 def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
-    monkeypatch.setattr(record, "PIECE", 7)
+    monkeypatch.setattr(writer, "PIECE", 7)
     history = PROGRAMS["spectrum"]
     follow(problem, history, path, nodes=61)
     assert_file(path, solve(problem, history, nodes=61))
@@ -195,7 +189,7 @@ def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
 
 def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path, tmp_path, monkeypatch):
     """The coarse run is made to see the first step only."""
-    from fastpin import arc
+    from fastpin.solver import arc
 
     monkeypatch.setattr(arc, "_outline", lambda values: values[:1])
     problem = Problem.from_load_parameter(similar, 0.1, 0.4, "body")
@@ -203,7 +197,7 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
     expected = solve(problem, history, nodes=61)
     follow(problem, history, path, nodes=61)
     assert_file(path, expected)
-    first = next(arc.grids_to_try(problem, history.values(), 1.0, 61))
+    first = next(arc.candidate_grids(problem, history.values(), 1.0, 61))
     assert first.theta[-1] < expected.grid.theta[-1]
     with pytest.raises(Interrupted):  # and in a run that was interrupted before
         follow(problem, history, path, nodes=61, progress=StopAt(2.0), overwrite=True)
@@ -229,12 +223,12 @@ def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
             raise OSError(errno.ENOSPC, "No space left on device")
         return written(file, data, place)
 
-    monkeypatch.setattr(record, "LONGEST_WAIT", 0.0)
+    monkeypatch.setattr(writer, "LONGEST_WAIT", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(journal.os, "pwrite", pwrite)
         with pytest.raises(OSError, match="No space left"):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
-    assert 1 < store.size(path) < 40
+    assert 1 < store.state_count(path) < 40
     resume(path)
     assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
 
@@ -273,10 +267,10 @@ def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatc
         raise error
 
     with monkeypatch.context() as patch:
-        patch.setattr(record, "write_statistics", fail)
+        patch.setattr(writer, "write_statistics", fail)
         with pytest.raises((KeyboardInterrupt, OSError)):
             follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
-    assert store.size(path) <= 6
+    assert store.state_count(path) <= 6
     resume(path)
     assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
 
@@ -307,9 +301,9 @@ def test_links_lead_to_one_run(problem, path, tmp_path):
 @pytest.fixture
 def left(problem, path, monkeypatch):
     """A run that has died after some thirty corners, with checkpoints."""
-    monkeypatch.setattr(record, "CHECKPOINT_EVERY", 0.0)
-    monkeypatch.setattr(record, "CHECKPOINT_SHARE", 0.0)
-    monkeypatch.setattr(record._Writer, "finish", lambda writer, _: writer.abort())
+    monkeypatch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
+    monkeypatch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
     with pytest.raises(Interrupted):
         follow(problem, RANDOM, path, nodes=61, progress=StopAt(30.0), arc=(-3.0, -0.1))
     monkeypatch.undo()
@@ -429,7 +423,7 @@ def test_two_runs_do_not_write_to_one_file(problem, path):
 
 
 def test_a_run_can_be_looked_at_while_it_goes_on(problem, path, monkeypatch):
-    monkeypatch.setattr(record, "LONGEST_WAIT", 0.0)
+    monkeypatch.setattr(writer, "LONGEST_WAIT", 0.0)
     sizes = []
 
     def progress(done: float, total: int) -> None:

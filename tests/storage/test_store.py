@@ -9,15 +9,18 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from samples import PAIR, sample_result
 
 from fastpin.errors import InputError
-from fastpin.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
-from fastpin.loading import LoadHistory
-from fastpin.materials import MATERIALS, Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.state import Cycle, Result, State
-from fastpin.store import load, save, size, to_xarray
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+from fastpin.storage.export import to_xarray
+from fastpin.storage.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
+from fastpin.storage.store import load, save, state_count
+from tests.support.samples import PAIR, sample_result
 
 
 def assert_same(first: Result, second: Result) -> None:
@@ -163,7 +166,7 @@ def test_some_states_alone(tmp_path: Path) -> None:
     result = sample_result([{"P": 1e6 * k} for k in range(1, 8)])
     path = tmp_path / "a.h5"
     save(result, path)
-    assert size(path) == 7
+    assert state_count(path) == 7
     for picked, steps in ((slice(2, 5), [2, 3, 4]), ([0, 6], [0, 6]), ([], []), (slice(-1, None), [6])):
         found = load(path, states=picked)
         assert [state.step for state in found] == steps

@@ -12,13 +12,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-import fastpin.convergence
-from fastpin import Grid, LoadHistory, MaterialPair, Problem, Result, analytic, solve
-from fastpin.casefile import EXAMPLE
-from fastpin.cli import main
-from fastpin.convergence import Convergence, Series, StudyInterrupted, StudyLostError, converge
-from fastpin.convergetable import COLUMNS, text
-from fastpin.errors import ArcError, InputError
+import fastpin.studies.convergence
+from fastpin.casefile.reader import EXAMPLE
+from fastpin.cli.main import main
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.report.convergence import COLUMNS, text
+from fastpin.solver.errors import ArcError
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.studies.convergence import Convergence, QuantitySeries, StudyInterrupted, StudyLostError, converge
+from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi
 CORNERS: list[dict[str, float]] = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}]
@@ -35,7 +42,7 @@ def study(problem: Problem) -> Convergence:
     return converge(problem, CORNERS, GRIDS, (5, 10, 20), increment_nodes=51)
 
 
-def series(study: Convergence, name: str, corner: int = 3, method: int = 0) -> Series:
+def series(study: Convergence, name: str, corner: int = 3, method: int = 0) -> QuantitySeries:
     return next(each for each in study.studies[method].series if (each.name, each.corner) == (name, corner))
 
 
@@ -44,8 +51,8 @@ def series(study: Convergence, name: str, corner: int = 3, method: int = 0) -> S
 
 def test_a_smooth_peak_is_of_second_order(similar: MaterialPair) -> None:
     frictionless = Problem.from_load_parameter(similar, 0.1, 0.0)
-    half = analytic.persson_half_angle(0.1)
-    exact = analytic.persson_pressure(0.0, half)
+    half = closed_forms.persson_half_angle(0.1)
+    exact = closed_forms.persson_pressure(0.0, half)
     found = converge(frictionless, [{"P": 1.0}], (101, 201, 401, 801), arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half))
     peak = series(found, "peak_pressure", 1).estimate
     assert peak.verdict == "observed"
@@ -120,7 +127,7 @@ def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
             raise ArcError("the contact reaches an end")
         return solve(*arguments, grid=grid, **options)
 
-    monkeypatch.setattr(fastpin.convergence, "solve", narrow)
+    monkeypatch.setattr(fastpin.studies.convergence, "solve", narrow)
     converge(problem, CORNERS[:1], GRIDS)
     assert [size for size, _ in spans] == [51, 101, 51, 101, 201]
     assert spans[2][1] > 1.2 * spans[0][1]
@@ -149,7 +156,7 @@ def test_an_arc_too_narrow_for_the_fine_grid_is_widened_for_all(
 def test_input_is_checked_before_anything_is_solved(
     options: dict[str, Any], field: str, words: str, problem: Problem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fastpin.convergence, "solve", None)
+    monkeypatch.setattr(fastpin.studies.convergence, "solve", None)
     with pytest.raises(InputError, match=words) as refused:
         converge(problem, CORNERS, **options)
     assert refused.value.field == field
@@ -176,7 +183,7 @@ def test_a_grid_that_does_not_fit_in_memory_leaves_the_others(
             raise MemoryError
         return solve(*arguments, grid=grid, **options)
 
-    monkeypatch.setattr(fastpin.convergence, "solve", limited)
+    monkeypatch.setattr(fastpin.studies.convergence, "solve", limited)
     with pytest.raises(StudyLostError, match="with 301 nodes: not enough memory") as lost:
         converge(problem, CORNERS, (51, 101, 201, 301))
     assert lost.value.study is not None
@@ -295,7 +302,7 @@ def test_options_are_checked_before_the_work(
     tmp_path: Path,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(fastpin.convergence, "solve", None)
+    monkeypatch.setattr(fastpin.studies.convergence, "solve", None)
     assert main(["converge", str(case), *arguments]) == 2
     err = capsys.readouterr().err
     assert words in err
@@ -311,7 +318,7 @@ def test_an_interrupted_command_hands_out_what_there_is(
     def interrupted(*_: object) -> Convergence:
         raise StudyInterrupted(kept.pop(0))
 
-    monkeypatch.setattr(fastpin.convergence, "converge", interrupted)
+    monkeypatch.setattr(fastpin.studies.convergence, "converge", interrupted)
     csv_file = case.parent / "a.csv"
     assert main(["converge", str(case), "--csv", str(csv_file)]) == 130
     captured = capsys.readouterr()

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from fastpin.extrapolate import LATEST, SAFETY, SAFETY_NOISE, estimate, pair_bar
+from fastpin.states.error_bars import SAFETY, pair_bar
+from fastpin.studies.extrapolate import LATEST, SAFETY_NOISE, estimate
 
 HALVED = [8.0, 4.0, 2.0, 1.0, 0.5]
 UNEVEN = [1.0, 0.7, 0.45, 0.4, 0.15]

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.index import FILE, Index, locked
-from fastpin.keyfigures import KEY_FIGURES
-from fastpin.plan import Plan, Point, parse_plan
-from fastpin.worker import Outcome
+from fastpin.studies.index import FILE, Index, lock_directory
+from fastpin.studies.outcome import KEY_FIGURES, Outcome
+from fastpin.studies.plan import Plan, Point, parse_plan
 
 TEXT = """
 title = "Loads"
@@ -47,7 +46,7 @@ def directory(plan: Plan, tmp_path: Path) -> Path:
 def test_rows_come_back(plan: Plan, directory: Path) -> None:
     with Index(directory) as index:
         rows = index.rows()
-        assert index.noted("title") == "Loads"
+        assert index.read_note("title") == "Loads"
         assert index.fields == dict.fromkeys(plan.fields, "list")
     assert [row["id"] for row in rows] == [point.id for point in plan.points]
     assert [row["status"] for row in rows] == ["done", "failed", "waiting", "waiting"]
@@ -187,17 +186,17 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
 
 def test_a_directory_is_locked_for_one(tmp_path: Path) -> None:
     with (
-        locked(tmp_path),
+        lock_directory(tmp_path),
         pytest.raises(InputError, match="another sweep is running in this directory"),
-        locked(tmp_path),
+        lock_directory(tmp_path),
     ):
         pass
-    with locked(tmp_path):
+    with lock_directory(tmp_path):
         pass
 
 
 def test_a_lock_that_can_not_be_made_is_named() -> None:
-    with pytest.raises(InputError, match="can't be used: unable to open"), locked(Path("/proc/1")):
+    with pytest.raises(InputError, match="can't be used: unable to open"), lock_directory(Path("/proc/1")):
         pass
 
 

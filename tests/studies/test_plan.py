@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin import plan as plan_module
-from fastpin.casefile import EXAMPLE, builtin_case, parse_case
+from fastpin.casefile.reader import EXAMPLE, builtin_case, parse_case
 from fastpin.errors import CaseFileError, InputError
-from fastpin.identity import canonical, run_id
-from fastpin.loading import LOADS
-from fastpin.plan import Plan, parse_plan, read_plan
+from fastpin.model.loads import LOADS
+from fastpin.studies import plan
+from fastpin.studies.identity import canonical, run_id
+from fastpin.studies.plan import Plan, parse_plan, read_plan
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 DIMENSIONLESS = """
 [pin]
 material = "steel"
@@ -385,7 +385,7 @@ def test_a_plan_with_too_many_runs_is_refused_before_they_are_made() -> None:
 
 
 def test_a_flood_of_faults_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan_module, "MAX_FAULTS", 3)
+    monkeypatch.setattr(plan, "MAX_FAULTS", 3)
     found = faults(f"[grid]\ncontact.friction = {[-k for k in range(1, 11)]}")
     assert len(found) == 4
     assert any("and 7 more faults in the runs" in line for line in found)

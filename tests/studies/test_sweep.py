@@ -13,17 +13,19 @@ from typing import Any
 import numpy as np
 import pytest
 from distributed.scheduler import KilledWorker
-from plans import FRICTION, MOMENT, Inline
-from samples import sample_result
 
 import fastpin
-from fastpin import products, store, sweep, worker
 from fastpin.errors import FastpinError, InputError
-from fastpin.index import FILE, locked
-from fastpin.keyfigures import KEY_FIGURES, key_figures
-from fastpin.plan import Plan
-from fastpin.report import interval_from_bottom
-from fastpin.sweep import Summary
+from fastpin.kernels import products
+from fastpin.model.angles import interval_from_bottom
+from fastpin.storage import store
+from fastpin.studies import outcome, sweep, workers
+from fastpin.studies.index import FILE, lock_directory
+from fastpin.studies.outcome import KEY_FIGURES, key_figures
+from fastpin.studies.plan import Plan
+from fastpin.studies.sweep import Summary
+from tests.support.plans import FRICTION, MOMENT, Inline
+from tests.support.samples import sample_result
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +138,7 @@ def open_result() -> fastpin.Result:
 
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = files(copy)
-    monkeypatch.setattr(worker, "solve", None)  # not needed
+    monkeypatch.setattr(workers, "solve", None)  # not needed
     summary = sweep.run(plan, copy, Inline())
     assert (summary.done, len(summary.failed), summary.ended) == (4, 2, 0)
     assert files(copy) == before
@@ -174,7 +176,7 @@ def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
 
 
 def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fastpin.identity.run_id, "__defaults__", ("99",))
+    monkeypatch.setattr(fastpin.studies.identity.run_id, "__defaults__", ("99",))
     later = sweep.parse_plan(MOMENT)
     assert not set(later.runs) & set(plan.runs)
     assert sweep.status(later, copy) == Summary(0, 6, [])
@@ -209,13 +211,13 @@ def test_any_executor_gives_the_same(
 
 
 def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    solve, seen = worker.solve, []
+    solve, seen = workers.solve, []
 
     def watched(*arguments: Any, **options: Any) -> Any:
         seen.append(products._alone.get())
         return solve(*arguments, **options)
 
-    monkeypatch.setattr(worker, "solve", watched)
+    monkeypatch.setattr(workers, "solve", watched)
     sweep.run(plan, tmp_path, Inline())
     assert seen == [True] * 6
     assert not products._alone.get()
@@ -223,14 +225,14 @@ def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monk
 
 def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     errors = iter([MemoryError(), ZeroDivisionError("by nothing")])
-    solve = worker.solve
+    solve = workers.solve
 
     def failing(*arguments: Any, **options: Any) -> Any:
         for error in errors:
             raise error
         return solve(*arguments, **options)
 
-    monkeypatch.setattr(worker, "solve", failing)
+    monkeypatch.setattr(workers, "solve", failing)
     summary = sweep.run(sweep.parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
     assert [reason for _, reason in summary.failed] == ["not enough memory", "ZeroDivisionError: by nothing"]
     assert summary.done == 1
@@ -247,7 +249,7 @@ def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, mo
 
 
 def test_a_worker_of_another_version_is_refused(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(worker, "__version__", "0.0")
+    monkeypatch.setattr(workers, "__version__", "0.0")
     summary = sweep.run(plan, tmp_path, Inline())
     assert summary.failed[0][1] == f"the worker has fastpin 0.0, the sweep {fastpin.__version__}"
 
@@ -311,7 +313,7 @@ def test_arguments_out_of_range(plan: Plan, arguments: dict[str, Any], words: st
 
 
 def test_two_sweeps_in_one_directory_are_refused(plan: Plan, tmp_path: Path) -> None:
-    with locked(tmp_path), pytest.raises(InputError, match="another sweep is running in this directory"):
+    with lock_directory(tmp_path), pytest.raises(InputError, match="another sweep is running in this directory"):
         sweep.run(plan, tmp_path, Inline())
 
 
@@ -367,7 +369,7 @@ def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, t
     other = tmp_path / "other"
     shutil.copytree(copy, other)
     with sweep.Index(other) as index:
-        index.record(worker.Outcome(plan.points[0].id, "lost"))
+        index.record(outcome.Outcome(plan.points[0].id, "lost"))
         index._database.execute("UPDATE runs SET status = 'waiting' WHERE id = ?", [plan.points[1].id])
     for name, order in (("a", (copy, other)), ("b", (other, copy))):
         sweep.merge(order, tmp_path / name)

@@ -16,16 +16,16 @@ from typing import Any
 import numba
 import psutil
 import pytest
-from plans import FRICTION, assert_same_as_serial
 from threadpoolctl import threadpool_info
 
-from fastpin import sweep
-from fastpin.casefile import Case
-from fastpin.cli import main
-from fastpin.plan import Plan, Point
-from fastpin.pool import Pool
+from fastpin.cli.main import main
+from fastpin.model.case import Case
+from fastpin.studies import sweep
+from fastpin.studies.plan import Plan, Point
+from fastpin.studies.workers import Pool
+from tests.support.plans import FRICTION, assert_same_as_serial
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def threads() -> list[int]:

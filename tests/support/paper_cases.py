@@ -11,10 +11,14 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import STICK, Grid, Problem, analytic, solve
-from fastpin.figures.figure10 import stress_unit
-from fastpin.figures.fretting import FRICTION as MU
-from fastpin.figures.tractions import BOTTOM, PAIRS
+from fastpin.kernels.status import STICK
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.paper.figure10 import stress_unit
+from fastpin.paper.fretting import FRICTION as MU
+from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
 
 EVERY_PAIR = pytest.mark.parametrize("pair", PAIRS)
 
@@ -24,7 +28,7 @@ EVERY_PAIR = pytest.mark.parametrize("pair", PAIRS)
 
 def symmetric_arc(load_parameter, extra=0.0):
     """An arc that holds the contact, turned by `extra` to either side."""
-    half = 1.2 * analytic.persson_half_angle(max(load_parameter, 0.0)) + extra
+    half = 1.2 * closed_forms.persson_half_angle(max(load_parameter, 0.0)) + extra
     return BOTTOM - half, BOTTOM + half
 
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 import fastpin
-from fastpin import store
-from fastpin.plan import Plan
-from fastpin.state import State
+from fastpin.states.state import State
+from fastpin.storage import store
+from fastpin.studies.plan import Plan
 
 FRICTION = """
 title = "Friction"

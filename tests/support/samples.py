@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.grid import Grid
-from fastpin.loading import LOADS, LoadHistory, named_load
-from fastpin.materials import MATERIALS, MaterialPair
-from fastpin.problem import Problem
-from fastpin.state import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, Result, State
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS, named_load
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.states.state import State
 
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 

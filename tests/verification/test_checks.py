@@ -11,9 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin import ConvergenceError, analytic, cli_verify, comparison, kernels, solver, verify
-from fastpin.cli import main
-from fastpin.verify import TOLERANCES, TOPICS, Check
+from fastpin.cli.main import main
+from fastpin.kernels import influence
+from fastpin.report.checks import table
+from fastpin.solver import solving
+from fastpin.solver.errors import ConvergenceError
+from fastpin.verification import checks as installation
+from fastpin.verification import closed_forms, finite_elements
+from fastpin.verification.checks import TOLERANCES, TOPICS, Check
 
 MOST_SLACK = 3.0
 ROUNDING = {"mirror", "conditions", "parts"}
@@ -22,7 +27,7 @@ STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting"}
 
 @pytest.fixture(scope="module")
 def checks() -> list[Check]:
-    return verify.verify()
+    return installation.verify()
 
 
 @pytest.fixture
@@ -30,7 +35,7 @@ def only(monkeypatch: pytest.MonkeyPatch) -> object:
     """Leave out all topics but some."""
 
     def choose(*keys: str) -> None:
-        monkeypatch.setattr(verify, "TOPICS", {key: TOPICS[key] for key in keys})
+        monkeypatch.setattr(installation, "TOPICS", {key: TOPICS[key] for key in keys})
 
     return choose
 
@@ -82,7 +87,7 @@ def test_values_and_their_difference_agree(checks: list[Check]) -> None:
 
 
 def test_a_table_in_columns(checks: list[Check]) -> None:
-    lines = cli_verify.table(checks).splitlines()
+    lines = table(checks).splitlines()
     assert max(map(len, lines)) <= 120
     head = next(line for line in lines if "tolerance" in line)
     rows = [line for line in lines if line.endswith(" ok")]
@@ -98,9 +103,9 @@ def test_a_table_in_columns(checks: list[Check]) -> None:
 
 def test_the_document_shows_this_table(checks: list[Check]) -> None:
     """But for what rounding may change: the values and their differences."""
-    document = (Path(__file__).parents[1] / "docs" / "accuracy.md").read_text(encoding="utf-8")
+    document = (Path(__file__).parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8")
     (shown,) = re.findall(r"```text\n(.*?)\n```", document, re.DOTALL)
-    expected = cli_verify.table(checks).splitlines()
+    expected = table(checks).splitlines()
     head = next(line for line in expected if "tolerance" in line)
     values = slice(head.index("reference") - 1, head.index("tolerance"))
     lines = shown.splitlines()
@@ -120,7 +125,7 @@ def test_progress() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        verify.verify(stop)
+        installation.verify(stop)
     total = sum(len(cases) for _, cases in TOPICS.values())
     assert calls == [(0, total), (1, total), (2, total)]
 
@@ -130,8 +135,8 @@ def test_progress() -> None:
 
 def test_a_wrong_closed_form_is_seen(only, monkeypatch, capsys) -> None:
     only("like", "parts")
-    exact = analytic.persson_pressure
-    monkeypatch.setattr(analytic, "persson_pressure", lambda *given: exact(*given) * (1.0 + 2e-5))
+    exact = closed_forms.persson_pressure
+    monkeypatch.setattr(closed_forms, "persson_pressure", lambda *given: exact(*given) * (1.0 + 2e-5))
     assert main(["verify"]) == 1
     lines = table_lines(capsys)
     failed = [line for line in lines if "FAILED" in line]
@@ -144,50 +149,50 @@ def test_a_wrong_closed_form_is_seen(only, monkeypatch, capsys) -> None:
 def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str) -> None:
     """A ten-thousandth too large."""
     only("equations")
-    exact = getattr(kernels, name)
+    exact = getattr(influence, name)
 
     def wrong(*given):
         returned = exact(*given)
         given[-1][...] *= 1.0001
         return returned
 
-    monkeypatch.setattr(kernels, name, wrong)
-    assert not all(check.passed for check in verify.verify())
+    monkeypatch.setattr(influence, name, wrong)
+    assert not all(check.passed for check in installation.verify())
     assert main(["verify"]) == 1
 
 
 def test_a_wrong_reference_is_seen(only, monkeypatch, capsys) -> None:
     only("elements, monotonic")
-    read = comparison.FiniteElements.read
+    read = finite_elements.FiniteElements.read
 
-    def moved(name: str) -> comparison.FiniteElements:
+    def moved(name: str) -> finite_elements.FiniteElements:
         model = read(name)
         model.pressure[:] = np.roll(model.pressure, 1, axis=1)
         return model
 
-    monkeypatch.setattr(verify.FiniteElements, "read", moved)
+    monkeypatch.setattr(installation.FiniteElements, "read", moved)
     assert main(["verify"]) == 1
     assert [line.split()[-1] for line in table_lines(capsys) if " int |d" in line] == ["FAILED", "ok"]
 
 
 def test_a_part_that_is_off_by_rounding_is_seen(only, monkeypatch) -> None:
     only("parts")
-    exact = solver.solve
+    exact = solving.solve
 
     def rounded(problem, history, **options):
         if "start" in options:
             history = [{"Q": history[0]["Q"] * (1.0 + 1e-15)}, *history[1:]]
         return exact(problem, history, **options)
 
-    monkeypatch.setattr(verify, "solve", rounded)
-    checks = verify.verify()
+    monkeypatch.setattr(installation, "solve", rounded)
+    checks = installation.verify()
     assert not any(check.passed for check in checks)
     assert all(check.ours is not None and check.ours > 100.0 for check in checks)
 
 
 def test_what_is_no_number_does_not_pass(only, monkeypatch, capsys, tmp_path) -> None:
     only("half-plane", "conditions")
-    monkeypatch.setattr(analytic, "cattaneo_mindlin_shear", lambda x, *_: math.nan * x)
+    monkeypatch.setattr(closed_forms, "cattaneo_mindlin_shear", lambda x, *_: math.nan * x)
     assert main(["verify", "--json", str(tmp_path / "checks.json")]) == 1
     assert len([line for line in table_lines(capsys) if "nan" in line and "FAILED" in line]) == 7
     document = json.loads((tmp_path / "checks.json").read_text())
@@ -196,14 +201,14 @@ def test_what_is_no_number_does_not_pass(only, monkeypatch, capsys, tmp_path) ->
 
 def test_an_error_is_a_row_that_fails_and_the_others_are_made(only, monkeypatch, capsys) -> None:
     only("like", "conditions")
-    exact = solver.solve
+    exact = solving.solve
 
     def refusing(problem, *given, **options):
         if problem.clearance == 0.1:
             raise ConvergenceError("the statuses\ndo not settle")
         return exact(problem, *given, **options)
 
-    monkeypatch.setattr(verify, "solve", refusing)
+    monkeypatch.setattr(installation, "solve", refusing)
     assert main(["verify"]) == 1
     lines = table_lines(capsys)
     (failed,) = [line for line in lines if "FAILED" in line]
@@ -214,7 +219,7 @@ def test_an_error_is_a_row_that_fails_and_the_others_are_made(only, monkeypatch,
 
 def test_reference_files_that_are_not_there_are_seen(only, monkeypatch, capsys, tmp_path) -> None:
     only("elements, frictionless", "elements, monotonic")
-    monkeypatch.setattr(comparison, "REFERENCE", tmp_path)
+    monkeypatch.setattr(finite_elements, "REFERENCE", tmp_path)
     assert main(["verify"]) == 1
     lines = table_lines(capsys)
     assert len([line for line in lines if "FAILED: FileNotFoundError" in line]) == 2
@@ -223,7 +228,7 @@ def test_reference_files_that_are_not_there_are_seen(only, monkeypatch, capsys, 
 
 def test_without_any_state_the_conditions_do_not_pass(only) -> None:
     only("conditions")
-    (check,) = verify.verify()
+    (check,) = installation.verify()
     assert not check.passed
 
 
@@ -253,7 +258,7 @@ def test_json_beside_the_table(only, capsys, tmp_path) -> None:
 
 
 def test_a_file_that_cannot_be_written_is_found_before_the_work(monkeypatch, capsys, tmp_path) -> None:
-    monkeypatch.setattr(verify, "verify", None)
+    monkeypatch.setattr(installation, "verify", None)
     assert main(["verify", "--json", str(tmp_path / "no" / "checks.json")]) == 2
     assert "does not exist" in capsys.readouterr().err
 

@@ -9,9 +9,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import ellipk, ellipkm1
 
-from fastpin import analytic
 from fastpin.errors import InputError
-from fastpin.materials import Material, MaterialPair
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.verification import closed_forms
 
 PERSSON = [  # L_p, half-angle in degrees, N(0) R/F
     (1e-4, 84.7941, 0.599701),
@@ -25,54 +25,54 @@ PERSSON = [  # L_p, half-angle in degrees, N(0) R/F
 
 @pytest.mark.parametrize(("load_parameter", "degrees", "peak"), PERSSON)
 def test_persson_table(load_parameter, degrees, peak):
-    half_angle = analytic.persson_half_angle(load_parameter)
+    half_angle = closed_forms.persson_half_angle(load_parameter)
     assert math.degrees(half_angle) == pytest.approx(degrees, abs=6e-5)
-    assert analytic.persson_pressure(0.0, half_angle) == pytest.approx(peak, abs=6e-7)
+    assert closed_forms.persson_pressure(0.0, half_angle) == pytest.approx(peak, abs=6e-7)
 
 
 def test_persson_neat_fit():
-    half_angle = analytic.persson_half_angle(0.0)
+    half_angle = closed_forms.persson_half_angle(0.0)
     assert math.tan(half_angle / 2.0) == pytest.approx(0.9135727916, abs=1e-10)
     assert math.degrees(half_angle) == pytest.approx(84.8279456, abs=1e-7)
-    assert analytic.persson_load_parameter(half_angle) == pytest.approx(0.0, abs=1e-15)
+    assert closed_forms.persson_load_parameter(half_angle) == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("mismatch", [-1.0, -0.6, -0.25, 0.0, 0.3, 0.9, 1.0])
 def test_persson_round_trip(mismatch):
     load_parameter = np.concatenate([np.geomspace(1e-6, 1e4, 61), [1e-12, 1e8]])
-    half_angle = analytic.persson_half_angle(load_parameter, mismatch)
-    back = analytic.persson_load_parameter(half_angle, mismatch)
+    half_angle = closed_forms.persson_half_angle(load_parameter, mismatch)
+    back = closed_forms.persson_load_parameter(half_angle, mismatch)
     # relative where L_p is large; where it is small, to the conditioning of half-angles in double precision
     np.testing.assert_allclose(back, load_parameter, rtol=3e-14 if mismatch < 1.0 else 1e-9, atol=3e-16)
 
 
 def test_persson_half_angle_falls_with_the_load_parameter_and_grows_with_mismatch():
     load_parameter = np.concatenate([[-0.05, -1e-3, 0.0], np.geomspace(1e-6, 1e4, 200)])
-    half_angle = analytic.persson_half_angle(load_parameter)
+    half_angle = closed_forms.persson_half_angle(load_parameter)
     assert np.all(np.diff(half_angle) < 0.0)
     assert half_angle[0] > math.radians(84.9)  # interference, yet not all round
-    assert np.all(np.diff(analytic.persson_half_angle(0.1, np.linspace(-1.0, 1.0, 21))) > 0.0)
+    assert np.all(np.diff(closed_forms.persson_half_angle(0.1, np.linspace(-1.0, 1.0, 21))) > 0.0)
 
 
 @pytest.mark.parametrize("mismatch", [-0.5, 0.0, 0.6])
 def test_contact_closes_round_the_pin_at_the_limit(mismatch):
     limit = (mismatch - 1.0) / (4.0 * math.pi)
-    assert analytic.persson_half_angle(limit + 1e-8, mismatch) == pytest.approx(math.pi, abs=1e-2)
+    assert closed_forms.persson_half_angle(limit + 1e-8, mismatch) == pytest.approx(math.pi, abs=1e-2)
     with pytest.raises(InputError, match="all round"):
-        analytic.persson_half_angle(limit - 1e-8, mismatch)
+        closed_forms.persson_half_angle(limit - 1e-8, mismatch)
 
 
 def test_persson_of_like_bodies_is_its_own_formula():
     half_angle = np.linspace(0.1, 3.0, 30)
     b = np.tan(half_angle / 2.0)
     persson = (2.0 - np.log(b**2 + 1.0) - 2.0 * b**4) / (8.0 * np.pi * b**2 * (b**2 + 1.0))
-    np.testing.assert_allclose(analytic.persson_load_parameter(half_angle), persson, rtol=1e-12)
+    np.testing.assert_allclose(closed_forms.persson_load_parameter(half_angle), persson, rtol=1e-12)
 
 
 @pytest.mark.parametrize("half_angle", [0.02, 0.8, 1.48, 2.4])
 def test_persson_pressure_carries_the_load(half_angle):
     force, _ = quad(
-        lambda t: 2.0 * half_angle * t * analytic.persson_pressure(half_angle * (1.0 - t * t), half_angle)
+        lambda t: 2.0 * half_angle * t * closed_forms.persson_pressure(half_angle * (1.0 - t * t), half_angle)
         * 2.0 * math.cos(half_angle * (1.0 - t * t)),
         0.0, 1.0, epsabs=1e-13, epsrel=1e-12,
     )  # fmt: skip
@@ -85,8 +85,8 @@ def test_persson_pressure_against_its_printed_form():
     b, y = math.tan(half_angle / 2.0), np.tan(phi / 2.0)
     r, q = np.sqrt(b**2 - y**2), math.sqrt(b**2 + 1.0)
     printed = 2.0 / np.pi * r / (q * (1.0 + y**2)) + np.log((q + r) / (q - r)) / (2.0 * np.pi * b**2 * (b**2 + 1.0))
-    np.testing.assert_allclose(analytic.persson_pressure(phi, half_angle), printed, rtol=1e-12)
-    assert np.all(analytic.persson_pressure([-math.pi, -1.2, 1.1, 2.0, math.pi], half_angle) == 0.0)
+    np.testing.assert_allclose(closed_forms.persson_pressure(phi, half_angle), printed, rtol=1e-12)
+    assert np.all(closed_forms.persson_pressure([-math.pi, -1.2, 1.1, 2.0, math.pi], half_angle) == 0.0)
 
 
 @pytest.mark.parametrize("mismatch", [-0.7, 0.0, 0.4])
@@ -97,11 +97,11 @@ def test_persson_solves_the_equation_of_frictionless_contact(mismatch):
     s = np.cos((np.arange(n) + 0.5) * np.pi / n)  # N is sqrt(1 - s^2) times a smooth function of phi = half_angle s
     phi = half_angle * s
     area = half_angle * np.pi / n * np.sqrt(1.0 - s**2)
-    pressure = analytic.persson_pressure(phi, half_angle)
+    pressure = closed_forms.persson_pressure(phi, half_angle)
     # int cot((theta - xi)/2) N' dxi: the derivative of int cot((theta - xi)/2) N dxi, with N = (N/root) root
     k = np.arange(1, n + 1) * np.pi / (n + 1)
     node = half_angle * np.cos(k)
-    weight = half_angle * np.pi / (n + 1) * np.sin(k) * analytic.persson_pressure(node, half_angle)
+    weight = half_angle * np.pi / (n + 1) * np.sin(k) * closed_forms.persson_pressure(node, half_angle)
 
     def cauchy(
         theta,
@@ -118,7 +118,7 @@ def test_persson_solves_the_equation_of_frictionless_contact(mismatch):
             + 2.0 * np.sum(area * pressure * np.cos(middle - phi))
             - slope
         )
-    expected = -4.0 * math.pi * analytic.persson_load_parameter(half_angle, mismatch)
+    expected = -4.0 * math.pi * closed_forms.persson_load_parameter(half_angle, mismatch)
     np.testing.assert_allclose(total, expected, atol=2e-5)
 
 
@@ -132,12 +132,12 @@ def test_mismatch_is_the_papers_first_dundurs_parameter():
 
 def test_hertz_is_the_limit_of_persson():
     for load_parameter, tolerance in ((1e2, 2e-3), (1e4, 2e-5), (1e6, 2e-7)):
-        half_angle = analytic.persson_half_angle(load_parameter)
-        assert analytic.hertz_half_angle(load_parameter) == pytest.approx(half_angle, rel=tolerance)
-        peak = analytic.persson_pressure(0.0, half_angle)
-        assert analytic.hertz_peak_pressure(load_parameter) == pytest.approx(peak, rel=tolerance)
+        half_angle = closed_forms.persson_half_angle(load_parameter)
+        assert closed_forms.hertz_half_angle(load_parameter) == pytest.approx(half_angle, rel=tolerance)
+        peak = closed_forms.persson_pressure(0.0, half_angle)
+        assert closed_forms.hertz_peak_pressure(load_parameter) == pytest.approx(peak, rel=tolerance)
     # p0 = 2 F/(pi a)
-    assert analytic.hertz_peak_pressure(3.0) * analytic.hertz_half_angle(3.0) == pytest.approx(2.0 / math.pi)
+    assert closed_forms.hertz_peak_pressure(3.0) * closed_forms.hertz_half_angle(3.0) == pytest.approx(2.0 / math.pi)
 
 
 def force(shear, a):
@@ -152,10 +152,10 @@ def test_cattaneo_mindlin_loading(load_ratio):
     full = mu * math.pi * a * p0 / 2.0
 
     def shear(x):
-        return analytic.cattaneo_mindlin_shear(x, a, p0, mu, load_ratio)
+        return closed_forms.cattaneo_mindlin_shear(x, a, p0, mu, load_ratio)
 
     assert force(shear, a) == pytest.approx(load_ratio * full, abs=1e-6 * full)
-    c = a * analytic.cattaneo_mindlin_stick_ratio(load_ratio)
+    c = a * closed_forms.cattaneo_mindlin_stick_ratio(load_ratio)
     x = np.linspace(-a, a, 401)
     limit = mu * p0 * np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
     slipping = np.abs(x) > c
@@ -169,32 +169,32 @@ def test_cattaneo_mindlin_cycle(branch):
     a, p0, mu, peak = 0.2, 3.0, 0.4, 0.7
     full = mu * math.pi * a * p0 / 2.0
     x = np.linspace(-a, a, 301)
-    first = analytic.cattaneo_mindlin_shear(x, a, p0, mu, peak)
+    first = closed_forms.cattaneo_mindlin_shear(x, a, p0, mu, peak)
     sign = 1.0 if branch == "unloading" else -1.0
     for now in (0.7, 0.2, -0.5, -0.7):
 
         def shear(y, now=now):
-            return analytic.cattaneo_mindlin_shear(y, a, p0, mu, now, peak, branch)
+            return closed_forms.cattaneo_mindlin_shear(y, a, p0, mu, now, peak, branch)
 
         assert force(shear, a) == pytest.approx(now * full, abs=1e-6 * full)
         limit = mu * p0 * np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
         assert np.all(np.abs(shear(x)) <= limit + 1e-12)
     # at a turning point the two branches meet, and complete reversal mirrors the first loading
     np.testing.assert_allclose(
-        analytic.cattaneo_mindlin_shear(x, a, p0, mu, sign * peak, peak, branch), sign * first, atol=1e-12
+        closed_forms.cattaneo_mindlin_shear(x, a, p0, mu, sign * peak, peak, branch), sign * first, atol=1e-12
     )
     np.testing.assert_allclose(
-        analytic.cattaneo_mindlin_shear(x, a, p0, mu, -sign * peak, peak, branch), -sign * first, atol=1e-12
+        closed_forms.cattaneo_mindlin_shear(x, a, p0, mu, -sign * peak, peak, branch), -sign * first, atol=1e-12
     )
 
 
 def test_bulk_stress_shifts_the_stick_zone():
     a, p0, mu, ratio = 1.0, 2.0, 0.5, 0.6
-    e = analytic.bulk_stress_eccentricity(0.4, a, p0, mu, ratio)
+    e = closed_forms.bulk_stress_eccentricity(0.4, a, p0, mu, ratio)
     assert e == pytest.approx(0.1)
     c = a * math.sqrt(1.0 - ratio)
     x = np.array([-e - c, -e - 0.99 * c, -e, -e + 0.99 * c, -e + c])
-    shear = analytic.cattaneo_mindlin_shear(x, a, p0, mu, ratio, eccentricity=e)
+    shear = closed_forms.cattaneo_mindlin_shear(x, a, p0, mu, ratio, eccentricity=e)
     limit = mu * p0 * np.sqrt(1.0 - x**2)
     np.testing.assert_allclose(shear[[0, -1]], limit[[0, -1]], rtol=1e-12)
     assert np.all(shear[1:-1] < limit[1:-1])
@@ -205,13 +205,13 @@ def test_bulk_stress_shifts_the_stick_zone():
             weight = {"weight": "cauchy", "wvar": place} if left < place < right else {}
 
             def integrand(s, kernel=not weight, place=place):
-                shear = analytic.cattaneo_mindlin_shear(s, a, p0, mu, ratio, eccentricity=e)
+                shear = closed_forms.cattaneo_mindlin_shear(s, a, p0, mu, ratio, eccentricity=e)
                 return shear / (s - place) if kernel else shear
 
             value -= quad(integrand, left, right, epsabs=1e-9, limit=200, **weight)[0]
         assert value == pytest.approx(-math.pi * 0.4 / 4.0, abs=1e-5)
     with pytest.raises(InputError, match="bulk_stress"):
-        analytic.bulk_stress_eccentricity(2.0, a, p0, mu, ratio)
+        closed_forms.bulk_stress_eccentricity(2.0, a, p0, mu, ratio)
 
 
 @pytest.mark.parametrize(
@@ -219,44 +219,46 @@ def test_bulk_stress_shifts_the_stick_zone():
     [(0.2, 0.001553), (1 / 3, 0.035922), (0.5, 0.171573), (1.0, 0.707107), (2.0, 0.985171)],
 )
 def test_spence_table(ratio, stick):
-    assert analytic.spence_stick_ratio(ratio) == pytest.approx(stick, abs=6e-7)
+    assert closed_forms.spence_stick_ratio(ratio) == pytest.approx(stick, abs=6e-7)
 
 
 def test_spence_solves_the_equation_of_elliptic_integrals():
     for ratio in np.geomspace(0.05, 8.0, 40):
-        k = analytic.spence_stick_ratio(ratio)
+        k = closed_forms.spence_stick_ratio(ratio)
         assert ellipk(k * k) / ellipkm1(k * k) == pytest.approx(ratio, rel=1e-9 if ratio < 2.0 else 2e-4)
     # k(1/r) is the complementary modulus of k(r)
     r = np.array([0.5, 0.9, 1.0, 1.4])
-    np.testing.assert_allclose(analytic.spence_stick_ratio(r) ** 2 + analytic.spence_stick_ratio(1.0 / r) ** 2, 1.0)
-    assert analytic.spence_stick_ratio(0.0) == 0.0
-    assert analytic.spence_stick_ratio(math.inf) == 1.0
-    assert analytic.spence_stick_ratio(0.5) == pytest.approx(3.0 - 2.0 * math.sqrt(2.0), rel=1e-14)
+    np.testing.assert_allclose(
+        closed_forms.spence_stick_ratio(r) ** 2 + closed_forms.spence_stick_ratio(1.0 / r) ** 2, 1.0
+    )
+    assert closed_forms.spence_stick_ratio(0.0) == 0.0
+    assert closed_forms.spence_stick_ratio(math.inf) == 1.0
+    assert closed_forms.spence_stick_ratio(0.5) == pytest.approx(3.0 - 2.0 * math.sqrt(2.0), rel=1e-14)
 
 
 @pytest.mark.parametrize(
     ("field", "call"),
     [
-        ("half_angle", lambda: analytic.persson_load_parameter(0.0)),
-        ("half_angle", lambda: analytic.persson_load_parameter([0.5, 4.0])),
-        ("mismatch", lambda: analytic.persson_load_parameter(0.5, 1.5)),
-        ("load_parameter", lambda: analytic.persson_half_angle(-1.0)),
-        ("load_parameter", lambda: analytic.persson_half_angle(0.0, 1.0)),
-        ("load_parameter", lambda: analytic.persson_half_angle(math.nan)),
-        ("load_parameter", lambda: analytic.persson_half_angle("much")),
-        ("phi", lambda: analytic.persson_pressure(4.0, 1.0)),
-        ("half_angle", lambda: analytic.persson_pressure(0.0, -1.0)),
-        ("load_parameter", lambda: analytic.hertz_half_angle(0.0)),
-        ("load_parameter", lambda: analytic.hertz_peak_pressure(-1.0)),
-        ("load_ratio", lambda: analytic.cattaneo_mindlin_stick_ratio(1.1)),
-        ("load_ratio", lambda: analytic.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, -0.5)),
-        ("half_width", lambda: analytic.cattaneo_mindlin_shear(0.0, 0.0, 1.0, 0.3, 0.5)),
-        ("peak_ratio", lambda: analytic.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, branch="unloading")),
-        ("load_ratio", lambda: analytic.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, 0.4, "unloading")),
-        ("branch", lambda: analytic.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, branch="sideways")),
-        ("eccentricity", lambda: analytic.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.1, eccentricity=0.5)),
-        ("friction", lambda: analytic.bulk_stress_eccentricity(0.1, 1.0, 1.0, 0.0)),
-        ("mu_over_beta", lambda: analytic.spence_stick_ratio(-0.1)),
+        ("half_angle", lambda: closed_forms.persson_load_parameter(0.0)),
+        ("half_angle", lambda: closed_forms.persson_load_parameter([0.5, 4.0])),
+        ("mismatch", lambda: closed_forms.persson_load_parameter(0.5, 1.5)),
+        ("load_parameter", lambda: closed_forms.persson_half_angle(-1.0)),
+        ("load_parameter", lambda: closed_forms.persson_half_angle(0.0, 1.0)),
+        ("load_parameter", lambda: closed_forms.persson_half_angle(math.nan)),
+        ("load_parameter", lambda: closed_forms.persson_half_angle("much")),
+        ("phi", lambda: closed_forms.persson_pressure(4.0, 1.0)),
+        ("half_angle", lambda: closed_forms.persson_pressure(0.0, -1.0)),
+        ("load_parameter", lambda: closed_forms.hertz_half_angle(0.0)),
+        ("load_parameter", lambda: closed_forms.hertz_peak_pressure(-1.0)),
+        ("load_ratio", lambda: closed_forms.cattaneo_mindlin_stick_ratio(1.1)),
+        ("load_ratio", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, -0.5)),
+        ("half_width", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 0.0, 1.0, 0.3, 0.5)),
+        ("peak_ratio", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, branch="unloading")),
+        ("load_ratio", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, 0.4, "unloading")),
+        ("branch", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.5, branch="sideways")),
+        ("eccentricity", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.1, eccentricity=0.5)),
+        ("friction", lambda: closed_forms.bulk_stress_eccentricity(0.1, 1.0, 1.0, 0.0)),
+        ("mu_over_beta", lambda: closed_forms.spence_stick_ratio(-0.1)),
     ],
 )
 def test_bad_input_names_the_argument(field, call):

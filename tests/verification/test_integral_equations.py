@@ -9,16 +9,17 @@ import math
 
 import numpy as np
 import pytest
-from integrals import log_integrals
 
-from fastpin import analytic, kernels
-from fastpin.comparison import residuals_away
 from fastpin.errors import InputError
-from fastpin.grid import Grid
-from fastpin.integral_equations import cauchy_matrix, residuals
-from fastpin.materials import MATERIALS, Material, MaterialPair
-from fastpin.problem import Problem
-from fastpin.solver import solve
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from fastpin.verification.comparisons import residuals_away
+from fastpin.verification.integral_equations import cauchy_matrix, residuals
+from tests.support.integrals import log_integrals
 
 STEEL = MATERIALS["steel"]
 PAIRS = [
@@ -59,9 +60,9 @@ def rate(errors):
 
 def persson_errors(grid, load_parameter):
     problem = Problem.from_load_parameter(PAIRS[0], load_parameter, 0.0)
-    half_angle = analytic.persson_half_angle(load_parameter)
+    half_angle = closed_forms.persson_half_angle(load_parameter)
     phi = grid.theta + math.pi / 2.0
-    N = analytic.persson_pressure(np.where(np.abs(phi) > math.pi, math.pi, phi), half_angle)
+    N = closed_forms.persson_pressure(np.where(np.abs(phi) > math.pi, math.pi, phi), half_angle)
     none = np.zeros(grid.size)
     radial, tangential = displacements(problem, grid, N, none)
     # the gap (15) is zero at the bottom, where h_d = -Delta
@@ -74,7 +75,7 @@ def persson_errors(grid, load_parameter):
 @pytest.mark.parametrize("load_parameter", [0.05, 0.5])
 @pytest.mark.parametrize("make", [Grid.arc, graded], ids=["uniform", "graded"])
 def test_persson_satisfies_both_equations(make, load_parameter):
-    half_angle = analytic.persson_half_angle(load_parameter)
+    half_angle = closed_forms.persson_half_angle(load_parameter)
     meshes = [make(-math.pi / 2.0 - half_angle, -math.pi / 2.0 + half_angle, n) for n in (41, 81, 161, 321)]
     errors = np.array([persson_errors(grid, load_parameter) for grid in meshes])
     assert np.all(errors[-1] < 1e-4)
@@ -84,7 +85,7 @@ def test_persson_satisfies_both_equations(make, load_parameter):
 
 
 def test_persson_round_the_circle():
-    load_parameter = analytic.persson_load_parameter(0.4 * math.pi)  # the edges are nodes of every mesh
+    load_parameter = closed_forms.persson_load_parameter(0.4 * math.pi)  # the edges are nodes of every mesh
     errors = np.array([persson_errors(Grid.circle(n), load_parameter) for n in (150, 300, 600)])
     assert np.all(errors[-1] < 1e-4)
     assert rate(errors[:, 0]) > 1.35
@@ -94,7 +95,7 @@ def test_persson_round_the_circle():
 def test_a_wrong_state_does_not_satisfy_them():
     grid = Grid.arc(-3.0, -0.1, 321)
     problem = Problem.from_load_parameter(PAIRS[0], 0.05, 0.0)
-    N = analytic.persson_pressure(grid.theta + math.pi / 2.0, analytic.persson_half_angle(0.06))
+    N = closed_forms.persson_pressure(grid.theta + math.pi / 2.0, closed_forms.persson_half_angle(0.06))
     none = np.zeros(grid.size)
     radial, tangential = displacements(problem, grid, N, none)
     delta = np.interp(-math.pi / 2.0, grid.theta, radial)
@@ -180,7 +181,7 @@ def test_cauchy_matrix_picks_the_quick_fill_only_on_uniform_grids():
     ):
         left, right = grid.knots()
         out = np.empty((grid.size, grid.size))
-        kernels.fill_cauchy(grid.theta, left, right, False, grid.closed, out)
+        influence.fill_cauchy(grid.theta, left, right, False, grid.closed, out)
         np.testing.assert_allclose(cauchy_matrix(grid), out, atol=2e-11, equal_nan=True)
 
 

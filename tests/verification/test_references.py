@@ -7,8 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from fastpin import InputError, Material, MaterialPair, Problem, analytic, solve
-from fastpin.comparison import FiniteElements
+from fastpin.errors import InputError
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from fastpin.verification.finite_elements import FiniteElements
 
 BOTTOM = -0.5 * math.pi
 CYCLE = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}, {"Q": -0.275}]
@@ -26,18 +30,18 @@ def half_angle(state):
 @pytest.mark.parametrize("pin_load", ["centre", "body"])
 def test_persson(similar, load_parameter, pin_load):
     state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0, pin_load), [{"P": 1.0}], nodes=400)[-1]
-    exact = analytic.persson_half_angle(load_parameter)
-    assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, exact), rel=1e-5)
+    exact = closed_forms.persson_half_angle(load_parameter)
+    assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, exact), rel=1e-5)
     assert half_angle(state) == pytest.approx(exact, abs=1e-3)
     inside = np.abs(state.theta - BOTTOM) < 0.9 * exact
-    expected = analytic.persson_pressure(state.theta[inside] - BOTTOM, exact)
+    expected = closed_forms.persson_pressure(state.theta[inside] - BOTTOM, exact)
     assert np.abs(state.pressure[inside] - expected).max() < 1e-3 * expected.max()
 
 
 @pytest.mark.parametrize("load_parameter", [0.01, 0.5, 2.0])
 def test_persson_contact_angle_with_many_nodes(similar, load_parameter):
     state = solve(Problem.from_load_parameter(similar, load_parameter, 0.0), [{"P": 1.0}], nodes=1600)[-1]
-    assert half_angle(state) == pytest.approx(analytic.persson_half_angle(load_parameter), abs=1e-4)
+    assert half_angle(state) == pytest.approx(closed_forms.persson_half_angle(load_parameter), abs=1e-4)
 
 
 @pytest.mark.parametrize("alpha", [-0.2, 0.5])
@@ -46,8 +50,8 @@ def test_dissimilar_frictionless_without_coupling(alpha, load_parameter):
     """alpha* = 0: the pressure is Persson's as a function of the contact angle (Ciavarella and Decuzzi)."""
     pair = MaterialPair.from_dundurs(alpha, 0.0, nu_pin=0.3)
     state = solve(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}], nodes=400)[-1]
-    exact = analytic.persson_half_angle(load_parameter, -alpha)
-    assert state.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, exact), rel=1e-5)
+    exact = closed_forms.persson_half_angle(load_parameter, -alpha)
+    assert state.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, exact), rel=1e-5)
     assert half_angle(state) == pytest.approx(exact, abs=1e-3)
 
 
@@ -57,8 +61,8 @@ def test_order_of_edge_and_peak_pressure(similar):
     sizes = np.array([100, 200, 400, 800])
     edge, peak = np.zeros((2, sizes.size))
     for load_parameter in 10.0 ** rng.uniform(-2.0, 0.3, 6):
-        exact = analytic.persson_half_angle(load_parameter)
-        top = analytic.persson_pressure(0.0, exact)
+        exact = closed_forms.persson_half_angle(load_parameter)
+        top = closed_forms.persson_pressure(0.0, exact)
         wide = exact * rng.uniform(1.08, 1.3, 2)
         for k, nodes in enumerate(sizes):
             arc = (BOTTOM - wide[0], BOTTOM + wide[1])

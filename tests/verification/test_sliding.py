@@ -8,20 +8,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fastpin import (
-    MATERIALS,
-    ConvergenceError,
-    Grid,
-    InputError,
-    Material,
-    MaterialPair,
-    NoEquilibriumError,
-    Problem,
-    analytic,
-    solve,
-)
-from fastpin.collocation import System
-from fastpin.sliding import Sliding, solve_sliding
+from fastpin.elasticity.system import System
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from fastpin.verification.sliding import Sliding, solve_sliding
 
 BOTTOM = -0.5 * math.pi
 SIMILAR = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -41,10 +36,10 @@ def in_si(pair: MaterialPair, load_parameter: float, friction: float, **options:
 @pytest.mark.parametrize("load_parameter", [2000.0, 2.0, 0.5, 0.1, 0.01, 1e-4, 0.0, -0.03, -0.07])
 def test_without_friction_it_is_persson(load_parameter):
     found = solve_sliding(Problem.from_load_parameter(SIMILAR, load_parameter, 0.0), {"P": 1.0})
-    half = analytic.persson_half_angle(load_parameter)
+    half = closed_forms.persson_half_angle(load_parameter)
     assert np.asarray(found.contact) - BOTTOM == pytest.approx([-half, half], rel=1e-10)
     phi = half * np.linspace(-0.999, 0.999, 101)
-    expected = analytic.persson_pressure(phi, half)
+    expected = closed_forms.persson_pressure(phi, half)
     assert found.pressure(BOTTOM + phi) == pytest.approx(expected, abs=1e-10 * expected.max())
     assert found.peak_pressure == pytest.approx(expected.max(), rel=1e-10)
     assert found.exponents == (0.5, 0.5)
@@ -57,9 +52,9 @@ def test_without_friction_and_alpha_star_it_is_ciavarella_and_decuzzi(load_param
     pair = MaterialPair(Material(1.0 - mismatch, 0.5), Material(1.0 + mismatch, 0.5))
     assert pair.alpha_star == pytest.approx(0.0, abs=1e-15)
     found = solve_sliding(Problem.from_load_parameter(pair, load_parameter, 0.0), {"P": 1.0})
-    half = analytic.persson_half_angle(load_parameter, mismatch)
+    half = closed_forms.persson_half_angle(load_parameter, mismatch)
     assert found.contact[1] - BOTTOM == pytest.approx(half, rel=1e-10)
-    assert found.peak_pressure == pytest.approx(analytic.persson_pressure(0.0, half), rel=1e-10)
+    assert found.peak_pressure == pytest.approx(closed_forms.persson_pressure(0.0, half), rel=1e-10)
 
 
 @PAIRS
@@ -122,7 +117,7 @@ def test_the_gap_vanishes_with_the_kernels_of_the_solver(pair, slip):
         system = System.build(problem, Grid(theta), 1.0)
         tractions = np.r_[found.pressure(theta), found.shear(theta)]
         vector = np.array([load["P"], load["Q"], 0.0, load["sxx"], load["syy"], 0.0])
-        gap = system.displacement(tractions, np.zeros(3), vector, system.gap0)[:nodes]
+        gap = system.displacement(tractions, np.zeros(3), vector, system.rest_clearance)[:nodes]
         motion = np.column_stack([np.cos(theta), np.sin(theta)])
         rest = gap - motion @ np.linalg.lstsq(motion, gap, rcond=None)[0]
         errors.append(np.abs(rest).max())

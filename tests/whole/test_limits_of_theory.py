@@ -8,22 +8,25 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, Material, MaterialPair, Problem, analytic, paper, solve
-from fastpin.figures import half_plane, rigid_pin
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.paper import catalog, curves, half_plane, rigid_pin
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
 
 
 @cache
-def computed(name: str) -> list[paper.Curve]:
-    script = paper.script(name)
+def computed(name: str) -> list[curves.Curve]:
+    script = catalog.script(name)
     return script.compute(script.LEAST_NODES)
 
 
-def error_curve(quantity: str) -> paper.Curve:
+def error_curve(quantity: str) -> curves.Curve:
     (curve,) = (curve for curve in computed("half-plane") if curve.parameters["quantity"] == quantity)
     return curve
 
 
-def order(curve: paper.Curve, first: float, last: float) -> float:
+def order(curve: curves.Curve, first: float, last: float) -> float:
     """Power of 1/L_p with which the error falls between two load parameters."""
     inside = (curve["L_p"] > 0.99 * first) & (curve["L_p"] < 1.01 * last) & np.isfinite(curve["error"])
     assert np.count_nonzero(inside) >= 3
@@ -142,7 +145,7 @@ def test_bulk_stress_changes_the_curvature(stress, expected):
 def test_unlike_half_planes_without_coupling_are_spences():
     for ratio in (0.5, 1.0, 1.5):
         found = half_plane.unlike_half_planes(ratio * 1e-6, 1e-6)
-        assert found == pytest.approx(analytic.spence_stick_ratio(ratio), rel=3e-5)
+        assert found == pytest.approx(closed_forms.spence_stick_ratio(ratio), rel=3e-5)
 
 
 @pytest.mark.parametrize(
@@ -219,7 +222,7 @@ def test_elastic_pins_tend_to_the_rigid_one_with_the_inverse_of_their_modulus():
 
 @pytest.mark.parametrize(("name", "panels", "lines"), [("half-plane", 4, 23), ("rigid-pin", 2, 18)])
 def test_drawn(name, panels, lines):
-    figure = paper.script(name).draw(computed(name))
+    figure = catalog.script(name).draw(computed(name))
     figure.draw_without_rendering()
     assert len(figure.axes) == panels
     assert sum(len(line.get_xdata()) > 2 for panel in figure.axes for line in panel.lines) == lines

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fastpin import OPEN, STICK, Grid, LoadHistory, Problem, solve
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
-from random_histories import NODES, outcome, random_case
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from scripts.random_histories import NODES, outcome, random_case
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)

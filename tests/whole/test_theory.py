@@ -7,8 +7,16 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from integrals import log_integrals
-from test_green import (
+
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
+from fastpin.verification.integral_equations import cauchy_matrix
+from tests.support.integrals import log_integrals
+from tests.support.potentials import (
     KOLOSOV,
     RADIUS,
     THETA,
@@ -20,9 +28,6 @@ from test_green import (
     plate,
     printed,
 )
-
-from fastpin import MATERIALS, Grid, Material, MaterialPair, Problem, analytic, kernels, solve
-from fastpin.integral_equations import cauchy_matrix
 
 PI = math.pi
 PAIRS = [
@@ -199,7 +204,7 @@ def test_normalised_remote_stress(pair):
 def test_total_pressure_of_the_frictionless_contact(half_angle):
     n = 20000
     t = (np.arange(n) + 0.5) * PI / n
-    total = np.sum(analytic.persson_pressure(half_angle * np.cos(t), half_angle) * np.sin(t)) * half_angle * PI / n
+    total = np.sum(closed_forms.persson_pressure(half_angle * np.cos(t), half_angle) * np.sin(t)) * half_angle * PI / n
     b = math.tan(0.5 * half_angle)
     assert total == pytest.approx((math.log(b * b + 1.0) + 2.0 * b**4) / (b * b * (b * b + 1.0)), rel=1e-7)
 
@@ -220,7 +225,7 @@ def test_interference_pressure(pair):
 def test_kernels_of_half_planes():
     for ratio in (-0.4, 0.0, 0.9):
         for x in (-1e-5, 1e-5):
-            direct, cross = kernels.log_kernels(x, ratio)
+            direct, cross = influence.log_kernels(x, ratio)
             assert direct == pytest.approx(-2.0 * math.log(abs(x)), abs=1e-4)
             assert cross == pytest.approx(-0.5 * PI * ratio * math.copysign(1.0, x), abs=1e-3)
 
@@ -239,7 +244,7 @@ def test_table_of_second_antiderivatives():
         return (1.0 - math.cos(x)) * (log(x) - 1.0) - 0.5 * x * x + math.cos(x)
 
     def SL(x):
-        return -2.0 * kernels.clausen(x) - log(x) * math.sin(x) + 2.0 * math.sin(x)
+        return -2.0 * influence.clausen(x) - log(x) * math.sin(x) + 2.0 * math.sin(x)
 
     def SA(x):
         return -math.cos(x) - 0.5 * x * math.sin(x) + jump(x) * (math.sin(x) - x)
@@ -252,6 +257,6 @@ def test_table_of_second_antiderivatives():
 
     ratio, (a, b, c) = 0.37, (-0.2, 0.1, 0.35)
     for theta in (-2.9, -0.7, -0.1, 0.0, 0.3, 1.4, 3.0):
-        direct, cross = kernels.hat_log(theta - b, b - a, c - b, ratio)
+        direct, cross = influence.hat_log(theta - b, b - a, c - b, ratio)
         assert ratio * hat(SA, theta, a, b, c) - hat(CL, theta, a, b, c) == pytest.approx(direct, abs=1e-9)
         assert ratio * hat(CA, theta, a, b, c) + hat(SL, theta, a, b, c) == pytest.approx(cross, abs=1e-9)

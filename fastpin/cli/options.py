@@ -1,0 +1,200 @@
+"""All commands and their options. Nothing heavy is imported here: help is answered at once.
+
+Each command names the file of this folder and the function in it that do the work.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from fastpin.version import __version__
+
+DEFAULT_KEY_FIGURE = "peak_pressure"
+"""The key figure that a figure of a sweep shows unless another one is chosen."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line."""
+    found = argparse.ArgumentParser(
+        prog="fastpin",
+        description="Frictional contact of an elastic pin in the hole of an elastic plate.",
+        epilog="Start with: fastpin example > case.toml; fastpin run case.toml",
+        allow_abbrev=False,
+    )
+    found.add_argument("--version", action="version", version=f"fastpin {__version__}")
+    commands = found.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    add_case_commands(commands)
+    add_run(commands)
+    add_stored_commands(commands)
+    add_converge(commands)
+    add_sweep(commands)
+    add_paper(commands)
+    add_verify(commands)
+    return found
+
+
+def join_keep_words(arguments: list[str]) -> list[str]:
+    """The arguments with ``--keep every N`` in one word, as ``--keep "every N"``."""
+    for k in range(len(arguments) - 2):
+        if arguments[k : k + 2] == ["--keep", "every"]:
+            return [*arguments[: k + 1], f"every {arguments[k + 2]}", *arguments[k + 3 :]]
+    return arguments
+
+
+def _command(commands: Any, name: str, file: str, function: str, text: str) -> argparse.ArgumentParser:
+    """A command, carried out by a function of a file of this folder."""
+    command: argparse.ArgumentParser = commands.add_parser(name, help=text, allow_abbrev=False)
+    command.set_defaults(command=(file, function))
+    return command
+
+
+def add_case_commands(commands: Any) -> None:
+    """Add ``example`` and ``check``."""
+    _command(commands, "example", "case", "example", "print a commented case file")
+    check = _command(commands, "check", "case", "check", "explain a case file, or list all its faults")
+    check.add_argument("case", type=Path, help="case file (TOML)")
+
+
+def add_run(commands: Any) -> None:
+    """Add ``run``."""
+    run = _command(commands, "run", "run", "run", "solve a case and print its states")
+    run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
+    _add_outputs(run)
+    run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write all states to an HDF5 file as they come")
+    run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
+    run.add_argument(
+        "--keep", metavar="WHICH", help="states to keep: all, corners, cycles or every N corners (default all)"
+    )
+    run.add_argument("--nodes", metavar="N", help="number of nodes, 5 to 20000")
+    run.add_argument("--method", help="path or increment")
+    run.add_argument("--increments", metavar="N", help="increments a step (only with --method increment)")
+    run.add_argument("--arc", metavar="A,B", help="first and last angle of the nodes, rad; the bottom is -1.5708")
+    run.add_argument(
+        "--between", metavar="N", help="more states inside every step: how many, or fractions such as 0.25,0.5"
+    )
+    run.add_argument(
+        "--no-shortcut", dest="shortcut", action="store_false", default=None, help="solve repeated cycles again"
+    )
+    run.add_argument(
+        "--error-bars",
+        action="store_true",
+        default=None,
+        help="also solve on half as many intervals, for error bars (not with -o)",
+    )
+    run.add_argument("--start", metavar="FILE", type=Path, help="continue from the end of this result, with new loads")
+    run.add_argument("--after", metavar="N", type=int, help="with --start: continue from its corner N instead")
+    run.add_argument("--save-after", metavar="N,N", help="with -o: corners from which later runs can start at once")
+
+
+def add_stored_commands(commands: Any) -> None:
+    """Add ``resume`` and ``show``."""
+    resume = _command(commands, "resume", "run", "resume", "continue a run that ended early")
+    resume.add_argument("output", metavar="FILE", type=Path, help="its HDF5 file (run -o FILE)")
+    _add_outputs(resume)
+    show = _command(commands, "show", "run", "show", "print and draw a stored result")
+    show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still go on")
+    _add_outputs(show)
+
+
+def add_converge(commands: Any) -> None:
+    """Add ``converge``."""
+    converge = _command(
+        commands, "converge", "converge", "run", "solve a case on several grids: orders, limits, error bars"
+    )
+    converge.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
+    converge.add_argument(
+        "--nodes", metavar="N,N,N", default="101,201,401,801", help="numbers of nodes (default 101,201,401,801)"
+    )
+    converge.add_argument(
+        "--increments", metavar="N,N,N", help="also run the increment solver, with these numbers of increments a step"
+    )
+    converge.add_argument(
+        "--increment-nodes", metavar="N", type=int, help="its number of nodes (default: the first of 201 or more)"
+    )
+    converge.add_argument(
+        "--corner", metavar="K", type=int, help="corner to study (default: all of up to six, else the last one)"
+    )
+    converge.add_argument("--csv", metavar="FILE", type=Path, help="write all values, orders, limits and error bars")
+    _add_json(converge, "write the study as JSON")
+    converge.add_argument("--plot", metavar="FILE", type=Path, help="write a figure of the last corner (png, pdf, svg)")
+
+
+def add_sweep(commands: Any) -> None:
+    """Add ``sweep`` and ``merge``."""
+    sweep = _command(commands, "sweep", "sweep", "run", "run all cases of a plan that are not finished")
+    sweep.add_argument("plan", type=Path, help="plan (TOML): a case, and the fields that are varied")
+    sweep.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
+    )
+    sweep.add_argument("--status", action="store_true", help="report progress; run nothing")
+    sweep.add_argument("--retry", action="store_true", help="also run again all failed runs")
+    sweep.add_argument("--workers", metavar="N", type=int, help="worker processes (default: one a processor)")
+    sweep.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
+    sweep.add_argument("--shard", metavar="I/N", help="only the I-th of N parts, each in a directory of its own")
+    sweep.add_argument(
+        "--table",
+        metavar="FILE",
+        nargs="?",
+        const="-",
+        help="parameters and key figures: as CSV, or printed where FILE is left out",
+    )
+    sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one key figure (png, pdf or svg)")
+    sweep.add_argument("--value", metavar="NAME", help=f"key figure to plot (default {DEFAULT_KEY_FIGURE})")
+    sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
+    sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis: a map")
+
+    merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
+    merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")
+    merge.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="directory of the whole")
+
+
+def add_paper(commands: Any) -> None:
+    """Add ``paper``."""
+    paper = _command(commands, "paper", "paper", "run", "compute and draw the figures of the paper")
+    paper.add_argument(
+        "--figure",
+        metavar="NAME",
+        action="append",
+        help="a figure's number, 3 to 17, or one of four more: memory, sliding-onset, half-plane, rigid-pin "
+        "(may be repeated; default: all of the paper)",
+    )
+    paper.add_argument("--nodes", type=int, help="number of nodes (default 400)")
+    paper.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
+    )
+
+
+def add_verify(commands: Any) -> None:
+    """Add ``verify``."""
+    verify = _command(
+        commands, "verify", "verify", "run", "check this installation against closed forms and finite elements"
+    )
+    _add_json(verify, "write the checks as JSON")
+
+
+def _add_outputs(command: argparse.ArgumentParser) -> None:
+    """Add the options of all commands that print states."""
+    _add_json(command, "write a summary as JSON")
+    command.add_argument(
+        "--plot",
+        metavar="FILE",
+        nargs="?",
+        const=Path("tractions.png"),
+        type=Path,
+        help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
+    )
+    command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
+    command.add_argument("-v", "--verbose", action="count", default=0, help="log each step; -vv: more")
+
+
+def _add_json(command: argparse.ArgumentParser, text: str) -> None:
+    """Add ``--json [FILE]``."""
+    command.add_argument(
+        "--json",
+        metavar="FILE",
+        nargs="?",
+        const="-",
+        help=f"{text}; without FILE, or with -, to standard output instead of the table",
+    )

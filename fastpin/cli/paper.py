@@ -1,0 +1,41 @@
+"""``fastpin paper``: the figures of the paper."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+from fastpin.cli.progress import bar
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, fail
+from fastpin.errors import InputError
+from fastpin.paper import catalog
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compute and draw figures; say how long each took."""
+    nodes = catalog.NODES if options.nodes is None else options.nodes
+    try:
+        names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
+        catalog.check(names, options.output, nodes)
+    except InputError as error:
+        option = f"--{error.field}" if error.field in vars(options) else error.field
+        raise InputError(option, error.reason) from None
+    finished: list[str] = []
+    try:
+        with bar(len(names), "figure {desc}") as progress_bar:
+            for name in names:
+                began = time.perf_counter()
+                progress_bar.set_description_str(name, refresh=False)
+
+                def progress(part: float) -> None:
+                    progress_bar.update(len(finished) + part - progress_bar.n)
+
+                files = catalog.make(name, options.output, nodes, progress)
+                finished.append(name)
+                seconds = time.perf_counter() - began
+                progress_bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
+    except KeyboardInterrupt:
+        written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
+        return fail(f"interrupted; {written}", EXIT_INTERRUPTED)
+    return EXIT_OK

@@ -1,0 +1,46 @@
+"""States and results in notebooks: a small table and a figure as one piece of HTML."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Sequence
+
+from fastpin.figures.style import MAX_NAMED, spread
+from fastpin.figures.tractions import plot_tractions
+from fastpin.report.states import state_table
+from fastpin.solver.result import Result
+from fastpin.states.state import State
+
+WIDTH = 5.6
+"""Inches of the figure."""
+
+DPI = 110.0
+
+
+def state_html(state: State) -> str:
+    """One state: a table with one row, and its tractions."""
+    return _html([state], "")
+
+
+def result_html(result: Result) -> str:
+    """A result: a table and the tractions of at most six states, the first and the last among them."""
+    if not len(result):
+        return f"<pre>{html.escape(repr(result))}</pre>"
+    states = [result[k] for k in spread(len(result), MAX_NAMED)]
+    left_out = len(result) - len(states)
+    note = f"{len(result):,} states, {left_out:,} of them not shown here" if left_out else ""
+    return _html(states, note)
+
+
+def _html(states: Sequence[State], note: str) -> str:
+    picture = io.BytesIO()
+    plot_tractions(states, width=WIDTH).savefig(picture, format="png", dpi=DPI)
+    image = base64.b64encode(picture.getvalue()).decode("ascii")
+    table = html.escape(state_table(states[0].problem, states))
+    caption = f"<p>{html.escape(note)}</p>" if note else ""
+    return (
+        f'<pre style="font-size: 80%; line-height: 1.25">{table}</pre>{caption}'
+        f'<img alt="pressure and shear traction round the hole" src="data:image/png;base64,{image}">'
+    )

@@ -1,0 +1,137 @@
+"""The house style: colours, dashes, legends, saving."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from fastpin.errors import InputError
+from fastpin.storage.files import check_writable, replacing
+
+# Okabe and Ito's colours, distinct for all kinds of colour vision, without the yellow: too light for a line.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
+
+DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
+    (0, ()),
+    (0, (5.0, 1.6)),
+    (0, (1.2, 1.2)),
+    (0, (5.0, 1.4, 1.2, 1.4)),
+    (0, (8.0, 2.0)),
+    (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
+)
+
+MAX_NAMED = len(COLOURS)
+"""Up to so many states are drawn with a legend; more get a colour scale."""
+
+STYLE: Any = {
+    "font.size": 9.0,
+    "font.family": "sans-serif",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+    "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "mathtext.default": "regular",
+    "svg.fonttype": "none",
+}
+
+
+def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: float) -> Figure:
+    """The figure that ``draw()`` returns, drawn in the house style, and saved if there is a path."""
+    if path is not None:
+        _check_format(Path(path))
+    with mpl.rc_context(STYLE):
+        figure = draw()
+        if path is not None:
+            _save(figure, Path(path), dpi)
+    return figure
+
+
+def spread(count: int, most: int) -> list[int]:
+    """Places of at most so many of `count` things, evenly spread, the first and the last among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
+
+
+Line = dict[str, Any]
+"""How a line is drawn: keywords of ``Axes.plot``."""
+
+
+def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
+    """A line in the house's colours and dashes, of which there are :data:`MAX_NAMED` each; 0 is solid."""
+    return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
+
+
+def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
+    """Save the figure that ``draw(curves)`` returns, drawn in the house style."""
+    draw_and_save(lambda: draw(curves), path, dpi)
+
+
+def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
+    """A figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
+    figure = Figure(figsize=(width, rows * height + 0.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False)
+    for panel in axes.flat:
+        panel.grid(True, color="0.92", linewidth=0.6)
+        panel.set_axisbelow(True)
+    return figure, axes
+
+
+def angle_axis(panel: Axes) -> None:
+    """Ticks at whole parts of a right angle."""
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
+
+
+def key(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
+    """A legend below the panels; each row holds labels with their lines."""
+    columns = max(len(row) for row in rows)
+    entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
+    blank = Line2D([], [], linestyle="none", label=" ")
+    filled: list[Artist] = [row[k] if k < len(row) else blank for k in range(columns) for row in entries]
+    fitted_legend(figure, filled, columns)
+
+
+def _check_format(path: Path) -> None:
+    formats = FigureCanvasAgg.get_supported_filetypes()
+    if path.suffix[1:].lower() not in formats:
+        known = ", ".join(sorted(formats))
+        raise InputError("path", f"a figure's name must end in one of {known}, not {path.name!r}")
+    check_writable(path)
+
+
+def _save(figure: Figure, path: Path, dpi: float) -> None:
+    dated = {"svg": "Date", "pdf": "CreationDate"}.get(path.suffix[1:].lower())
+    with replacing(path) as temporary:
+        figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
+
+
+def fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
+    """A legend below the panels, in a font small enough for the figure's width."""
+    size = 8.0
+    while True:
+        legend = figure.legend(
+            handles=handles,
+            loc="outside lower center",
+            ncols=columns,
+            fontsize=size,
+            handlelength=2.8,
+            columnspacing=2.0,
+        )
+        share = legend.get_window_extent().width / figure.bbox.width
+        if share <= 0.98 or size <= 4.0:
+            return
+        legend.remove()
+        size = max(4.0, size * 0.96 / share)

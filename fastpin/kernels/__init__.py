@@ -1,0 +1,1 @@
+"""Compiled code and BLAS: arrays and numbers in, arrays and a status code out."""

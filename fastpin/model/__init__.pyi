@@ -1,0 +1,9 @@
+from .case import Case as Case
+from .grid import Grid as Grid
+from .history import LoadHistory as LoadHistory
+from .loads import LOADS as LOADS
+from .materials import MATERIALS as MATERIALS
+from .materials import Material as Material
+from .materials import MaterialPair as MaterialPair
+from .options import SolveOptions as SolveOptions
+from .problem import Problem as Problem

@@ -1,0 +1,41 @@
+"""A case: problem, load history, options and title; and the checks of how they go together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from fastpin.errors import InputError
+from fastpin.model.history import LoadHistory
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+
+
+@dataclass(frozen=True)
+class Case:
+    """A problem, its load history and the options of the solver.
+
+    Attributes
+    ----------
+    problem : Problem
+    history : LoadHistory
+    options : SolveOptions
+    title : str
+    """
+
+    problem: Problem
+    history: LoadHistory
+    options: SolveOptions = field(default_factory=SolveOptions)
+    title: str = ""
+
+
+def check_arc(problem: Problem, options: SolveOptions) -> None:
+    """Raise :class:`InputError` if the arc is too short for an interference fit."""
+    if problem.clearance < 0.0 and options.arc is not None and options.arc[1] - options.arc[0] < 2.0 * math.pi:
+        raise InputError("arc", "an interference fit is in contact all round: the arc must span 2 pi, or be left out")
+
+
+def check_keep(history: LoadHistory, options: SolveOptions) -> None:
+    """Raise :class:`InputError` if ends of cycles are to be kept, and the history has no cycles."""
+    if options.keep == "cycles" and not history.longest_cycle:
+        raise InputError("keep", "the history has no cycles: none of its blocks is repeated")

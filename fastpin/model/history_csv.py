@@ -1,0 +1,59 @@
+"""Load corners from a CSV file."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from array import array
+from typing import TextIO
+
+import numpy as np
+
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.checks import number
+from fastpin.model.loads import LOADS, load_index
+
+MOST_FAULTS = 20
+"""Faulty lines of a CSV file that are reported."""
+
+
+def read_corners(file: TextIO, name: str) -> np.ndarray:
+    """The corners of a CSV file, shape (corners, loads). All its faults are raised together."""
+    faults: list[tuple[int, str]] = []
+    header: list[int] | None = None
+    numbers = array("d")  # grows in place, and becomes the table without a copy
+    nothing = array("d", [math.nan] * len(LOADS))
+    for line_number, line in enumerate(file, start=1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        cells = next(csv.reader([line], skipinitialspace=True))
+        if header is None:
+            if len(cells) == 1 and (separator := re.search(r"[;\t]", line)):
+                name_of = {";": "semicolons", "\t": "tabs"}[separator[0]]
+                raise CaseFileError(name, [(line_number, f"cells must be separated by commas, not {name_of}")])
+            try:
+                header = [load_index(cell.strip(), f"column {k}") for k, cell in enumerate(cells, start=1)]
+            except InputError as error:
+                raise CaseFileError(name, [(line_number, error.reason)]) from None
+            if len(set(header)) < len(header):
+                raise CaseFileError(name, [(line_number, "a load is named twice")])
+            continue
+        if len(cells) != len(header):
+            faults.append((line_number, f"{len(cells)} cells where the header has {len(header)}"))
+        else:
+            numbers.extend(nothing)
+            for index, cell in zip(header, cells, strict=True):
+                if cell and not cell.isspace():
+                    try:
+                        numbers[index - len(LOADS)] = number(LOADS[index], float(cell.replace("_", "x")))
+                    except ValueError:
+                        faults.append((line_number, f"{LOADS[index]} must be a finite number, not {cell.strip()!r}"))
+        if len(faults) >= MOST_FAULTS:
+            faults.append((line_number, "that is enough; what follows was not read"))
+            break
+    if faults:
+        raise CaseFileError(name, faults)
+    if not numbers:
+        raise CaseFileError(name, [(0, "holds no load corners")])
+    return np.frombuffer(numbers).reshape(-1, len(LOADS))

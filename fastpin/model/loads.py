@@ -1,0 +1,70 @@
+"""The loads: names, kinds, order in every load vector, and the checks of a corner."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import closest, number
+
+LOAD_KIND = {
+    "P": "force",
+    "Q": "force",
+    "M": "moment",
+    "sxx": "traction",
+    "syy": "traction",
+    "rotation": "rotation",
+}
+"""Every load and its kind of quantity, a key of :func:`fastpin.model.units.units`.
+
+* ``P``: force on the pin downwards (-y), N/m.
+* ``Q``: force on the pin along +x, N/m.
+* ``M``: moment on the pin, counter-clockwise, N (per unit thickness); only for a pin that rotates freely.
+* ``sxx``, ``syy``: remote stresses in the plate, Pa.
+* ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed.
+"""
+
+LOADS = tuple(LOAD_KIND)
+"""Names of the loads, in the order of every load vector."""
+
+P, Q, M, SXX, SYY, ROTATION = range(len(LOADS))
+"""Places of the loads in a load vector."""
+
+REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")
+"""Places of the remote stresses in a load vector."""
+
+Corner = Mapping[str, float]
+"""Loads at a corner of a history, by name."""
+
+
+def load_index(name: object, where: str) -> int:
+    """The place of a load in a load vector.
+
+    Raises
+    ------
+    InputError
+        If there is no such load; the message begins with `where` the name stands.
+    """
+    if name in LOADS:
+        return LOADS.index(str(name))
+    hint = closest(str(name), LOADS)
+    raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")
+
+
+def check_corner(field: str, loads: Corner) -> None:
+    """Raise :class:`InputError` if a load is unknown, or its value is not a finite number."""
+    for name, value in loads.items():
+        load_index(name, field)
+        number(f"{name} of {field}", value)
+
+
+def named_load(vector: np.ndarray) -> dict[str, float]:
+    """A load vector as a dict from load name to value."""
+    return {name: float(value) for name, value in zip(LOADS, vector, strict=True)}
+
+
+def complete_load(given: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """The loads at a corner: `given`, and the `last` value of each load that is not given (NaN)."""
+    return np.where(np.isnan(given), last, given) + 0.0  # -0 is 0

@@ -1,0 +1,66 @@
+"""Units of every kind of quantity, and SI prefixes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.problem import Problem
+
+_SI = {
+    "force": "N/m",
+    "moment": "N",
+    "traction": "Pa",
+    "length": "m",
+    "displacement": "m",
+    "rotation": "rad",
+    "energy": "J/m",
+}
+
+_DIMENSIONLESS = {
+    "force": "F",
+    "moment": "F R",
+    "traction": "F/R",
+    "length": "R",
+    "displacement": "F beta*",
+    "rotation": "F beta*/R",
+    "energy": "F^2 beta*",
+}
+
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
+
+
+def units(problem: Problem) -> dict[str, str]:
+    """The unit of every kind of quantity: SI, or those of the paper for a dimensionless problem."""
+    return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
+
+
+def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
+    """A factor and a unit with an SI prefix in which the largest of `values` reads well.
+
+    Units of a dimensionless problem (those with an F) keep the factor 1.
+    """
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    if "F" in unit or unit == "R" or largest == 0.0:
+        return 1.0, unit
+    exponent = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
+    exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**-exponent, _PREFIXES[exponent] + unit
+
+
+def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
+    """Names of the loads that are not zero throughout."""
+    return [name for name in LOADS if any(load.get(name, 0.0) != 0.0 for load in loads)]
+
+
+def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
+    """The loads that are not zero, with their units."""
+    unit = units(problem)
+    acting = acting_loads([load])
+    return ", ".join(f"{name} = {with_unit(load[name], unit[LOAD_KIND[name]], 5)}" for name in acting) or "no load"
+
+
+def with_unit(value: float, unit: str, digits: int = 6) -> str:
+    factor, label = scaled([value], unit)
+    return f"{value * factor:.{digits}g} {label}"

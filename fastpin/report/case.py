@@ -1,0 +1,103 @@
+"""A case as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from fastpin.model.case import Case
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOAD_KIND, LOADS, named_load
+from fastpin.model.materials import Material
+from fastpin.model.problem import Problem
+from fastpin.model.units import acting_loads, scaled, units, with_unit
+from fastpin.report.table import table, visible_rows
+
+# -- text ----------------------------------------------------------------------------------------------------
+
+
+def describe(case: Case) -> str:
+    """What a case says, as text: pair, contact, loads with their load parameter, solver."""
+    problem, options = case.problem, case.options
+    pair = problem.pair
+    alpha, beta = pair.dundurs()
+    unit = units(problem)
+    if problem.dimensionless:
+        scale = "dimensionless: R = 1, F = 1, beta* = 1"
+        size = f"load parameter {problem.clearance:.4g}"
+    else:
+        scale = f"beta* = {pair.beta_star:.4g} 1/Pa"
+        kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
+        size = f"hole radius {with_unit(problem.hole_radius, 'm')}, {kind} {with_unit(problem.clearance, 'm')}"
+    pin_load = {"centre": "force at the centre", "body": "uniform body force"}[problem.pin_load]
+    hub = ""
+    if problem.rotation == "fixed":
+        hub = (
+            " at the paper's datum"
+            if problem.hub_radius is None
+            else f" at radius {problem.hub_radius:g} {unit['length']}"
+        )
+    if options.arc is None:
+        where = "arc chosen by the solver"
+    elif options.arc[1] - options.arc[0] >= 2.0 * math.pi:
+        where = "on the whole circle"
+    else:
+        where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
+    method = options.method if options.method == "path" else f"increment, {options.increments} a corner"
+    rows = [
+        ("pin", _material(pair.pin, problem.dimensionless)),
+        ("plate", _material(pair.plate, problem.dimensionless)),
+        ("pair", f"plane {pair.plane}, Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
+        ("contact", f"{size}, friction {problem.friction:g}"),
+        ("loading", f"{pin_load}, rotation {problem.rotation}{hub}"),
+        ("solver", f"{method}, {options.nodes} nodes, {where}"),
+        ("loads", f"{len(case.history):,} corners, reached one after the other from no load"),
+    ]
+    if options.keep != "all":
+        rows.append(("states", f"kept: {options.keep}"))
+    text = [case.title] if case.title else []
+    text += [f"{name:8s} {value}" for name, value in rows]
+    return "\n".join([*text, "", _load_table(problem, case.history)])
+
+
+def _load_table(problem: Problem, history: LoadHistory) -> str:
+    """The corners of every block for the first time through."""
+    numbers, counts, loads = [], [], []
+    last = np.zeros(len(LOADS))
+    begin = 1
+    for block in history.blocks:
+        shown = visible_rows(len(block.given))
+        values = LoadHistory.from_array(block.given).values(initial=last)
+        numbers += [f"{begin + k}" for k in shown]
+        counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in shown]
+        loads += [named_load(values[k]) for k in shown]
+        last, begin = values[-1], begin + block.corners
+    columns = [("corner", "", numbers)]
+    if any(counts):
+        columns.append(("times", "", counts))
+    columns += load_columns(problem, loads)
+    forces = [math.hypot(load["P"], load["Q"]) for load in loads]
+    columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
+    return table(columns, sum(len(block.given) for block in history.blocks) - len(loads))
+
+
+def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
+    unit = units(problem)
+    columns = []
+    acting = acting_loads(loads)
+    for name in acting:
+        # Loads of one kind share their unit.
+        alike = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
+        factor, label = scaled(alike, unit[LOAD_KIND[name]])
+        columns.append((name, label, [f"{load[name] * factor:.5g}" for load in loads]))
+    return columns
+
+
+def _material(material: Material, dimensionless: bool) -> str:
+    if material.is_rigid:
+        return "rigid"
+    name = f"{material.name}, " if material.name else ""
+    modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {with_unit(material.E, 'Pa')}"
+    return f"{name}{modulus}, nu = {material.nu:.4g}"

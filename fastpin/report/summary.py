@@ -1,0 +1,105 @@
+"""A case and its states as a JSON-ready dict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.angles import interval_from_bottom
+from fastpin.model.case import Case
+from fastpin.model.history import Block
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import Material
+from fastpin.model.units import units
+from fastpin.solver.result import Result
+from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point
+from fastpin.states.state import State
+from fastpin.version import __version__
+
+# -- machine-readable ----------------------------------------------------------------------------------------
+
+
+def document(
+    case: Case,
+    result: Result | None,
+    error: str | None = None,
+) -> dict[str, Any]:
+    """The case and its states as a dict that goes to JSON as it is; what is not finite becomes None.
+
+    `result` is None where not even a first state was reached, `error` says why it is incomplete. ``units``
+    names the unit of every kind of quantity; angles are in degrees from the bottom of the hole.
+    """
+    problem, pair = case.problem, case.problem.pair
+    alpha, beta = pair.dundurs()
+    found = {
+        "fastpin": __version__,
+        "title": case.title,
+        "complete": result is not None and result.complete,
+        "error": error,
+        "units": {**units(problem), "angle": "deg from the bottom of the hole, counter-clockwise"},
+        "problem": {
+            "pin": _material_summary(pair.pin),
+            "plate": _material_summary(pair.plate),
+            "plane": pair.plane,
+            "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
+            "beta_star": pair.beta_star,
+            "hole_radius": problem.hole_radius,
+            "clearance": problem.clearance,
+            "friction": problem.friction,
+            "pin_load": problem.pin_load,
+            "rotation": problem.rotation,
+            "hub_radius": problem.hub_radius,
+            "dimensionless": problem.dimensionless,
+        },
+        "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},
+        "solver": case.options.keywords(),
+        "statistics": {} if result is None else result.statistics,
+        "states": [] if result is None else [_state_summary(state) for state in result],
+        "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
+    }
+    return plain(found)
+
+
+def _block_summary(block: Block) -> dict[str, Any]:
+    """A block of the history; what a corner does not give is None."""
+    return {"repeat": block.count, "corners": block.given.tolist()}
+
+
+def _material_summary(material: Material) -> dict[str, Any]:
+    modulus = None if material.is_rigid else material.E
+    return {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
+
+
+def _state_summary(state: State) -> dict[str, Any]:
+    resultants, bars = state.resultants, state.error_bars
+    return {
+        "load_point": load_point(state),
+        "step": state.step,
+        "fraction": state.fraction,
+        "load": state.load,
+        "in_contact": state.in_contact,
+        **{name: in_degrees(name, each.of(state)) for name, each in QUANTITIES.items() if name not in resultants},
+        "contact": [interval_from_bottom(*interval) for interval in state.contact],
+        "stick": [interval_from_bottom(*interval) for interval in state.stick],
+        "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
+        "energy": state.energy,
+        "resultants": resultants,
+        "residuals": state.residuals,
+        "error_bars": bars and {name: bar_in_degrees(name, bar) for name, bar in bars.items()},
+    }
+
+
+def plain(value: Any) -> Any:
+    """`value` with numpy's numbers as Python's, tuples as lists and None for what JSON can't say."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,29 @@
+"""Tables of text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+MAX_ROWS = 40
+
+
+def visible_rows(count: int) -> list[int]:
+    """The rows of a table of `count` that are printed: all of a short one, of a long one its beginning and its end."""
+    half = MAX_ROWS // 2
+    return list(range(count)) if count <= MAX_ROWS else [*range(half), *range(count - half, count)]
+
+
+def table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
+    """Lines of text, no more than so many; `hidden` rows in the middle are not even in the columns."""
+    count = len(columns[0][2])
+    middle = min(count, MAX_ROWS) // 2
+    hidden += max(count - MAX_ROWS, 0)
+    if count > MAX_ROWS:
+        columns = [(name, unit, [cells[k] for k in visible_rows(count)]) for name, unit, cells in columns]
+    widths = [max(len(cell) for cell in (name, unit, *cells)) for name, unit, cells in columns]
+    lines = [[name for name, _, _ in columns], [unit for _, unit, _ in columns]]
+    lines += [[cells[k] for _, _, cells in columns] for k in range(len(columns[0][2]))]
+    text = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
+    if hidden:
+        text.insert(2 + middle, f"... {hidden:,} more ...")
+    return "\n".join(text)

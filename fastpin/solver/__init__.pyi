@@ -1,0 +1,9 @@
+from .errors import ArcError as ArcError
+from .errors import ConvergenceError as ConvergenceError
+from .errors import Interrupted as Interrupted
+from .errors import NoEquilibriumError as NoEquilibriumError
+from .errors import SolveError as SolveError
+from .result import Restart as Restart
+from .result import Result as Result
+from .solving import solve as solve
+from .task import Task as Task

@@ -1,0 +1,58 @@
+"""Errors of a solution: the loads could not be followed to their end."""
+
+from __future__ import annotations
+
+from fastpin.errors import FastpinError
+from fastpin.solver.result import Result
+
+CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
+
+
+class SolveError(FastpinError):
+    """A history that could not be followed to its end.
+
+    Attributes
+    ----------
+    step : int
+        Index of the load corner towards which the load was moving.
+    fraction : float
+        Fraction of that step that was solved, 0 to 1.
+    load : dict of str to float
+        The load at which the solution was lost, in the units of the history.
+    result : Result or None
+        Everything that was solved before.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        step: int = -1,
+        fraction: float = 0.0,
+        load: dict[str, float] | None = None,
+        result: Result | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.step = step
+        self.fraction = fraction
+        self.load = dict(load or {})
+        self.result = result
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a solution, which stopped where it can be gone on from; ``result`` is what was solved before."""
+
+    def __init__(self, result: Result | None = None) -> None:
+        super().__init__("interrupted")
+        self.result = result
+
+
+class NoEquilibriumError(SolveError):
+    """No state of the pin carries the load: the pin spins, slides away or loses contact."""
+
+
+class ConvergenceError(SolveError):
+    """The solver could not find a state that meets the contact conditions; none is returned."""
+
+
+class ArcError(SolveError):
+    """The contact reaches an end of the arc of nodes that was given."""

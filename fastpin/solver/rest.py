@@ -1,0 +1,89 @@
+"""The pin without contact: before any load, at rest on the hole, after contact was lost."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import OPEN
+from fastpin.model.loads import ROTATION
+from fastpin.solver.configuration import Configuration, elastic_energy, resting_status, solve_statuses
+from fastpin.solver.errors import ConvergenceError
+
+
+def unloaded_configuration(system: System) -> Configuration:
+    """The configuration before any load: concentric without contact, or an interference fit's uniform pressure."""
+    n = system.grid.size
+    zeros = np.zeros(n)
+    configuration = Configuration(
+        pressure=zeros.copy(),
+        shear=zeros.copy(),
+        gap=np.full(n, system.rest_clearance),
+        slip=zeros.copy(),
+        status=np.full(n, OPEN, dtype=np.int8),
+        motion=np.zeros(3),
+        load=np.zeros(system.loads.shape[1]),
+        origin=np.full(2, np.nan),
+        rest=np.zeros(2),
+        rest_gap=np.full(n, system.rest_clearance),
+        rest_slip=zeros.copy(),
+    )
+    if system.rest_clearance >= 0.0:
+        return configuration
+    configuration.status[:] = resting_status(system)
+    solution = solve_statuses(system, configuration.status, zeros, configuration.load, configuration.rest_gap)
+    if solution is None or solution.pressure.min() <= 0.0:
+        raise ConvergenceError("the uniform pressure of the interference fit was not found; use more nodes")
+    configuration.origin = np.zeros(2)
+    configuration.pressure = solution.pressure
+    configuration.gap = zeros.copy()
+    configuration.work = elastic_energy(system, configuration)  # of the assembly
+    return configuration
+
+
+def release(system: System, last: Configuration, load: np.ndarray) -> Configuration:
+    """The configuration after contact was lost: no tractions, the slip history forgotten, the pin where it was.
+
+    What indentation is left from the last nodes is taken back towards the concentric position.
+    """
+    n = system.grid.size
+    new = last.copy()
+    new.work -= elastic_energy(system, last)  # what elastic energy is left goes back to the loads
+    new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
+    new.load = load.copy()
+    position = new.rest + new.motion[:2]
+    width = hole_gap(system, load, system.grid.theta)[0]
+    approach = -system.motion[:n, :2] @ position
+    deep = approach > width
+    if deep.any():
+        position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
+    put_at_rest(system, new, load, position, system.rest_clearance + system.motion[:n, :2] @ position)
+    return new
+
+
+def put_at_rest(
+    system: System, configuration: Configuration, load: np.ndarray, rest: np.ndarray, rest_gap: np.ndarray
+) -> None:
+    """Let motion and slip count from the position `rest`, in which nothing is in contact, under the load `load`."""
+    n = system.grid.size
+    configuration.rest, configuration.rest_gap = rest, rest_gap
+    held = system.problem.rotation == "fixed"
+    configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
+    free = system.loads @ load
+    configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
+    configuration.slip = free[n:] + configuration.motion[2]
+    configuration.rest_slip = configuration.slip.copy()
+
+
+def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
+    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and its two derivatives."""
+    _, _, _, sxx, syy, _ = load
+    mean, oval = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy)
+    double = 2.0 * np.asarray(theta)
+    return np.array(
+        [
+            system.rest_clearance + mean + oval * np.cos(double),
+            -2.0 * oval * np.sin(double),
+            -4.0 * oval * np.cos(double),
+        ]
+    )

@@ -1,0 +1,209 @@
+"""One history to follow: start it, continue it, branch from it."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from fastpin.elasticity.system import System
+from fastpin.errors import InputError
+from fastpin.model.case import check_arc, check_keep
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.loads import REMOTE, M, P, Q
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.solver.arc import candidate_grids
+from fastpin.solver.errors import CUT_OFF, ArcError, Interrupted
+from fastpin.solver.interrupt import StopRequest, deferred_interrupts
+from fastpin.solver.result import Restart, Result
+from fastpin.solver.run import Progress, Recorder, Run
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A history to follow, and how. Problem, history, options and grid are checked together.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory or sequence of dicts
+    options : SolveOptions
+    grid : Grid, optional
+        The nodes themselves; ``options.nodes`` is then not used.
+    progress : callable, optional
+        Called as ``progress(done_steps, all_steps)`` now and then.
+    stops : frozenset of int
+        Numbers of corners at which the recorder wants to see the run.
+
+    Raises
+    ------
+    InputError
+        Naming the field that can't be used.
+    """
+
+    problem: Problem
+    history: LoadHistory
+    options: SolveOptions = field(default_factory=SolveOptions)
+    grid: Grid | None = None
+    progress: Progress | None = None
+    stops: frozenset[int] = frozenset()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.problem, Problem):
+            raise InputError("problem", f"must be a Problem, not {self.problem!r}")
+        object.__setattr__(self, "history", as_history(self.history))
+        if self.grid is not None:
+            if not isinstance(self.grid, Grid):
+                raise InputError("grid", f"must be a Grid, not {self.grid!r}")
+            if self.problem.clearance < 0.0 and not self.grid.closed:
+                raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
+        check_loads(self.problem, self.history)
+        check_arc(self.problem, self.options)
+        check_keep(self.history, self.options)
+
+    def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
+        """Follow the history from no load, on the first grid that is wide enough.
+
+        With `beyond`, a grid that proved too narrow, only the candidates after that one are tried.
+        """
+        with deferred_interrupts() as request, _one_blas_thread():
+            progress = self._stoppable_progress(request)
+            given = None if beyond is not None else self.grid
+            for grid in replace(self, grid=given).grids(progress):
+                if beyond is not None:
+                    if np.allclose(grid.theta, beyond.theta, rtol=0.0, atol=1e-9):
+                        beyond = None
+                    continue
+                log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
+                try:
+                    self._follow_on(grid, self.force, recorder, None, progress)
+                    return
+                except ArcError:
+                    if self.options.arc is not None or given is not None:
+                        raise
+                    log.info("the contact reaches an end of the arc: once more on a wider one")
+        raise ArcError(CUT_OFF)  # the grid `beyond` is none of the candidates here and now
+
+    def grids(self, progress: Progress | None = None) -> Iterator[Grid]:
+        """The given grid, or candidates to try until the contact stays clear of the ends."""
+        nodes, arc = self.options.nodes, self.options.arc
+        if self.grid is not None:
+            yield self.grid
+        elif arc is None:
+            yield from candidate_grids(self.problem, self.history.distinct(), self.force, nodes, progress)
+        elif arc[1] - arc[0] >= 2.0 * np.pi:
+            yield Grid.circle(nodes, arc[0])
+        else:
+            yield Grid.arc(arc[0], arc[1], nodes)
+
+    @property
+    def force(self) -> float:
+        """The reference force of the history, N/m."""
+        return reference_force(self.problem, self.history.distinct())
+
+    def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+        """Continue the history from a corner where another run stood, on its grid."""
+        with deferred_interrupts() as request, _one_blas_thread():
+            self._follow_on(grid, start.force, recorder, start, self._stoppable_progress(request))
+
+    def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+        """Follow the history from the end of another one, on its grid."""
+        try:
+            self.go_on(recorder, start.elsewhere(), grid)
+        except ArcError as error:
+            error.args = (f"{error}; here it is that of the result to go on from: solve that one on a wider arc",)
+            raise
+
+    def reach(self, start: Restart, grid: Grid) -> Restart:
+        """Follow the history from a corner to its end, keep no states, and return the restart there."""
+        with deferred_interrupts() as request, _one_blas_thread():
+            return self._follow_on(grid, start.force, None, start, self._stoppable_progress(request)).restart()
+
+    def _follow_on(
+        self, grid: Grid, force: float, recorder: Recorder | None, start: Restart | None, progress: Progress
+    ) -> Run:
+        """Follow the history on one grid."""
+        system = System.build(self.problem, grid, force)
+        run = Run(self.history, system, self.options, recorder, progress, start, self.stops)
+        if recorder is not None:
+            recorder.begin(run)
+        run.follow()
+        return run
+
+    def _stoppable_progress(self, request: StopRequest) -> Progress:
+        """The progress callable of a run. It stops the run after Ctrl-C."""
+
+        def progress(done: float, total: int) -> None:
+            if request.stop:
+                raise Interrupted
+            if self.progress is not None:
+                self.progress(done, total)
+
+        return progress
+
+
+def as_history(history: LoadHistory | Sequence[dict[str, float]]) -> LoadHistory:
+    """A load history from corners, or the history itself.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if isinstance(history, LoadHistory):
+        return history
+    if not isinstance(history, Sequence):
+        raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {history!r}")
+    return LoadHistory(history)
+
+
+def check_grid(options: SolveOptions, grid: Grid | None) -> None:
+    """Raise :class:`InputError` if an arc is given together with a grid."""
+    if grid is not None and options.arc is not None:
+        raise InputError("arc", "has no effect where a grid is given; leave it out")
+
+
+def check_start(problem: Problem, start: Result) -> None:
+    """Raise :class:`InputError` if another solution of `problem` can't continue from a result."""
+    if not isinstance(start, Result):
+        raise InputError("start", f"must be a Result, not {start!r}")
+    if start.problem != problem:
+        raise InputError("start", "the result to go on from belongs to another problem")
+    if start.restart is None:
+        raise InputError("start", "this result can't be gone on from: its file holds states only")
+
+
+def reference_force(problem: Problem, values: np.ndarray) -> float:
+    """The force F, N/m, in which a history is made dimensionless: its largest load, rounded up.
+
+    It is R/beta* times a power of two, so that no bit of a result depends on it.
+    """
+    radius = problem.hole_radius
+    pin = float(np.hypot(values[:, P], values[:, Q]).max())
+    moment = float(np.abs(values[:, M]).max()) / radius
+    remote = float(np.abs(values[:, REMOTE]).max()) * radius
+    unit = radius / problem.pair.beta_star
+    largest = max(pin, moment) or remote or unit
+    return unit * 2.0 ** math.ceil(math.log2(largest / unit))
+
+
+def _one_blas_thread() -> AbstractContextManager[Any]:
+    """One thread for BLAS: results don't depend on the number of cores. Large products have two (products.py)."""
+    return _blas_libraries().limit(limits=1, user_api="blas")
+
+
+@functools.cache
+def _blas_libraries() -> ThreadpoolController:
+    """The BLAS libraries of this process. Finding them takes longer than a small step."""
+    return ThreadpoolController()

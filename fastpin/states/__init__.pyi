@@ -1,0 +1,2 @@
+from .quantities import QUANTITIES as QUANTITIES
+from .state import State as State

@@ -1,0 +1,114 @@
+"""Results for other libraries: xarray and pandas."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+
+from fastpin.errors import InputError
+from fastpin.model.loads import LOADS
+from fastpin.model.units import units
+from fastpin.solver.result import Result
+from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.storage.layout import FIELD_KINDS, NODE_FIELDS, RESIDUALS, as_python, load_units, rows_of
+from fastpin.storage.store import open_result
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fraction")
+
+Variables = dict[str, tuple[list[str], Any, dict[str, str]]]
+"""For each variable of a dataset: dimensions, values, attributes."""
+
+
+def to_xarray(source: Result | str | Path) -> xarray.Dataset:
+    """All states as an xarray.Dataset with the dimensions "state" and "theta", and units as attributes.
+
+    A finished file can also be read piece by piece, without fastpin: ``xarray.open_dataset(path, group="states")``.
+
+    Parameters
+    ----------
+    source : Result or path
+        A result, or its HDF5 file.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`; also if xarray is not installed.
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
+    variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(Path(source))
+    dataset = xarray.Dataset(variables, attrs=attributes)
+    return dataset.set_coords([name for name in variables if name in COORDINATES])
+
+
+def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
+    variables: Variables = {}
+    with open_result(path) as file:
+        for name, dataset in file["states"].items():
+            scales = [dimension.values() for dimension in dataset.dims]
+            dimensions = [scale[0].name.rpartition("/")[2] if scale else name for scale in scales]
+            values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
+            unit = dataset.attrs.get("unit", "")
+            variables[name] = dimensions, values, {"units": unit if isinstance(unit, str) else ", ".join(unit)}
+        return variables, {name: as_python(value) for name, value in file.attrs.items()}
+
+
+def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
+    unit, inner = units(result.problem), {"loads": "load_name", "residuals": "residual_name"}
+    variables: Variables = {
+        "state": (["state"], list(range(len(result))), {"units": ""}),
+        "theta": (["theta"], result.grid.theta, {"units": "rad"}),
+        "load_name": (["load_name"], list(LOADS), {"units": ""}),
+        "residual_name": (["residual_name"], list(RESIDUALS), {"units": ""}),
+    }
+    for name, values in rows_of(list(result)).items():
+        second = "theta" if name in NODE_FIELDS else inner.get(name)
+        dimensions = ["state"] if second is None else ["state", second]
+        label = ", ".join(load_units(result.problem)) if name == "loads" else unit.get(FIELD_KINDS.get(name, ""), "")
+        values = values.reshape(len(result), -1) if second is not None else values
+        variables[name] = dimensions, values, {"units": label}
+    return variables, {"complete": result.complete, "method": result.method}
+
+
+def to_dataframe(result: Result) -> pandas.DataFrame:
+    """The reported quantities as a pandas.DataFrame, a row a state.
+
+    Columns are "load_point", "step", "fraction", the loads ("load_P", "load_Q", ...) and the quantities of
+    :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad.
+    ``frame.attrs["units"]`` names the unit of every column.
+
+    Raises
+    ------
+    InputError
+        If pandas is not installed.
+    """
+    try:
+        import pandas
+    except ImportError:
+        raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
+    unit = {**units(result.problem), "angle": "rad", "width": "rad"}
+    named = dict(zip(LOADS, load_units(result.problem), strict=True))
+    rows = [
+        {
+            "load_point": load_point(state),
+            "step": state.step,
+            "fraction": state.fraction,
+            **{f"load_{name}": value for name, value in state.load.items()},
+            **{name: each.of(state) for name, each in QUANTITIES.items()},
+        }
+        for state in result
+    ]
+    frame = pandas.DataFrame(rows)
+    frame.attrs["units"] = {
+        **{f"load_{name}": label for name, label in named.items()},
+        **{name: unit[each.kind] for name, each in QUANTITIES.items()},
+    }
+    return frame

@@ -1,0 +1,343 @@
+"""The recorder that writes a run to a file."""
+
+from __future__ import annotations
+
+import glob
+import logging
+import os
+import time
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.solver.errors import Interrupted, SolveError
+from fastpin.solver.interrupt import deferred_interrupts
+from fastpin.solver.result import Restart
+from fastpin.solver.run import Progress, Run
+from fastpin.solver.task import Task
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+from fastpin.storage.files import replacing
+from fastpin.storage.journal import JournaledFile
+from fastpin.storage.layout import (
+    STATE_ROWS,
+    Rows,
+    append,
+    check_format,
+    count,
+    cycle_rows,
+    option_attributes,
+    read_restart,
+    read_rows,
+    rows_of,
+    write_head,
+    write_restart,
+    write_statistics,
+)
+from fastpin.storage.store import is_unfinished, load, stored_task
+
+log = logging.getLogger(__name__)
+
+MOST_PENDING = 64
+"""States that are written together, at most."""
+
+LONGEST_WAIT = 0.1
+"""Seconds after which a state is in the file, at most, as soon as the next one is there."""
+
+CHECKPOINT_EVERY = 2.0
+"""Seconds between two checkpoints, at least."""
+
+CHECKPOINT_SHARE = 50.0
+"""Times what a checkpoint takes that pass before the next one, at least."""
+
+PIECE = 256
+"""States that are copied together."""
+
+
+def checkpoint_of(path: Path) -> Path:
+    """Where the latest checkpoint of an unfinished run is: beside the file itself, whatever links lead there."""
+    real = Path(os.path.realpath(path))
+    return real.with_name(real.name + ".checkpoint")
+
+
+def clear_checkpoints(path: Path) -> None:
+    """Remove the checkpoint of a run that has ended, and those that a process was killed over."""
+    checkpoint = checkpoint_of(path)
+    for left in (checkpoint, *checkpoint.parent.glob(f".{glob.escape(checkpoint.stem)}.*{checkpoint.suffix}")):
+        left.unlink(missing_ok=True)
+
+
+@contextmanager
+def closing_file(writer: FileRecorder) -> Iterator[None]:
+    """End the file as the run ends."""
+    try:
+        yield
+    except (SolveError, Interrupted) as ended:
+        if writer.finish(str(ended)):
+            ended.result = load(writer.path, states=slice(-1, None))
+        raise
+    except BaseException:
+        writer.abort()
+        raise
+    writer.finish(None)
+
+
+class FileRecorder:
+    """The recorder of a run that writes to a file."""
+
+    def __init__(self, path: Path, task: Task, title: str) -> None:
+        self.path = path
+        self.task = task
+        self.chosen_arc = task.options.arc is None and task.grid is None  # by the solver
+        self.overwrite = True  # also an unfinished run
+        self._title = title
+        self._file: JournaledFile | None = None
+        self._h5: h5py.File
+        self._run: Run
+        self._name = ""
+        self._states: list[Rows] = []  # to be written
+        self._cycles: list[Cycle] = []
+        self._pending = 0
+        self._at = [0, 0]  # states and cycles seen
+        self._stored = [0, 0]  # in the file
+        self._corner = [0, 0]  # at the last corner
+        self._copied: Rows | None = None
+        self._committed = time.monotonic()
+        self._next_checkpoint = 0.0
+        self._seconds = 0.0
+        self._began = time.monotonic()
+
+    def reopen(self, file: JournaledFile, h5: h5py.File, restart_group: h5py.Group) -> None:
+        """Go on with a file; what was found after the restart will be found again."""
+        self._file, self._h5 = file, h5
+        self._name = str(h5.attrs["run"])
+        self._stored = [count(h5["states"]), count(h5["cycles"])]
+        seen = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
+        self._at, self._corner = list(seen), list(seen)
+        self._seconds = float(restart_group["statistics"].attrs.get("seconds", 0.0))
+
+    def check_overwriting(self) -> None:
+        """Raise :class:`InputError` if there is a file that must not be overwritten."""
+        if self.path.exists() and not self.path.is_file():
+            raise InputError(str(self.path), "must be an ordinary file")
+        if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
+            return
+        what = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
+        raise InputError(str(self.path), f"{what} (--overwrite replaces it)")
+
+    # -- what a run calls ----------------------------------------------------------------------------------------
+
+    def begin(self, run: Run) -> None:
+        self._run = run
+        if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.system.grid.theta):
+            return  # reopened
+        if self._file is None:
+            self.check_overwriting()  # once more: the way to here was long
+        self.abort()
+        self._name = uuid.uuid4().hex
+        self._file = JournaledFile(self.path, new=True)
+        self._h5 = h5py.File(self._file, "w")
+        self._states, self._cycles, self._pending = [], [], 0
+        self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
+        task, system = self.task, run.system
+        more = {"title": self._title, "arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
+        write_head(self._h5, task.problem, task.history, system.grid, {**option_attributes(task.options), **more})
+        self._h5.attrs["run"] = self._name
+        for name in ("start", "latest"):
+            self._write_restart(self._h5.create_group(f"restart/{name}"))
+        self._commit()
+
+    def add(self, state: State) -> None:
+        self._copied = None
+        self._put(rows_of([state]))
+
+    def add_cycle(self, cycle: Cycle) -> None:
+        self._at[1] += 1
+        if self._at[1] > self._stored[1]:
+            self._cycles.append(cycle)
+
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        size = len(steps)
+        if self._copied is None or len(self._copied["step"]) != size:
+            self._commit()
+            begin = self._at[0] - size
+            for first in range(0, size, PIECE):
+                last = min(first + PIECE, size)
+                rows = read_rows(self._h5["states"], STATE_ROWS, slice(begin + first, begin + last))
+                self._put_again(rows, steps[first:last], dissipation[first:last], work[first:last])
+                self._copied = rows if size <= PIECE else None
+        else:
+            self._put_again(self._copied, steps, dissipation, work)
+
+    def corner_reached(self) -> None:
+        self._corner = list(self._at)
+        now = time.monotonic()
+        if self._run.corner in self.task.stops and str(self._run.corner) not in self._h5["restart"]:
+            self._write_restart(self._h5.create_group(f"restart/{self._run.corner}"))
+            self._commit()
+        elif now - self._committed > LONGEST_WAIT:
+            self._commit()
+        if now > self._next_checkpoint:
+            if self._next_checkpoint:
+                self._commit()
+                self._write_checkpoint()
+            took = time.monotonic() - now
+            self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * took)
+
+    # -- the file ------------------------------------------------------------------------------------------------
+
+    def finish(self, error: str | None) -> bool:
+        """End the file with what the run has found, and why it ended early; False if it had not even begun."""
+        if self._file is None:
+            return False
+        try:
+            with deferred_interrupts():
+                self._finish(error)
+        except BaseException:
+            self.abort()
+            raise
+        return True
+
+    def _finish(self, error: str | None) -> None:
+        run = self._run
+        if self._pending:
+            self._commit()
+        del self._h5["restart/latest"]
+        self._write_restart(self._h5.create_group("restart/latest"))
+        write_statistics(self._h5, {**run.statistics, "seconds": self._all_seconds()})
+        self._h5.attrs["complete"] = run.complete
+        self._h5.attrs.pop("error", None)
+        if error is not None:
+            self._h5.attrs["error"] = error
+        self._commit()
+        self._close()
+        clear_checkpoints(self.path)
+
+    def abort(self) -> None:
+        """Leave the file as it was after the last transaction."""
+        if self._file is not None:
+            self._file.abandon()
+            self._close()
+
+    def _close(self) -> None:
+        assert self._file is not None
+        file, self._file = self._file, None
+        try:
+            self._h5.close()
+            file.commit()
+        finally:
+            file.release()
+
+    def _put(self, rows: Rows) -> None:
+        """Take rows that follow on those before; those that are in the file already are the same."""
+        size = len(rows["step"])
+        known = min(max(self._stored[0] - self._at[0], 0), size)
+        if known:
+            self._compare(rows, known)
+            rows = {name: array[known:] for name, array in rows.items()}
+        self._at[0] += size
+        if size > known:
+            self._states.append(rows)
+            self._pending += size - known
+            if self._pending >= MOST_PENDING or time.monotonic() - self._committed > LONGEST_WAIT:
+                self._commit()
+
+    def _put_again(self, rows: Rows, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        self._put({**rows, "step": steps, "dissipation": dissipation, "work": work})
+
+    def _compare(self, rows: Rows, known: int) -> None:
+        stored = self._h5["states/pressure"][self._at[0] : self._at[0] + known]
+        if not np.array_equal(stored, rows["pressure"][:known]):
+            log.warning("%s: states found again differ from those in the file: another machine or version?", self.path)
+
+    def _commit(self) -> None:
+        """Write what is pending and end the transaction."""
+        assert self._file is not None
+        try:
+            if self._states:
+                rows = {name: np.concatenate([part[name] for part in self._states]) for name in self._states[0]}
+                append(self._h5["states"], rows)
+            if self._cycles:
+                append(self._h5["cycles"], cycle_rows(self._cycles))
+            self._h5.flush()
+            self._file.commit()
+        except OSError:
+            self.abort()
+            raise
+        self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]
+        self._states, self._cycles, self._pending = [], [], 0
+        self._committed = time.monotonic()
+        log.debug("%d states in the file", self._stored[0])
+
+    def _write_restart(self, group: h5py.Group) -> None:
+        write_restart(group, self._run.restart())
+        group["statistics"].attrs["seconds"] = self._all_seconds()
+        group.attrs.update(states=self._corner[0], cycles=self._corner[1])
+
+    def _write_checkpoint(self) -> None:
+        with replacing(checkpoint_of(self.path)) as temporary, h5py.File(temporary, "w") as file:
+            file.attrs["run"] = self._name
+            self._write_restart(file.create_group("restart"))
+        log.debug("checkpoint after corner %d", self._run.corner)
+
+    def _all_seconds(self) -> float:
+        return self._seconds + time.monotonic() - self._began
+
+
+def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart]:
+    """The writer of an unfinished run, and where the run goes on."""
+    file = JournaledFile(path, new=False)
+    try:
+        if path.stat().st_size == 0:
+            raise InputError(str(path), "is empty: its run ended before it had begun; start it again")
+        try:
+            h5 = h5py.File(file, "r+")
+        except OSError:
+            raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
+        try:
+            check_format(h5, str(path))
+            if "run" not in h5.attrs:
+                raise InputError(str(path), "was not written by a run, there is nothing to go on with")
+            if h5.attrs["complete"]:
+                raise InputError(str(path), "holds a finished run, there is nothing to go on with")
+            task = replace(stored_task(h5), progress=progress)
+            options = h5["solver"].attrs
+            writer = FileRecorder(path, task, str(options["title"]))
+            writer.chosen_arc = bool(options["arc_chosen"])
+            restart = _latest(path, h5, lambda group: writer.reopen(file, h5, group))
+            h5.attrs.pop("error", None)
+            return writer, restart
+        except BaseException:
+            file.abandon()
+            h5.close()
+            raise
+    except BaseException:
+        file.release()
+        raise
+
+
+def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Restart:
+    """The latest restart of a run: of its checkpoint, or else of the file itself."""
+    inside = h5["restart/latest"]
+    try:
+        with h5py.File(checkpoint_of(path), "r") as checkpoint:
+            group: Any = checkpoint["restart"]
+            same_run = checkpoint.attrs["run"] == h5.attrs["run"]
+            if same_run and group.attrs["corner"] >= inside.attrs["corner"]:
+                restart = read_restart(group)
+                use(group)
+                return restart
+    except FileNotFoundError:
+        pass
+    except (OSError, KeyError):
+        log.warning("%s can't be read: going on from an earlier corner", checkpoint_of(path))
+    restart = read_restart(inside)
+    use(inside)
+    return restart

@@ -1,0 +1,325 @@
+"""The rules of the layout: which file may import which, how large files and functions may be.
+
+Each rule is a function from a :class:`Tree` to the sentences that say where it is broken. CONTRIBUTING.md explains them.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+RANKS = {
+    "kernels": 1,
+    "model": 2,
+    "elasticity": 3,
+    "states": 3,
+    "casefile": 3,
+    "solver": 4,
+    "verification": 5,
+    "storage": 5,
+    "studies": 6,
+    "report": 7,
+    "figures": 8,
+    "paper": 9,
+    "cli": 10,
+}
+"""Every folder and its rank. A file imports from its own folder and from lower ranks."""
+
+ROOT_FILES = ("errors", "version")
+"""Files of rank 0, beside the folders."""
+
+HOMES = {
+    "numba": ("kernels",),
+    "ctypes": ("kernels",),
+    "matplotlib": ("figures", "paper"),
+    "h5py": ("storage",),
+    "tomllib": ("casefile",),
+    "sqlite3": ("studies",),
+    "multiprocessing": ("studies",),
+    "argparse": ("cli",),
+    "tqdm": ("cli",),
+}
+"""Packages that only some folders may import."""
+
+OPTIONAL = ("xarray", "pandas", "distributed")
+"""Packages that may be missing. They are imported inside functions."""
+
+MOST_LINES = 600
+MOST_FUNCTION_LINES = 50
+MOST_PARAMETERS = 8
+MOST_PUBLIC_NAMES = 40
+
+UPWARD = {
+    "states/state.py": "State shows itself in notebooks",
+    "solver/result.py": "Result plots, saves and shows itself",
+}
+"""Files that call the public face of fastpin inside functions, and why."""
+
+LOCAL_IMPORTS = {"cli/main.py": "a command imports its own part only"}
+"""Files that import fastpin inside functions, and why."""
+
+LONG_FUNCTIONS: dict[str, str] = {}
+"""Functions of more lines, and why."""
+
+MANY_PARAMETERS: dict[str, str] = {
+    "solver/solving.py solve": "the options are spelt out for help and completion",
+}
+"""Functions of more parameters, and why."""
+
+
+@dataclass(frozen=True)
+class Import:
+    """One imported name: the file, the line, the module and the name (empty for ``import module``)."""
+
+    file: str
+    line: int
+    module: str
+    name: str
+    inside: bool
+
+
+class Tree:
+    """The package's files, parsed. ``root`` is the folder that holds ``fastpin/``."""
+
+    def __init__(self, root: Path) -> None:
+        self.package = root / "fastpin"
+        paths = sorted(self.package.rglob("*.py")) + sorted(self.package.rglob("*.pyi"))
+        self.trees = {str(path.relative_to(self.package)): ast.parse(path.read_text("utf-8")) for path in paths}
+        self.lines = {str(path.relative_to(self.package)): len(path.read_text("utf-8").splitlines()) for path in paths}
+
+    @cached_property
+    def imports(self) -> list[Import]:
+        """All imports, those under TYPE_CHECKING and inside functions too."""
+        found = []
+        for file, tree in self.trees.items():
+            if file.endswith(".pyi"):
+                continue
+            inside = {
+                id(node)
+                for function in ast.walk(tree)
+                if isinstance(function, ast.FunctionDef)
+                for node in ast.walk(function)
+            }
+            for node in ast.walk(tree):
+                if isinstance(node, ast.Import):
+                    for alias in node.names:
+                        found.append(Import(file, node.lineno, alias.name, "", id(node) in inside))
+                elif isinstance(node, ast.ImportFrom):
+                    module = "." * node.level + (node.module or "")
+                    for alias in node.names:
+                        found.append(Import(file, node.lineno, module, alias.name, id(node) in inside))
+        return found
+
+    def target(self, one: Import) -> str | None:
+        """The file of the package that an import names; None for other packages, "" for the public face."""
+        if one.module.split(".")[0] != "fastpin":
+            return None
+        parts = one.module.split(".")[1:]
+        for candidate in ([*parts, one.name], parts):
+            path = "/".join(part for part in candidate if part)
+            for file in (f"{path}.py", f"{path}/__init__.py"):
+                if file in self.trees:
+                    return file if file != "__init__.py" else ""
+        return ""
+
+    def functions(self) -> Iterator[tuple[str, ast.FunctionDef]]:
+        """Every function with its name, such as ``solver/run.py Run.follow``."""
+        for file, tree in self.trees.items():
+            if file.endswith(".pyi"):
+                continue
+            for node in tree.body:
+                if isinstance(node, ast.FunctionDef):
+                    yield f"{file} {node.name}", node
+                elif isinstance(node, ast.ClassDef):
+                    for inner in node.body:
+                        if isinstance(inner, ast.FunctionDef):
+                            yield f"{file} {node.name}.{inner.name}", inner
+
+
+def rank(file: str) -> int:
+    """The rank of a file; the public face and ``python -m fastpin`` are above all."""
+    folder, slash, _ = file.partition("/")
+    if slash:
+        return RANKS[folder]
+    return 0 if file.removesuffix(".py") in ROOT_FILES else max(RANKS.values()) + 1
+
+
+def _folder(file: str) -> str:
+    return file.partition("/")[0] if "/" in file else ""
+
+
+def known_folders(tree: Tree) -> Iterator[str]:
+    """Every folder has a rank, and every rank a folder."""
+    folders = {file.partition("/")[0] for file in tree.trees if "/" in file}
+    yield from (f"{folder}/ has no rank" for folder in sorted(folders - set(RANKS)))
+    yield from (f"{folder}/ is missing" for folder in sorted(set(RANKS) - folders))
+    yield from (f"{file} lies in a folder inside a folder" for file in tree.trees if file.count("/") > 1)
+
+
+def one_direction(tree: Tree) -> Iterator[str]:
+    """A file imports from its own folder and from lower ranks."""
+    for one in tree.imports:
+        target = tree.target(one)
+        if target is None or one.file in ("__init__.py", "__main__.py"):
+            continue
+        if target == "":
+            if not (one.inside and one.file in UPWARD and one.module == "fastpin"):
+                yield f"{one.file}:{one.line} imports the public face"
+        elif _folder(target) != _folder(one.file) and rank(target) >= rank(one.file):
+            yield f"{one.file}:{one.line} imports {target}, which is not of a lower rank"
+        elif _folder(target) == "" and rank(target) >= rank(one.file) and rank(one.file) > 0:
+            yield f"{one.file}:{one.line} imports {target}"
+
+
+def no_circles(tree: Tree) -> Iterator[str]:
+    """No file imports itself through others."""
+    edges: dict[str, set[str]] = {}
+    for one in tree.imports:
+        target = tree.target(one)
+        if target:
+            edges.setdefault(one.file, set()).add(target)
+
+    def reached(file: str) -> set[str]:
+        found, waiting = set(), [file]
+        while waiting:
+            for target in edges.get(waiting.pop(), ()):
+                if target not in found:
+                    found.add(target)
+                    waiting.append(target)
+        return found
+
+    yield from (f"{file} imports itself through others" for file in sorted(edges) if file in reached(file))
+
+
+def kernels_alone(tree: Tree) -> Iterator[str]:
+    """Kernels import nothing of fastpin but kernels; compiled functions call compiled functions of their own file."""
+    for one in tree.imports:
+        target = tree.target(one)
+        if _folder(one.file) == "kernels" and target is not None and _folder(target) != "kernels":
+            yield f"{one.file}:{one.line} imports {one.module}"
+    compiled = {file: _compiled_functions(tree.trees[file]) for file in tree.trees if _folder(file) == "kernels"}
+    everywhere = {name for names in compiled.values() for name in names}
+    for file, own in compiled.items():
+        for name, function in own.items():
+            for node in ast.walk(function):
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                    if node.func.id in everywhere - set(own):
+                        yield f"{file}:{node.lineno} {name} calls {node.func.id} of another file"
+
+
+def _compiled_functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
+    return {
+        node.name: node
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef)
+        and any(isinstance(mark, ast.Name) and mark.id in ("compiled", "inner") for mark in node.decorator_list)
+    }
+
+
+def one_home(tree: Tree) -> Iterator[str]:
+    """Some packages are imported in one place only, and ``print`` is called in cli/ only."""
+    for one in tree.imports:
+        homes = HOMES.get(one.module.split(".")[0])
+        if homes is not None and _folder(one.file) not in homes:
+            yield f"{one.file}:{one.line} imports {one.module}, whose home is {' and '.join(homes)}"
+    for file, parsed in tree.trees.items():
+        for node in ast.walk(parsed):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print":
+                if _folder(file) != "cli":
+                    yield f"{file}:{node.lineno} prints"
+
+
+def nothing_private(tree: Tree) -> Iterator[str]:
+    """No name with an underscore crosses a file."""
+    for one in tree.imports:
+        if tree.target(one) is not None and one.name.startswith("_") and not one.name.startswith("__"):
+            yield f"{one.file}:{one.line} imports {one.name} of {one.module}"
+    modules = {(one.file, one.name) for one in tree.imports if tree.target(one) and one.name and _is_module(tree, one)}
+    for file, parsed in tree.trees.items():
+        for node in ast.walk(parsed):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                if (file, node.value.id) in modules and node.attr.startswith("_"):
+                    yield f"{file}:{node.lineno} reaches for {node.value.id}.{node.attr}"
+
+
+def _is_module(tree: Tree, one: Import) -> bool:
+    path = "/".join([*one.module.split(".")[1:], one.name])
+    return f"{path}.py" in tree.trees
+
+
+def imports_at_the_top(tree: Tree) -> Iterator[str]:
+    """Imports stand at the top, but for optional packages, the chosen command and the public face."""
+    for one in tree.imports:
+        if not one.inside or one.module.split(".")[0] in OPTIONAL:
+            continue
+        if one.file in LOCAL_IMPORTS or (one.file in UPWARD and one.module == "fastpin"):
+            continue
+        yield f"{one.file}:{one.line} imports {one.module} inside a function"
+
+
+def small(tree: Tree) -> Iterator[str]:
+    """Files, functions and lists of parameters stay small."""
+    for file, lines in tree.lines.items():
+        if lines > MOST_LINES:
+            yield f"{file} has {lines} lines"
+    for name, function in tree.functions():
+        if name not in LONG_FUNCTIONS and _folder(name) != "kernels" and _code_lines(function) > MOST_FUNCTION_LINES:
+            yield f"{name} has {_code_lines(function)} lines"
+        arguments = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+        given = [argument.arg for argument in arguments if argument.arg not in ("self", "cls")]
+        if name not in MANY_PARAMETERS and _folder(name) != "kernels" and len(given) > MOST_PARAMETERS:
+            yield f"{name} has {len(given)} parameters"
+    known = {name for name, _ in tree.functions()}
+    yield from (
+        f"{name} is excepted, but not there" for name in (*LONG_FUNCTIONS, *MANY_PARAMETERS) if name not in known
+    )
+
+
+def _code_lines(function: ast.FunctionDef) -> int:
+    """Lines of a function without its docstring."""
+    first = function.body[0]
+    lines = (function.end_lineno or 0) - function.lineno + 1
+    if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
+        lines -= (first.end_lineno or 0) - first.lineno + 1
+    return lines
+
+
+def exceptions_used(tree: Tree) -> Iterator[str]:
+    """Every exception from a rule is still needed."""
+    for file in (*UPWARD, *LOCAL_IMPORTS):
+        if not any(one.file == file and one.inside for one in tree.imports):
+            yield f"{file} is excepted, but imports nothing inside a function"
+    for name, function in tree.functions():
+        if name in LONG_FUNCTIONS and _code_lines(function) <= MOST_FUNCTION_LINES:
+            yield f"{name} is excepted, but short"
+
+
+def sentences_in_folders(tree: Tree) -> Iterator[str]:
+    """The docstring of each folder's ``__init__`` says in one line what the folder holds."""
+    for folder in RANKS:
+        text = ast.get_docstring(tree.trees.get(f"{folder}/__init__.py", ast.Module([], [])))
+        if not text or not text.splitlines()[0].endswith("."):
+            yield f"{folder}/__init__.py has no sentence"
+
+
+RULES: tuple[Callable[[Tree], Iterator[str]], ...] = (
+    known_folders,
+    one_direction,
+    no_circles,
+    kernels_alone,
+    one_home,
+    nothing_private,
+    imports_at_the_top,
+    small,
+    exceptions_used,
+    sentences_in_folders,
+)
+
+
+def broken(root: Path) -> list[str]:
+    """All sentences of all rules."""
+    tree = Tree(root)
+    return [f"{rule.__name__}: {sentence}" for rule in RULES for sentence in rule(tree)]

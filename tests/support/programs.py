@@ -1,0 +1,47 @@
+"""Load programs that become periodic, and comparisons of results bit by bit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fastpin.model.history import LoadHistory
+from fastpin.solver.result import Result
+
+CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
+FIELDS = ("pressure", "shear", "gap", "slip", "status")
+NUMBERS = ("step", "fraction", "load", "dx", "dy", "rotation", "dissipation", "work", "energy", "residuals")
+
+
+def q(*values: float) -> LoadHistory:
+    return LoadHistory.from_array(np.array(values)[:, None], ["Q"])
+
+
+P = LoadHistory([{"P": 1.0}])
+RANDOM = np.random.default_rng(0).uniform(-0.28, 0.28, 40)
+PROGRAMS = {
+    "cycles": LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 25),
+    "corners": LoadHistory([{"P": 1.0}, *CYCLE * 25, {"Q": 0.1}]),
+    "two levels": P + (q(0.2, -0.2).repeated(5) + q(0.3, -0.3).repeated(3)).repeated(8) + q(0.1),
+    "spectrum": P + q(*RANDOM, 0.3).repeated(5),
+    "cycles, then corners": P + (q(0.3, -0.3).repeated(4) + q(0.1, 0.2, 0.1)).repeated(5),
+    "loads that come back": P + q(0.2, -0.2).repeated(12) + (q(0.3, -0.3) + q(0.1, -0.1).repeated(5)).repeated(6),
+    "begins inside a period": P
+    + (q(*[0.2, -0.2] * 4) + q(0.2, -0.2, 0.2, -0.2, 0.2, -0.2, 0.3).repeated(2)).repeated(3),
+    "begins before a period": P + (q(*[0.2, -0.2] * 3, 0.2) + q(*[-0.2, 0.2] * 3, -0.2, 0.3).repeated(2)).repeated(3),
+    "minus zero": P + q(*[0.2, 0.0] * 6, -0.0, 0.2, -0.0),
+    "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(10),
+}
+
+
+def assert_same(one: Result, other: Result) -> None:
+    assert len(one) == len(other)
+    for first, second in zip(one, other, strict=True):
+        for name in FIELDS:
+            assert np.array_equal(getattr(first, name), getattr(second, name)), (name, first.step)
+        for name in NUMBERS:
+            assert getattr(first, name) == getattr(second, name), (name, first.step)
+
+
+def known(result: Result) -> list[tuple]:
+    """Cycles, without whether they were solved; as text, where what is not known is equal to itself."""
+    return [tuple(map(repr, cycle[:-1])) for cycle in result.cycles]
