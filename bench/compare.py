@@ -1,18 +1,19 @@
 """The path against the increment solver at equal error, over one steady cycle: ``python bench/compare.py``.
 
-1. The path solver, from few nodes to many; errors against the largest number. The mesh error is that of both solvers.
-2. The increment solver on one coarse grid, from few increments to many, against the path on the same grid: the error
-   of the increments alone, which hardly depends on the grid.
+1. The path solver, from few nodes to many, with errors against the largest number. Both solvers have this mesh error.
+2. The increment solver on one coarse grid, from few increments to many, against the path on the same grid. This is the
+   error of the increments alone; it hardly depends on the grid.
 3. For every quantity the fewest nodes and increments from which on its error stays below the tolerance, and the times
-   of a cycle with these. Both solvers get the same nodes, although the increment solver would need more, as it has
-   the errors of the mesh and of the increments.
+   of a cycle with these. Both solvers get the same nodes. The increment solver would need more, since it has the errors
+   of the mesh and of the increments.
 
-The largest number of nodes is not exact either. If errors are first order, it is off by at most the largest
-error times nodes, over its own nodes: the row "reference". Where that is more than the tolerance, the nodes that are
-needed are marked uncertain; this holds for peak T, which is read at a node where an earlier border has left a kink.
+The largest number of nodes is not exact either. If errors are first order, its error is at most the largest error times
+nodes, over its own nodes: the row "reference". If this is more than the tolerance, the needed nodes are marked
+uncertain. This happens for peak T: it is read at a node where an earlier border has left a kink.
 
-Where a cycle in increments would take longer than ``--longest`` seconds, its time is the cost of an increment of that
-size on that grid, the mean of some increments at five places of a step, times their number.
+A cycle in increments may take longer than ``--longest`` seconds. Its time is then estimated: the cost of an increment
+of that size on that grid times the number of increments. The cost is the mean of some increments at five places of a
+step.
 """
 
 from __future__ import annotations
@@ -28,25 +29,32 @@ import numpy as np
 import fastpin
 
 QUANTITIES = ("peak N", "peak T", "int T", "int abs T")
+"""The compared quantities."""
+
 PATH_SIZES = (101, 151, 201, 301, 401, 501, 601, 701, 801, 1001, 1201, 1601)
+"""Numbers of nodes of the path solver."""
+
 COUNTS = (10, 20, 40, 80, 160, 320, 640, 1280)
+"""Numbers of increments a step."""
+
 PLACES = (0.0, 0.2, 0.4, 0.6, 0.8)
-"""Fractions of the step from +Q to -Q at which the cost of an increment is sampled."""
+"""Fractions of the step from +Q to -Q with samples of the cost of an increment."""
 
 SAMPLED = 4
-"""Increments at each of them."""
+"""Increments at each place."""
 
 Values = np.ndarray
-"""The quantities (columns) in the states at the ends of both steps of a cycle (rows)."""
+"""Quantities at the ends of both steps of a cycle, shape (2, quantities)."""
 
 
 def steady_cycle(nodes: int, **options: Any) -> fastpin.Result:
-    """One cycle after the same solver has come to the steady state."""
+    """Solve one cycle from the steady state of the same solver."""
     steady = fastpin.solve(cases.PROBLEM, cases.STEADY, nodes=nodes, arc=cases.ARC, **options)
     return fastpin.solve(cases.PROBLEM, cases.CYCLE, start=steady, **options)
 
 
 def values(result: fastpin.Result) -> Values:
+    """Return the quantities in the states of a cycle, shape (2, quantities)."""
     weights = result.grid.weights
     return np.array(
         [
@@ -57,19 +65,19 @@ def values(result: fastpin.Result) -> Values:
 
 
 def errors(found: Values, exact: Values, total_pressure: float) -> np.ndarray:
-    """Largest error of each quantity in the cycle: peaks in parts of peak N, integrals in parts of int N."""
+    """Return the largest error of each quantity in the cycle, of peaks relative to peak N, of integrals to int N."""
     scales = np.array([exact[:, 0].min(), exact[:, 0].min(), total_pressure, total_pressure])
     return np.abs(found - exact).max(axis=0) / scales
 
 
 def sufficient(tried: Sequence[int], error: Sequence[float], tolerance: float) -> int | None:
-    """The smallest number from which on the error stays within the tolerance; None if there is none."""
+    """Return the smallest number from which on the error stays within the tolerance; None if there is none."""
     good = list(itertools.takewhile(lambda pair: pair[1] <= tolerance, reversed(list(zip(tried, error, strict=True)))))
     return good[-1][0] if good else None
 
 
 def increment_cycle_seconds(nodes: int, increments: int) -> float:
-    """Estimated time of a cycle in increments, from some of them at several places of a step."""
+    """Estimate the seconds of a cycle in increments, from some increments at several places of a step."""
     way = 2.0 * cases.AMPLITUDE
     seconds = 0.0
     for place in PLACES:
@@ -83,7 +91,7 @@ def increment_cycle_seconds(nodes: int, increments: int) -> float:
 
 
 def timed_increments(nodes: int, increments: int, longest: float) -> tuple[float, str]:
-    """Seconds of a cycle in increments, and whether they were measured."""
+    """Return the seconds of a cycle in increments, and "measured" or "estimated"."""
     estimate = increment_cycle_seconds(nodes, increments)
     if estimate > longest:
         return estimate, "estimated"
@@ -93,12 +101,13 @@ def timed_increments(nodes: int, increments: int, longest: float) -> tuple[float
 
 
 def path_seconds(nodes: int) -> float:
-    """The shortest of three times of a cycle."""
+    """Return the shortest of three times of a cycle by the path solver, seconds."""
     start = cases.steady_state(nodes)
     return min(fastpin.solve(cases.PROBLEM, cases.CYCLE, start=start).statistics["seconds"] for _ in range(3))
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    """Print a Markdown table."""
     print("\n| " + " | ".join(header) + " |")
     print("|" + "---|" * len(header))
     for row in rows:
@@ -106,7 +115,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
 
 
 def study(tried: Sequence[int], solved: Callable[[int], fastpin.Result], exact: Values, name: str) -> np.ndarray:
-    """Errors, shape (tried, quantities), and their table."""
+    """Solve with every number, print the table of errors, and return them, shape (tried, quantities)."""
     found = []
     for number in tried:
         result = solved(number)
@@ -117,11 +126,12 @@ def study(tried: Sequence[int], solved: Callable[[int], fastpin.Result], exact: 
 
 
 def reference_errors(sizes: Sequence[int], mesh: np.ndarray, reference: int) -> np.ndarray:
-    """What the reference may be off by in every quantity, if errors are at least first order."""
+    """Return the largest possible error of the reference in every quantity, if errors are at least first order."""
     return (np.asarray(sizes)[:, None] * mesh).max(axis=0) / reference
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tolerance", type=float, default=1e-4)
     parser.add_argument("--reference", type=int, default=2401, help="nodes of the solution that counts as exact")

@@ -1,4 +1,4 @@
-"""What all benchmarks share: the sizes, the compilation before the clock runs, and what is stored with the times."""
+"""Common parts of all benchmarks: sizes, compilation before the clock runs, and the facts stored with the times."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from threadpoolctl import threadpool_info
 import fastpin
 
 MACHINE_KEYS = ("machine", "python_implementation", "python_version", "system")
-"""What is kept of the description of the machine; its name is nobody's business."""
+"""Facts about the machine that are stored. Its name is private and not stored."""
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Benchmarks that take `nodes` run at all sizes."""
+    """Run benchmarks with an argument `nodes` at all sizes."""
     if "nodes" in metafunc.fixturenames:
         metafunc.parametrize("nodes", cases.sizes(timed=not metafunc.config.getoption("benchmark_disable")))
 
@@ -44,13 +44,13 @@ def pytest_benchmark_update_machine_info(config: pytest.Config, machine_info: di
 
 
 def describe_library(library: dict[str, Any]) -> str:
-    """Name, version and kernels of a BLAS library, without its path."""
+    """Return name, version and kernels of a BLAS library, without its path."""
     parts = (library["internal_api"], library.get("version"), library.get("architecture"))
     return " ".join(str(part) for part in parts if part)
 
 
 def pytest_benchmark_update_json(config: pytest.Config, benchmarks: Any, output_json: dict[str, Any]) -> None:
-    """Drop the times of the single rounds, which make the file large, and the names of directory and branch."""
+    """Drop the times of single rounds, which make the file large, and the names of directory and branch."""
     output_json["commit_info"] = {key: output_json["commit_info"].get(key) for key in ("id", "dirty")}
     for entry in output_json["benchmarks"]:
         entry["stats"].pop("data", None)
@@ -66,15 +66,17 @@ def _compiled() -> None:
 
 
 Timed = Callable[..., Any]
+"""The type of the fixture :func:`timed`."""
 
 
 @pytest.fixture
 def timed(benchmark: Any) -> Timed:
-    """``timed(function, nodes, setup=None, watch=False, least=2, **info)``: time it in rounds, at least `least`.
+    """Time a function in rounds: ``timed(function, nodes, setup=None, watch=False, least=2, **info)``.
 
-    Returns what the function returned. `setup` is called before every round, outside the timing, and returns the
-    argument. `info` is stored; with `watch` also the processors in use, as a limit on threads does not tell how many
-    there are and whether others left them free.
+    There are at least `least` rounds. `setup` is called before every round, outside the timing, and returns the
+    argument of the function. `info` is stored with the times. With `watch` the number of processors in use is stored,
+    too: a limit on threads does not tell how many threads there are, and whether other processes left them free. The
+    result is the result of the function.
     """
 
     def run(
@@ -100,7 +102,10 @@ def timed(benchmark: Any) -> Timed:
 
 
 def watched(function: Callable[..., Any], spent: list[tuple[float, float]]) -> Callable[..., Any]:
-    """The function, which then also notes its wall time and the processors' time, of all threads."""
+    """Return the function with a watch. Every call adds its wall time and the processor time of all threads to `spent`.
+
+    Both are in seconds.
+    """
 
     def run(*arguments: Any) -> Any:
         began = time.perf_counter(), time.process_time()

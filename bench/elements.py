@@ -1,7 +1,8 @@
-"""The load and three half cycles, timed beside the error of the shear: ``python bench/elements.py``.
+"""The load and three half cycles: times and errors of the shear, ``python bench/elements.py``.
 
-The case is that of ``cases.py`` from no load on: P, then Q = +, -, + 0.275. The error is the integral of the difference
-of the shear from that on the finest grid, in parts of the integral of the shear; the largest of the four states.
+The problem is the main case of ``cases.py``, from no load on: P, then Q = +, -, + 0.275. The error compares the shear
+with the shear on the finest grid: the integral of the absolute difference over the integral of the absolute shear. The
+largest of the four states counts.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ ROUNDS = 3
 
 
 def shear_error(state: fastpin.State, exact: fastpin.State) -> float:
-    """Integral of the difference over the integral of the shear, on the nodes of the finer state."""
+    """Return int |difference of T| over int |T|, on the nodes of the finer state."""
     shear = np.interp(exact.theta, state.theta, state.shear)
     weights = exact.grid.weights
     return float(weights @ np.abs(shear - exact.shear) / (weights @ np.abs(exact.shear)))
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--reference", type=int, default=3201, help="nodes of the solution that counts as exact")
     options = parser.parse_args()

@@ -1,6 +1,6 @@
 """Wall time of a long history of cycles that are all different: ``python bench/history.py [--cycles 1000]``.
 
-The processor's time is printed too: where it is much less than the seconds, the machine was busy with something else.
+The processor time is printed, too. If it is much less than the wall time, the machine was busy with other work.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import fastpin
 
 
 def follow(cycles: int, nodes: int) -> fastpin.Result:
-    """The variable history from the steady state, with a progress bar."""
+    """Solve the variable history from the steady state, with a progress bar."""
     history = cases.variable_cycles(cycles)
     start = cases.steady_state(nodes)
     with tqdm(total=cycles, unit="cycle") as bar:
@@ -28,6 +28,7 @@ def follow(cycles: int, nodes: int) -> fastpin.Result:
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cycles", type=int, default=1000)
     parser.add_argument("--nodes", type=int, default=401)

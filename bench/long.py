@@ -1,8 +1,9 @@
 """Memory and time of a long history that is stored as it goes: ``python bench/long.py [--corners 100000]``.
 
-The loads are different at every corner. A thread notes the resident memory and the number of corners twice a second;
-they go to bench/results/long.csv and a figure. Run it with ``--nodes 201 --corners 100000`` for the numbers of
-docs/histories.md, which takes a quarter of an hour; ``--keep`` and ``--output`` as in ``fastpin run``.
+The loads are different at every corner. A thread notes the resident memory and the number of corners twice a second.
+``--write`` writes them to bench/results/long.csv and draws a figure. The numbers of docs/histories.md come from
+``--nodes 201 --corners 100000``, which takes a quarter of an hour. ``--keep`` and ``--output`` are as in
+``fastpin run``.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ from pathlib import Path
 
 import cases
 import numpy as np
+from matplotlib.figure import Figure
 from tqdm import tqdm
 
 import fastpin
-from fastpin.figures import style, tractions
+from fastpin.figures import style
 from fastpin.storage import store
 from fastpin.storage.recording import record
 
@@ -31,13 +33,13 @@ NAMES = ("seconds", "corners", "memory_mb", "file_mb")
 
 
 def history(corners: int) -> fastpin.LoadHistory:
-    """The press load, then a tangential load that is another one at every corner."""
+    """Return the history: P, then a random Q at every corner."""
     force = np.random.default_rng(0).uniform(-0.275, 0.275, (corners - 1, 1))
     return fastpin.LoadHistory([{"P": 1.0}]) + fastpin.LoadHistory.from_array(force, ["Q"])
 
 
 class Watch(threading.Thread):
-    """Notes how far the run is, and how large."""
+    """A thread that notes seconds, corners, resident memory and size of the file, MB, twice a second."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(daemon=True)
@@ -48,23 +50,26 @@ class Watch(threading.Thread):
         self._began = time.perf_counter()
 
     def run(self) -> None:
+        """Add a row twice a second until the end."""
         while not self._ended.wait(0.5):
             self.note()
 
     def note(self) -> None:
+        """Add a row."""
         pages = int(Path("/proc/self/statm").read_text().split()[1])
         memory = pages * os.sysconf("SC_PAGE_SIZE") / 2.0**20
         size = self._path.stat().st_size / 2.0**20 if self._path.exists() else 0.0
         self.rows.append((time.perf_counter() - self._began, self.corners, memory, size))
 
     def end(self) -> None:
+        """Add the last row and stop."""
         self.note()
         self._ended.set()
         self.join()
 
 
 def follow(corners: int, nodes: int, keep: str, path: Path) -> list[tuple[float, float, float, float]]:
-    """The run; rows of seconds, corners, memory and size of the file, MB."""
+    """Run the history. Return rows of seconds, corners, memory and size of the file, MB."""
     watch = Watch(path)
     watch.start()
     with tqdm(total=corners, unit="corner", smoothing=0.0, disable=None) as bar:
@@ -78,8 +83,8 @@ def follow(corners: int, nodes: int, keep: str, path: Path) -> list[tuple[float,
     return watch.rows
 
 
-def draw(columns: dict[str, np.ndarray]) -> tractions.Figure:
-    """Memory, corners and size of the file against time."""
+def draw(columns: dict[str, np.ndarray]) -> Figure:
+    """Draw memory, corners and size of the file against time."""
     figure, axes = style.panels(1, 2, height=2.6)
     minutes = columns["seconds"] / 60.0
     axes[0, 0].plot(minutes, columns["memory_mb"], **style.line(0))
@@ -95,6 +100,7 @@ def draw(columns: dict[str, np.ndarray]) -> tractions.Figure:
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--corners", type=int, default=100_000)
     parser.add_argument("--nodes", type=int, default=201)
@@ -113,7 +119,7 @@ def main() -> None:
         began = time.process_time()
         rows = follow(options.corners, options.nodes, options.keep, path)
         processor = time.process_time() - began
-        states = store.size(path)
+        states = store.state_count(path)
         last = store.load(path, states=[states - 1])[0]
     columns = dict(zip(NAMES, np.array(rows).T, strict=True))
     begun = columns["corners"] > 0.01 * options.corners

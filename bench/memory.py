@@ -1,7 +1,8 @@
 """Peak memory of the first load, the way to the steady state and one cycle: ``python bench/memory.py NODES``.
 
-Prints JSON: the peak of the whole process, and of that what Python, the libraries and the compiled code take, found at
-61 nodes. Run it twice: where code has to be compiled first, that part is larger. Each size needs a process of its own.
+It prints JSON: the peak of the whole process in MB, and the part above the baseline, in MB and in matrices of 2n rows
+and columns. The baseline is the memory of Python, the libraries and the compiled code, measured at 61 nodes. Run it
+twice: compiling raises the baseline. Each size needs its own process.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ import fastpin
 
 
 def peak_memory() -> float:
-    """Largest resident memory of this process so far, MB.
+    """Return the largest resident memory of this process so far, MB.
 
-    Linux also charges to ``ru_maxrss`` what the process that started this one had; its own count does not.
+    On Linux ``ru_maxrss`` includes the memory of the process that started this one. ``VmHWM`` does not.
     """
     status = Path("/proc/self/status")
     if status.exists():
@@ -29,11 +30,12 @@ def peak_memory() -> float:
 
 
 def cycle(nodes: int) -> None:
-    """From no load to the steady state, and once round."""
+    """Solve from no load to the steady state, and one cycle."""
     fastpin.solve(cases.PROBLEM, cases.CYCLE, start=cases.steady_state(nodes))
 
 
 def main() -> None:
+    """Measure one size and print the numbers."""
     nodes = int(sys.argv[1])
     cycle(61)
     baseline = peak_memory()

@@ -3,10 +3,10 @@
     pytest bench --benchmark-json=bench/results/NAME.json
     python bench/report.py                       tables of the newest file in bench/results
     python bench/report.py FILE.json --figure docs/figures/performance.png
-    python bench/report.py --write               tables into README.md and docs/performance.md, and the figure
+    python bench/report.py --write               tables into docs/performance.md, and the figure
 
-``--write`` replaces what stands between ``<!-- benchmark: NAME -->`` and ``<!-- /benchmark -->``; NAME is machine,
-sizes, limits, others, start-up or slopes. All ratios are of times from one file. A time is that of the fastest round.
+``--write`` replaces the text between ``<!-- benchmark: NAME -->`` and ``<!-- /benchmark -->``. NAME is machine, sizes,
+limits, others, start-up or slopes. All ratios are of times from one file. Times are of the fastest round.
 """
 
 from __future__ import annotations
@@ -22,24 +22,28 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.figures import style
+
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = Path(__file__).resolve().parent / "results"
-DOCUMENTS = (ROOT / "README.md", ROOT / "docs" / "performance.md")
+DOCUMENTS = (ROOT / "docs" / "performance.md",)
 FIGURE = ROOT / "docs" / "figures" / "performance.png"
 
 FIT_FROM = 401
-"""Slopes are fitted to sizes from here on; below, a call costs more than its arithmetic."""
+"""Smallest size for the fit of slopes. At smaller sizes a call costs more than its arithmetic."""
 
 LEAST_SHARE = 0.85
-"""Processors a thread that a reference must have had for its time to count."""
+"""Fewest processors for each thread during a reference. With fewer, its time does not count."""
 
 Stored = dict[str, Any]
+"""A file of pytest-benchmark."""
+
 Series = dict[int, float]
-"""A number for each number of nodes."""
+"""A value for each number of nodes."""
 
 
 def select(stored: Stored, group: str, **parameters: Any) -> dict[int, dict[str, Any]]:
-    """The benchmarks of a group with these parameters, by the number of nodes (0 where they have none)."""
+    """Return the benchmarks of a group with these parameters, by the number of nodes (0 if they have none)."""
     chosen = {}
     for entry in stored["benchmarks"]:
         given = entry["params"] or {}
@@ -49,59 +53,61 @@ def select(stored: Stored, group: str, **parameters: Any) -> dict[int, dict[str,
 
 
 def seconds(stored: Stored, group: str, **parameters: Any) -> Series:
-    """The fastest round of each size."""
+    """Return the seconds of the fastest round of each size."""
     return {nodes: entry["stats"]["min"] for nodes, entry in select(stored, group, **parameters).items()}
 
 
 def recorded(stored: Stored, group: str, name: str, **parameters: Any) -> Series:
-    """A number that was stored with the times."""
+    """Return a number that was stored with the times, by size."""
     entries = select(stored, group, **parameters).items()
     return {nodes: entry["extra_info"][name] for nodes, entry in entries if name in entry["extra_info"]}
 
 
 def disturbed(stored: Stored, group: str, threads: int) -> list[int]:
-    """Sizes from FIT_FROM on at which the threads did not get their processors: others were at work."""
+    """Return the sizes from FIT_FROM on at which other processes took processors from the threads."""
     used = recorded(stored, group, "processors", threads=threads)
     return [nodes for nodes, value in used.items() if nodes >= FIT_FROM and value < LEAST_SHARE * threads]
 
 
 def reference(stored: Stored, threads: int, group: str = "LAPACK solve") -> Series:
-    """Times of a reference, without the sizes at which it was disturbed: a slow one would flatter the solver."""
+    """Return the times of a reference, without the disturbed sizes: a slow reference would flatter the solver."""
     times = seconds(stored, group, threads=threads)
     return {nodes: times[nodes] for nodes in times if nodes not in disturbed(stored, group, threads)}
 
 
 def ratio(above: Series, below: Series) -> Series:
+    """Return above / below for the sizes of both."""
     return {nodes: above[nodes] / below[nodes] for nodes in above if nodes in below}
 
 
 def scaled(series: Series, factor: float) -> Series:
+    """Return factor * series."""
     return {nodes: factor * value for nodes, value in series.items()}
 
 
 def bandwidth(stored: Stored, group: str, memory: str) -> Series:
-    """GB/s."""
+    """Return the rate of writing or copying, GB/s."""
     times = seconds(stored, group, memory=memory)
     return scaled(ratio(recorded(stored, group, "bytes", memory=memory), times), 1e-9)
 
 
 def flop_rate(stored: Stored, group: str, threads: int) -> Series:
-    """GFlop/s of a reference."""
+    """Return the rate of a reference, GFlop/s."""
     flops = recorded(stored, group, "flops", threads=threads)
     return scaled(ratio(flops, reference(stored, threads, group)), 1e-9)
 
 
 def update_rate(stored: Stored, group: str = "cycle") -> Series:
-    """GFlop/s of the solver's exchanges at their least cost: every one brings one column up to date, once.
+    """Return the rate of the solver's exchanges, GFlop/s, at their least cost: each exchange updates one column once.
 
-    In a step with k exchanges column i takes i updates of 2n entries, 2n k^2 flops in all; a cycle is two steps.
+    In a step with k exchanges column i takes i updates of 2n entries. These are 2n k^2 flops. A cycle has two steps.
     """
     flops = {nodes: nodes * count**2 for nodes, count in recorded(stored, group, "exchanges").items()}
     return scaled(ratio(flops, seconds(stored, group)), 1e-9)
 
 
 def number(value: float | None) -> str:
-    """Three significant digits, or all before the point; empty if there is none."""
+    """Return a number with three significant digits, or with all digits before the point; "" for None."""
     if value is None:
         return ""
     digits = 0 if value == 0.0 else max(0, 2 - math.floor(math.log10(abs(value))))
@@ -109,19 +115,20 @@ def number(value: float | None) -> str:
 
 
 def table(columns: dict[str, Series]) -> str:
-    """Markdown, one row a size."""
+    """Return a Markdown table with one row for each size."""
     sizes = sorted({nodes for series in columns.values() for nodes in series})
     rows = [[f"{nodes:,}", *(number(series.get(nodes)) for series in columns.values())] for nodes in sizes]
     return markdown(["nodes", *columns], rows)
 
 
 def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a Markdown table. All columns but the first are aligned to the right."""
     lines = [header, ["---"] + ["--:"] * (len(header) - 1), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def sizes_table(stored: Stored) -> str:
-    """The table of README: what a user waits for, beside what one dense solve takes."""
+    """Return the table of the times that a user waits, beside the time of one dense solve."""
     cycle = seconds(stored, "cycle")
     fill, write = seconds(stored, "fill", grid="uniform"), seconds(stored, "write", memory="fresh")
     return table(
@@ -140,7 +147,7 @@ def sizes_table(stored: Stored) -> str:
 
 
 def limits_table(stored: Stored) -> str:
-    """What the machine can do at these sizes."""
+    """Return the table of the machine's limits: dense solves, matrix products, writing and copying."""
     columns = {}
     for threads in (1, 2):
         columns[f"solve, {threads} thread{'s' * (threads > 1)}, s"] = reference(stored, threads)
@@ -155,7 +162,7 @@ def limits_table(stored: Stored) -> str:
 
 
 def others_table(stored: Stored) -> str:
-    """Everything else that is timed."""
+    """Return the table of all other times and counts."""
     history = seconds(stored, "history")
     return table(
         {
@@ -173,7 +180,7 @@ def others_table(stored: Stored) -> str:
 
 
 def start_up_table(stored: Stored) -> str:
-    """Seconds of whole processes."""
+    """Return the table of the seconds of whole processes."""
     rows = [
         [entry["params"]["command"], number(entry["stats"]["min"])]
         for entry in stored["benchmarks"]
@@ -185,7 +192,7 @@ def start_up_table(stored: Stored) -> str:
 
 
 def machine_text(stored: Stored) -> str:
-    """One paragraph: where and with what it was measured."""
+    """Return a paragraph about the measurement: processor, system, versions and date."""
     machine = stored["machine_info"]
     versions = ", ".join(f"{name} {version}" for name, version in machine["versions"].items())
     python = f"{machine['python_implementation']} {machine['python_version']}"
@@ -197,7 +204,7 @@ def machine_text(stored: Stored) -> str:
 
 
 def curves(stored: Stored) -> list[tuple[str, Series]]:
-    """The lines of the figure's left panel, seconds."""
+    """Return the lines of the left panel of the figure, seconds."""
     return [
         ("cycle", seconds(stored, "cycle")),
         ("first load", seconds(stored, "first load")),
@@ -208,12 +215,12 @@ def curves(stored: Stored) -> list[tuple[str, Series]]:
 
 
 def counts(stored: Stored) -> list[tuple[str, Series]]:
-    """The lines of its right panel."""
+    """Return the lines of the right panel of the figure, numbers of events and exchanges."""
     return [(f"{name} of a cycle", recorded(stored, "cycle", name)) for name in ("events", "exchanges")]
 
 
 def slope(series: Series) -> float:
-    """Exponent of a power of n fitted to the sizes from FIT_FROM on, or to all if these are fewer than two."""
+    """Return the exponent of a power of n, fitted to sizes from FIT_FROM on, or to all if there are fewer than two."""
     large = {nodes: value for nodes, value in series.items() if nodes >= FIT_FROM}
     chosen = large if len(large) > 1 else series
     if len(chosen) < 2:
@@ -222,13 +229,13 @@ def slope(series: Series) -> float:
 
 
 def slopes_table(stored: Stored) -> str:
+    """Return the table of the exponents of n."""
     rows = [[name, f"{slope(series):.2f}"] for name, series in [*curves(stored), *counts(stored)] if series]
     return markdown(["", f"exponent of n, from {FIT_FROM} nodes"], rows)
 
 
 def draw(stored: Stored) -> Any:
-    """Times, and the numbers of events, against the number of nodes, on logarithmic scales."""
-
+    """Draw times and numbers of events against the number of nodes, on logarithmic scales."""
     figure, axes = style.panels(1, 2, height=3.4)
     rows = []
     for panel, lines, label, styles in (
@@ -236,10 +243,10 @@ def draw(stored: Stored) -> Any:
         (axes[0, 1], counts(stored), "number", [style.line(5, 0), style.line(5, 1)]),
     ):
         entries = []
-        for (name, series), style in zip(lines, styles, strict=True):
+        for (name, series), drawn in zip(lines, styles, strict=True):
             if series:
-                panel.loglog(list(series), list(series.values()), marker="o", markersize=3.0, **style)
-                entries.append((f"{name}: $n^{{{slope(series):.2f}}}$", style))
+                panel.loglog(list(series), list(series.values()), marker="o", markersize=3.0, **drawn)
+                entries.append((f"{name}: $n^{{{slope(series):.2f}}}$", drawn))
         panel.set_xlabel("nodes n")
         panel.set_ylabel(label)
         rows.append(entries)
@@ -255,10 +262,11 @@ BLOCKS: dict[str, Callable[[Stored], str]] = {
     "start-up": start_up_table,
     "slopes": slopes_table,
 }
+"""The marked blocks of the documents, and their contents."""
 
 
 def filled(text: str, stored: Stored) -> str:
-    """A document with the contents of its marked blocks replaced."""
+    """Return a document with new contents in its marked blocks."""
 
     def block(found: re.Match[str]) -> str:
         return f"{found[1]}\n{BLOCKS[found[2]](stored)}\n{found[3]}"
@@ -267,7 +275,7 @@ def filled(text: str, stored: Stored) -> str:
 
 
 def newest() -> Path:
-    """The file of bench/results that was measured last."""
+    """Return the file of bench/results with the latest measurement."""
     files = list(RESULTS.glob("*.json"))
     if not files:
         raise SystemExit(f"no results in {RESULTS.name}; run pytest bench --benchmark-json=bench/results/NAME.json")
@@ -275,11 +283,12 @@ def newest() -> Path:
 
 
 def save_figure(stored: Stored, path: Path) -> None:
-
+    """Draw and save the figure."""
     style.draw_with(draw, stored, path)
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path, nargs="?", help="JSON file of pytest-benchmark")
     parser.add_argument("--figure", type=Path, help="also draw the figure")

@@ -4,9 +4,8 @@
     python bench/sweep.py --runs 100 --nodes 201 --workers 4
     python bench/sweep.py --dask                           the same on a dask cluster, one of whose workers is killed
 
-Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)); a sweep's time has the starting
-of its workers in it, which the last column leaves out: it counts from the end of the first run. One compilation is done
-before.
+Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)). The time of a sweep includes the
+start of its workers. "Without the start" counts from the end of the first run. All code is compiled before.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ import fastpin
 from fastpin.kernels.products import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
-from fastpin.studies.plan import Plan
+from fastpin.studies.plan import Plan, parse_plan
 
 PLAN = """
 [grid]
@@ -37,13 +36,13 @@ PLAN = """
 
 
 def plan_of(runs: int, nodes: int) -> Plan:
-    """A plan of at least so many runs."""
+    """Return a plan of at least `runs` runs."""
     rows = max(2, math.isqrt(runs))
-    return sweep.parse_plan(PLAN.format(rows=rows, columns=max(2, math.ceil(runs / rows)), nodes=nodes))
+    return parse_plan(PLAN.format(rows=rows, columns=max(2, math.ceil(runs / rows)), nodes=nodes))
 
 
 def loop(plan: Plan) -> float:
-    """Seconds for all runs one after the other in this process, on one thread, with their files."""
+    """Return the seconds of all runs one after the other, in this process, on one thread, with their files."""
     with tempfile.TemporaryDirectory() as directory, threadpool_limits(limits=1), in_one_thread():
         began = time.perf_counter()
         for run, point in plan.runs.items():
@@ -54,7 +53,10 @@ def loop(plan: Plan) -> float:
 
 
 def swept(plan: Plan, workers: int) -> tuple[float, float]:
-    """Seconds of a sweep, and of that part of it after the first run has ended, for as many runs as the whole."""
+    """Return the seconds of a sweep, and its seconds without the start of the workers.
+
+    The latter count from the end of the first run, and are scaled to the number of all runs.
+    """
     ends: list[float] = []
     with tempfile.TemporaryDirectory() as directory:
         began = time.perf_counter()
@@ -67,7 +69,7 @@ def swept(plan: Plan, workers: int) -> tuple[float, float]:
 
 
 def on_a_cluster(plan: Plan) -> None:
-    """The runs on two workers of a dask cluster, one of which is killed after a fifth of them, and on our own."""
+    """Compare a dask cluster with workers of our own. One of its two workers is killed after a fifth of the runs."""
     from distributed import Client, LocalCluster
 
     with tempfile.TemporaryDirectory() as folder:
@@ -97,6 +99,7 @@ def on_a_cluster(plan: Plan) -> None:
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=1000)
     parser.add_argument("--nodes", type=int, default=101)

@@ -1,6 +1,6 @@
-"""What the machine can do, in the same run as the solver: one dense solve, matrix products, writing to memory.
+"""Limits of the machine, in the same run as the solver: one dense solve, matrix products, writing to memory.
 
-Matrices have 2n rows and columns, double precision and column order, as those of the solver.
+Matrices have 2n rows and columns, double precision and column order, like the matrices of the solver.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ THREADS = tuple(range(1, min(2, os.cpu_count() or 1) + 1))
 
 
 def random_matrix(order: int) -> np.ndarray:
+    """Return a random square matrix in column order."""
     return np.asfortranarray(np.random.default_rng(order).standard_normal((order, order)))
 
 
 @pytest.mark.parametrize("threads", THREADS)
 @pytest.mark.benchmark(group="LAPACK solve")
 def test_lapack_solve(timed: Timed, nodes: int, threads: int) -> None:
-    """One right side; the matrix is overwritten, and copied anew outside the timing.
+    """Solve with one right side. The matrix is overwritten, so it is copied before each round, outside the timing.
 
-    dgetrf and dgetrs are what dgesv calls. scipy's own dgesv stays on one thread, whatever the limit.
+    dgesv calls dgetrf and dgetrs. scipy's own dgesv stays on one thread, whatever the limit.
     """
     order = 2 * nodes
     matrix, right = random_matrix(order), np.ones(order)
@@ -60,7 +61,7 @@ def test_matrix_product(timed: Timed, nodes: int, threads: int) -> None:
 @pytest.mark.parametrize("memory", ["fresh", "touched"])
 @pytest.mark.benchmark(group="write")
 def test_write(timed: Timed, nodes: int, memory: str) -> None:
-    """Write one number all over a matrix; fresh memory comes from the system page by page while it is written."""
+    """Fill a matrix with one number. The system gives fresh memory page by page while it is written."""
     shape = (2 * nodes, 2 * nodes)
     old = np.zeros(shape)
     old.fill(0.5)
@@ -71,7 +72,7 @@ def test_write(timed: Timed, nodes: int, memory: str) -> None:
 @pytest.mark.parametrize("memory", ["fresh", "touched"])
 @pytest.mark.benchmark(group="copy")
 def test_copy(timed: Timed, nodes: int, memory: str) -> None:
-    """Copy a matrix; bytes are those written, and as many are read."""
+    """Copy a matrix. The stored bytes are the written ones; as many are read."""
     matrix = random_matrix(2 * nodes)
     old = matrix.copy(order="F")
     copy = (lambda: matrix.copy(order="F")) if memory == "fresh" else (lambda: np.copyto(old, matrix))

@@ -1,4 +1,4 @@
-"""Whole processes: how long fastpin takes to start, and how much memory a size takes."""
+"""Whole processes: start-up times of fastpin, and the memory of each size."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ROUNDS = 5
 
 
 def run(arguments: list[str], directory: Path, **environment: str) -> str:
-    """A new Python, from an empty directory."""
+    """Run a new Python from an empty directory, and return its output."""
     done = subprocess.run(
         [sys.executable, "-P", *arguments],
         cwd=directory, env={**os.environ, **environment}, capture_output=True, text=True, check=True,
@@ -35,13 +35,13 @@ def run(arguments: list[str], directory: Path, **environment: str) -> str:
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.benchmark(group="start-up")
 def test_start_up(benchmark: Any, command: str, tmp_path: Path) -> None:
-    """With compiled code in the cache; the round that fills it is not timed."""
+    """Time the commands with compiled code in the cache. The round that fills the cache is not timed."""
     benchmark.pedantic(run, (COMMANDS[command], tmp_path), rounds=ROUNDS, warmup_rounds=1)
 
 
 @pytest.mark.benchmark(group="start-up, nothing compiled")
 def test_cold_start(benchmark: Any, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """The built-in case with an empty cache of compiled code."""
+    """Time the built-in case with an empty cache of compiled code."""
     if benchmark.disabled:
         pytest.skip("compiles everything again")
 
@@ -53,7 +53,7 @@ def test_cold_start(benchmark: Any, tmp_path_factory: pytest.TempPathFactory) ->
 
 @pytest.mark.benchmark(group="memory")
 def test_memory(benchmark: Any, nodes: int, tmp_path: Path) -> None:
-    """Peak memory of a process of its own; the time is that of the process and means little."""
+    """Measure the peak memory in a separate process. The time is of the whole process and means little."""
     script = Path(__file__).with_name("memory.py")
     environment = {"PYTHONPATH": os.pathsep.join(filter(None, [str(script.parent), os.environ.get("PYTHONPATH")]))}
     output = benchmark.pedantic(run, ([str(script), str(nodes)], tmp_path), environment, rounds=1)

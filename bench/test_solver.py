@@ -1,10 +1,10 @@
 """Times of the solver, from small to large: filling the matrices, the first load, cycles, histories, fields.
 
     pytest bench --benchmark-json=bench/results/NAME.json   times, stored for bench/report.py
-    pytest bench --benchmark-disable                        runs everything once, so that the benchmarks keep working
+    pytest bench --benchmark-disable                        runs everything once, to check that the benchmarks work
 
-A time of the solver is that of a call of ``fastpin.solve``: it includes the matrices of the grid and the checks of the
-states that are returned.
+A time of the solver is the time of a call of ``fastpin.solve``. It includes the matrices of the grid and the checks of
+the returned states.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Timed = Callable[..., Any]
 
 
 def solved(timed: Timed, benchmark: Any, nodes: int, history: fastpin.LoadHistory, /, **options: Any) -> fastpin.Result:
-    """Time a call of ``solve``; its statistics are stored with the time."""
+    """Time a call of ``solve``, store its statistics with the time, and return its result."""
     result = timed(lambda: fastpin.solve(cases.PROBLEM, history, **options), nodes, watch=True)
     assert result.complete
     assert result.statistics["repeated"] == 0  # solved, not remembered
@@ -68,7 +68,7 @@ def test_increment_cycle(timed: Timed, benchmark: Any, nodes: int) -> None:
 
 @pytest.mark.benchmark(group="residuals")
 def test_residuals(timed: Timed, nodes: int) -> None:
-    """Residuals of the singular integral equations (46), (47) at all nodes."""
+    """Time the residuals of the singular integral equations (46), (47) at all nodes."""
     state = cases.steady_state(nodes)[-1]
     first, second = timed(lambda: cases.singular_residuals(state), nodes, least=5)
     assert first.size == second.size == nodes
@@ -76,7 +76,7 @@ def test_residuals(timed: Timed, nodes: int) -> None:
 
 @pytest.mark.benchmark(group="readings")
 def test_readings(timed: Timed, nodes: int) -> None:
-    """Edges, borders, peaks and resultants of a state; the copy has not read them before."""
+    """Time edges, borders, peaks and resultants of a state. A copy of the state has no cached readings."""
     state = cases.steady_state(nodes)[-1]
 
     def read(fresh: fastpin.State) -> tuple[Any, ...]:

@@ -2,13 +2,13 @@
 
 Notation, signs and units
 -------------------------
-theta is measured from the +x axis, counter-clockwise; the bottom of the hole is theta = -pi/2. On the contact,
-pressure is positive in compression; shear is the traction **on the pin**, positive along +theta (the plate feels the
-opposite); slip is the motion of the pin over the plate, positive along +theta. P pushes the pin down (-y), Q along
-+x, M turns it counter-clockwise. All loads are per unit thickness.
+The angle theta counts from the +x axis, counter-clockwise; the bottom of the hole is theta = -pi/2. Pressure is
+positive in compression. Shear is the traction **on the pin**, positive along +theta; the plate feels the opposite. Slip
+is the motion of the pin over the plate, positive along +theta. P pushes the pin down (-y), Q pushes it along +x, M
+turns it counter-clockwise. All loads are per unit thickness.
 
-SI units (N/m, N, Pa, m, rad) go in and come out. ``Problem.from_load_parameter`` gives the dimensionless problem of
-the paper (R = F = beta* = 1). All arrays of a state have one entry per node, shape (n,).
+Input and results are in SI units (N/m, N, Pa, m, rad). ``Problem.from_load_parameter`` gives the paper's
+dimensionless problem (R = F = beta* = 1). All arrays of a state have one entry per node, shape (n,).
 
     >>> import fastpin
     >>> pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])

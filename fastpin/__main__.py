@@ -1,4 +1,4 @@
-"""``python -m fastpin``."""
+"""The entry point of ``python -m fastpin``: run the command line."""
 
 import sys
 

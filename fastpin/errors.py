@@ -1,4 +1,7 @@
-"""Every error that fastpin raises on purpose. All derive from :class:`FastpinError`."""
+"""Errors of the input, and the base class of all errors of fastpin.
+
+The errors of a run stand in :mod:`fastpin.solver.errors`. They derive from :class:`FastpinError` too.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,15 @@ class FastpinError(Exception):
 
 
 class InputError(FastpinError, ValueError):
-    """Input that can't be used. ``field`` names the field, the message says what is allowed."""
+    """Input that can't be used. The message says what is allowed.
+
+    Attributes
+    ----------
+    field : str
+        The field at fault.
+    reason : str
+        The message without the field.
+    """
 
     def __init__(self, field: str, message: str) -> None:
         super().__init__(f"{field}: {message}")
@@ -25,7 +36,7 @@ class CaseFileError(InputError):
     Attributes
     ----------
     problems : list of (int, str)
-        Line, from 1, and one sentence for each fault, in the order of the lines. Line 0 is the whole file.
+        The line, counted from 1, and one sentence for each fault, in the order of the lines. Line 0 is the whole file.
     """
 
     def __init__(self, name: str, problems: list[tuple[int, str]]) -> None:

@@ -1,7 +1,7 @@
 """The tables and the figure of docs/accuracy.md: errors against finer grids, closed forms, finite elements, increments.
 
-``python scripts/accuracy.py`` prints the tables as Markdown, in some minutes; ``--figure FILE`` draws the errors of the
-reference cases, ``--quick`` uses small grids, ``--only NAME`` makes one part.
+``python scripts/accuracy.py`` prints the tables as Markdown. It takes some minutes. ``--figure FILE`` draws the errors
+of the reference cases, ``--quick`` uses small grids, ``--only NAME`` makes one part.
 """
 
 from __future__ import annotations
@@ -26,10 +26,12 @@ from fastpin.verification.sliding import solve_sliding
 
 
 def order(sizes: list[int], errors: list[float]) -> float:
+    """Return the observed order: the slope of a straight line through the logarithms."""
     return float(-np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
 def table(header: list[str], rows: list[list[object]]) -> None:
+    """Print a Markdown table."""
     print("\n| " + " | ".join(header) + " |")
     print("|" + "---|" * len(header))
     for row in rows:
@@ -37,6 +39,7 @@ def table(header: list[str], rows: list[list[object]]) -> None:
 
 
 def closed_form(sizes: list[int]) -> None:
+    """Print the errors of frictionless contact against Persson's closed form."""
     print("\n## Frictionless: Persson's closed form")
     print("\nRoot mean square over 16 load parameters between 0.01 and 2 and as many arcs, both edges.")
     rng = np.random.default_rng(0)
@@ -77,7 +80,9 @@ CASES = {
         FRETTING,
     ),
 }
+"""Title, problem and history of the reference cases."""
 LOADS = ("P", "+Q", "-Q", "+Q again")
+"""Names of the corners of a history."""
 SHOWN = {
     "peak_pressure": "peak N",
     "peak_shear": "peak T",
@@ -93,15 +98,19 @@ SHOWN = {
     "shear_magnitude": "int abs T",
     "dissipation": "dissipated",
 }
+"""The quantities in the tables and their headings."""
 ROUNDING = 1e-9
-"""Errors below this part of a quantity's size on all grids are those of something exact, and not shown."""
+"""A quantity with errors below this part of its size on all grids is exact. It is not shown."""
 
 SECOND = {"color": "0.8", "linestyle": "-", "linewidth": 2.5}
+"""The line of order 2 in the figure."""
 
 Errors = dict[str, dict[tuple[str, str], list[float]]]
+"""Errors by title of the case, and by load and quantity: one for each grid."""
 
 
 def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
+    """Print, and draw, the differences of the reference cases from a grid with `finest` nodes."""
     print("\n## The reference cases")
     print(f"\nDifferences from {finest} nodes on the same arc; of angles in rad, of all else in parts of its size: the")
     print("peak pressure, int N, and strains and energies made of these. The order is the slope of a straight line")
@@ -121,7 +130,7 @@ def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
 
 
 def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, str], list[float]]:
-    """By load and quantity, the differences of the results from the reference, smallest grid first."""
+    """Return the differences of the results from the reference, by load and quantity, coarsest grid first."""
     found = {}
     for load, true, *states in zip(LOADS, reference, *results, strict=False):
         exact = matching_values(true, true)
@@ -136,7 +145,7 @@ def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, st
 
 
 def _drawn(sizes: list[int], found: Errors) -> Figure:
-    """A panel for every case: how the errors of peaks, edges and borders fall."""
+    """Draw the errors of peaks, edges and borders against the number of nodes, with a panel for each case."""
     names = ("peak_pressure", "peak_shear", "contact_1_stop", "stick_1_stop", "shear_magnitude")
     figure, axes = panels(2, 3, height=2.3, width=8.6)
     for panel in axes.flat[len(found) :]:
@@ -162,6 +171,7 @@ def _drawn(sizes: list[int], found: Errors) -> Figure:
 
 
 def finite_elements() -> None:
+    """Print the differences from the stored tractions of finite elements."""
     print("\n## Finite-element tractions")
     print(
         "\nOn the finite elements' own nodes; integrals in parts of int N. *Away*: without six nodes on either side of"
@@ -180,6 +190,7 @@ def finite_elements() -> None:
 
 
 def increments(counts: list[int]) -> None:
+    """Print the differences of the increment solver from the path solver."""
     print("\n## Increments against the path")
     print("\nTi-6Al-4V in aluminium, body load, mu = 0.4, L_p = 0.1, 301 nodes; increments that grow linearly.")
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body")
@@ -196,6 +207,7 @@ def increments(counts: list[int]) -> None:
 
 
 def half_plane(nodes: int) -> None:
+    """Print the differences from Hertz and Cattaneo-Mindlin against L_p."""
     print("\n## Cattaneo-Mindlin")
     print(f"\nSimilar materials, held, mu = 0.5, Q = 0.6 mu P, {nodes} nodes; int |dT| / int mu N against L_p.")
     rows, parameters, loading = [], [2.0, 20.0, 200.0, 2000.0], []
@@ -213,6 +225,7 @@ def half_plane(nodes: int) -> None:
 
 
 def full_sliding(terms: list[int], sizes: list[int]) -> None:
+    """Print the convergence of full sliding by Eq. (58), and the differences of the path solver from it."""
     print("\n## Full sliding")
     print("\nEq. (58) on its own, mu = 0.4, L_p = 0.1, Q = 0.4 P; differences from twice as many terms as in the last")
     print("row. Like bodies, and Ti-6Al-4V in aluminium.")
@@ -244,6 +257,7 @@ def full_sliding(terms: list[int], sizes: list[int]) -> None:
 
 
 def singular_equations(sizes: list[int]) -> None:
+    """Print the residuals of the singular integral equations (46), (47)."""
     print("\n## The singular integral equations (46), (47)")
     print("\nLargest residual, in units of F beta*, of Ti-6Al-4V in aluminium as above, with Cauchy matrices built on")
     print("their own, inside the contact and away from edges and borders (0.085 rad).")
@@ -259,6 +273,7 @@ def singular_equations(sizes: list[int]) -> None:
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="small grids")
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw the errors of the reference cases")

@@ -1,8 +1,8 @@
-# Sourced by the scripts beside it: makes the virtual environment .venv and keeps it up to date.
+# Make the virtual environment .venv and keep it up to date. The scripts beside this file source it.
 #
-#   prepare EXTRAS    EXTRAS is "" or "dev"; afterwards $python is the interpreter of the environment
+#   prepare KIND      KIND is "run", or "dev" for the tools of development too; $python is then the interpreter
 #
-# The environment is made when it is missing and installed again when pyproject.toml has changed, or the
+# The environment is made when it is missing. It is installed again when pyproject.toml has changed, or the
 # directory has moved. PYTHON chooses the interpreter that makes it.
 
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
@@ -38,7 +38,7 @@ find_python() {
     fail "Python 3.11 or later is needed: apt-get install python3 python3-venv, or set PYTHON."
 }
 
-# Debian keeps the part of Python that makes environments in a package of its own.
+# Debian has a separate package for ensurepip and venv, which make environments.
 need_ensurepip() {
     "$1" -c 'import ensurepip, venv' >/dev/null 2>&1 && return
     local package log
@@ -80,14 +80,14 @@ prepare() {
     # One at a time: the lock is on the directory itself, so nothing is left behind.
     exec 9<"$root"
     ! command -v flock >/dev/null || flock 9 || true
-    if ! is_current "$kind"; then # someone else may have done it while we waited
+    if ! is_current "$kind"; then # another process may have done it during the wait
         make_environment
         [[ $kind == dev ]] && what="$root[dev]"
         log=$("$python" -m pip install --quiet --disable-pip-version-check --no-input --editable "$what" 2>&1) ||
             { printf '%s\n' "$log" >&2; fail "installing the dependencies failed (above)."; }
         stamp=$(fingerprint)
         printf '%s\n' "$stamp" >"$environment/fastpin-run.stamp"
-        # An installation without the tools of development says nothing about them.
+        # An installation without the tools of development leaves the stamp of the tools as it is.
         if [[ $kind == dev ]]; then printf '%s\n' "$stamp" >"$environment/fastpin-dev.stamp"; fi
     fi
     exec 9<&-

@@ -1,9 +1,10 @@
 """How often error bars hold: random cases against a reference on eight times as many intervals.
 
-``python scripts/error_bars.py [--cases 40] [--first 0]`` prints two tables as Markdown, for docs/convergence.md; some
-five minutes. The first is about the bars of two grids, the second about those of studies of four grids, 101 to 801
-nodes. The reference is on the same arc. What it is off itself, the difference to a grid with half its intervals, is
-added to every error (*surely held*: the bar covers that, too) or taken off it (*surely broken*).
+``python scripts/error_bars.py [--cases 40] [--first 0]`` prints two tables as Markdown, for docs/convergence.md. It
+takes some five minutes. The first table is about the bars of two grids. The second one is about the bars of studies
+of four grids, 101 to 801 nodes. The reference is on the same arc. Its uncertainty is the difference to a grid with half
+its intervals. *Surely held*: the bar covers the error plus this uncertainty. *Surely broken*: the bar does not cover
+the error minus this uncertainty.
 """
 
 from __future__ import annotations
@@ -26,20 +27,21 @@ from fastpin.studies.extrapolate import estimate
 
 NODES = 201
 TIMES = (2, 4, 8)
-"""How many times as many intervals the finer grids have; the last one is the reference."""
+"""Refinements of the finer grids, in intervals. The last one is the reference."""
 
 EXACT = 1e-9
-"""Errors that are smaller in parts of the quantity's size are rounding, and not counted."""
+"""Errors below this part of the quantity's size are rounding, and not counted."""
 
 Found = dict[str, list[tuple[float, float, float]]]
+"""By group of quantities: (error, uncertainty, bar) for pairs of grids, (error, bar, order observed) for studies."""
 
 
 def random_case(seed: int) -> tuple[Problem, LoadHistory]:
     """A random problem and history.
 
-    Like materials in two cases of five, else stiffness ratios 0.1 to 10; L_p 1e-3 to 2, no friction in one of ten, else
-    mu 0.05 to 1; three ways to hold the pin; Q up to 0.7 mu P (without friction 0.35 P), in one of three monotonic,
-    else cyclic; some are partly unloaded in the end.
+    Materials are like in two cases of five, else with stiffness ratios 0.1 to 10. L_p is 1e-3 to 2. One case of ten has
+    no friction, the others mu 0.05 to 1. There are three ways to hold the pin. Q goes up to 0.7 mu P (without friction
+    0.35 P); the load is monotonic in three cases of ten, else cyclic. Some cases are partly unloaded in the end.
     """
     rng = np.random.default_rng(seed)
     plane = "strain" if rng.random() < 0.5 else "stress"
@@ -64,11 +66,12 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
 
 
 def refined(grid: Grid, times: int) -> Grid:
-    """The same arc or circle with so many times the intervals."""
+    """Return a grid on the same arc or circle with `times` as many intervals."""
     return grid.with_nodes(times * grid.size if grid.closed else times * (grid.size - 1) + 1)
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cases", type=int, default=40)
     parser.add_argument("--first", type=int, default=0)
@@ -84,13 +87,8 @@ def main() -> None:
         for state, *better in zip(result, *finer, strict=True):
             states += 1
             assert state.error_bars is not None
-            count(
-                state,
-                [matching_values(state, other) for other in (state.error_bars.coarse, state, *better)],
-                pairs,
-                studies,
-                without,
-            )
+            grids = (state.error_bars.coarse, state, *better)
+            count(state, [matching_values(state, other) for other in grids], pairs, studies, without)
     print(f"{options.cases} cases, {states} states, {NODES} nodes\n")
     print("| quantity | values | held, % | surely held, % | surely broken, % | bar / error, median | no bar |")
     print("|---|--:|--:|--:|--:|--:|--:|")
@@ -99,7 +97,7 @@ def main() -> None:
         parts = [np.mean(error <= bar), np.mean(error + unsure <= bar), np.mean(error - unsure > bar)]
         shown = " | ".join(f"{100.0 * part:.1f}" for part in parts)
         print(f"| {group} | {error.size} | {shown} | {np.median(bar / error):.1f} | {without[group]} |")
-    print("\n| quantity | values | order observed, % | held where it is, % | where not, % | bar / error, median |")
+    print("\n| quantity | values | order observed, % | held if observed, % | held if not, % | bar / error, median |")
     print("|---|--:|--:|--:|--:|--:|")
     for group, rows in [*studies.items(), ("all", [row for each in studies.values() for row in each])]:
         error, bar, seen = np.array(rows).T
@@ -117,7 +115,10 @@ def count(
     studies: Found,
     without: collections.Counter[str],
 ) -> None:
-    """Add errors, their own uncertainty and bars of the quantities of a state; `sequence` has them on all grids."""
+    """Add the errors, uncertainties and bars of one state to `pairs`, `studies` and `without`.
+
+    `sequence` has the quantities on all grids, coarsest first. `without` counts values that have no bar.
+    """
     bars, true = state.error_bars, sequence[-1]
     assert bars is not None
     for name, value in values(state).items():

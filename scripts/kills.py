@@ -1,8 +1,8 @@
-"""Kill a run again and again, and see whether anything is lost: ``python scripts/kills.py --kills 100``.
+"""Kill a run again and again, and check that nothing is lost: ``python scripts/kills.py --kills 100``.
 
-A load history is followed into a file by a process that is killed (SIGKILL) at a random moment, and gone on with by
-another one, and so on. After every kill the file must hold all states that the process had acknowledged before; at the
-end, the same bits as the file of a run that nobody disturbed.
+A process follows a load history into a file, and is killed (SIGKILL) at a random moment. Another process continues, and
+so on. After every kill the file must hold all states that the process had acknowledged before. At the end the file must
+hold the same bits as the file of an undisturbed run.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS
 NODES = 61
 ROUNDS = 400
 CHECKPOINT_EVERY = 0.1
-"""Seconds; far more often than usual, because nobody waits for a process that is about to be killed."""
+"""Seconds between checkpoints, far less than usual. Their cost does not matter: nobody waits for a killed process."""
 
 
 def history(rounds: int = ROUNDS) -> LoadHistory:
-    """Cycles that become periodic, then loads that are different every time, again and again."""
+    """Return the history: rounds of ten equal cycles, which become periodic, and 30 random loads."""
     rng = np.random.default_rng(0)
     whole = LoadHistory([{"P": 1.0}])
     for _ in range(rounds):
@@ -48,7 +48,7 @@ def problem() -> Problem:
 
 
 def work(path: Path, rounds: int) -> None:
-    """Begin the run, or go on with it; say on standard error how many states are in the file."""
+    """Begin the run, or continue it if its file exists. The log on standard error tells the states in the file."""
     logging.basicConfig(level=logging.DEBUG, format="%(message)s")
     logging.getLogger("numba").setLevel(logging.WARNING)
     writer.CHECKPOINT_EVERY, writer.CHECKPOINT_SHARE = CHECKPOINT_EVERY, 1.0
@@ -59,7 +59,7 @@ def work(path: Path, rounds: int) -> None:
 
 
 def differences(one: Path, other: Path) -> list[str]:
-    """Names of the arrays in which the states or cycles of two files differ."""
+    """Return the names of the arrays in which the states or cycles of two files differ."""
     first, second = store.load(one), store.load(other)
     if (len(first), len(first.cycles)) != (len(second), len(second.cycles)):
         return ["number of states or cycles"]
@@ -71,7 +71,7 @@ def differences(one: Path, other: Path) -> list[str]:
             for a, b in zip(first, second, strict=True)
         )
     ]
-    names = [name for name in CYCLE_FIELDS if name != "solved"]  # who goes on does not know what was solved before
+    names = [name for name in CYCLE_FIELDS if name != "solved"]  # a resumed run does not know what was solved before
     return differing + [
         name
         for name in names
@@ -85,29 +85,30 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
     Returns
     -------
     dict of str to float
-        "kills" that hit a run at work, "acknowledged" states that were "lost", most states "found again" after a kill,
-        "states" in the end, arrays that are "different", and how often a kill fell into a "transaction".
+        "kills": kills that hit a run at work. "lost": acknowledged states that were not in the file. "acknowledged":
+        states in the file after the last kill. "states": states in the end. "different": arrays that differ from an
+        undisturbed run. "transaction": kills during a transaction.
     """
-    path, said = folder / "killed.h5", folder / "said.txt"
+    path, log = folder / "killed.h5", folder / "said.txt"
     rng = np.random.default_rng(seed)
     found = {"kills": 0.0, "lost": 0.0, "acknowledged": 0.0, "transaction": 0.0}
     while found["kills"] < kills:
-        with said.open("w") as messages:
+        with log.open("w") as messages:
             process = subprocess.Popen([sys.executable, __file__, "--work", path, str(rounds)], stderr=messages)
-            while process.poll() is None and "in the file" not in said.read_text():
+            while process.poll() is None and "in the file" not in log.read_text():
                 time.sleep(0.01)
             time.sleep(rng.uniform(0.0, longest))
             process.send_signal(signal.SIGKILL)
         code = process.wait()
         if code == 0:
-            break  # it has come to its end
+            break  # the run has ended
         if code != -signal.SIGKILL:
-            raise SystemExit(f"the run has failed, after {found['kills']:.0f} kills:\n{said.read_text()}")
+            raise SystemExit(f"the run has failed, after {found['kills']:.0f} kills:\n{log.read_text()}")
         found["kills"] += 1
         journal = path.with_name(path.name + ".journal")
         found["transaction"] += journal.exists() and journal.stat().st_size > 0
-        acknowledged = int(re.findall(r"(\d+) states in the file\n", said.read_text())[-1])
-        stored = store.size(path)
+        acknowledged = int(re.findall(r"(\d+) states in the file\n", log.read_text())[-1])
+        stored = store.state_count(path)
         found["lost"] += max(acknowledged - stored, 0)
         found["acknowledged"] = stored
         if not store.is_unfinished(path):
@@ -116,13 +117,13 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
         work(path, rounds)
     undisturbed = folder / "undisturbed.h5"
     work(undisturbed, rounds)
-    found["states"] = store.size(path)
+    found["states"] = store.state_count(path)
     found["different"] = len(differences(path, undisturbed))
     return found
 
 
 def main() -> None:
-    """The command line."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--longest", type=float, default=1.0, help="seconds of work before a kill, at most")

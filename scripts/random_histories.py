@@ -1,7 +1,7 @@
 """Random histories: does the path solver return a wrong state, raise an error, or hang?
 
 ``python scripts/random_histories.py [--count 1000] [--first 0]`` solves `count` random problems with fixed seeds on
-small grids, checks every state independently of the solver's own residuals and prints every error raised.
+small grids. It checks every state independently of the solver's own residuals, and prints every error raised.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ NODES = 81
 def random_case(seed: int) -> tuple[Problem, LoadHistory]:
     """A random problem and a random history of up to six corners.
 
-    L_p 1e-4 to 2.5, friction 0.02 to 1.2, stiffness ratio 1/30 to 30, nu 0 to 0.49, both planes, both pin loads, both
-    rotations, Q up to 1.2 mu P, moments on free centre-loaded pins up to what friction at a point can carry, remote
-    stress in one case of five, load ratio 0 in one of five.
+    L_p is 1e-4 to 2.5, friction 0.02 to 1.2, the stiffness ratio 1/30 to 30, nu 0 to 0.49, with both planes, both pin
+    loads and both rotations. Q goes up to 1.2 mu P. Half of the free centre-loaded pins have a moment, up to the
+    largest that friction at a point can carry. One case of five has remote stress, one of five returns to no load.
     """
     rng = np.random.default_rng(seed)
     ratio = 30.0 ** rng.uniform(-1.0, 1.0)
@@ -64,7 +64,7 @@ def random_case(seed: int) -> tuple[Problem, LoadHistory]:
 
 
 def violation(state: State) -> float:
-    """Largest relative violation of Signorini, Coulomb and equilibrium, from what the user sees."""
+    """Return the largest relative violation of Signorini, Coulomb and equilibrium, from the fields a user reads."""
     if not state.in_contact:
         return max(
             -state.gap.min() / state.problem.clearance,
@@ -87,7 +87,7 @@ def violation(state: State) -> float:
 
 
 def outcome(seed: int) -> tuple[str, float, Result | None]:
-    """How a case ends ("solved" or the error's name and message), its largest violation and what was solved."""
+    """Solve a case. Return its ending ("solved", or the error's name and message), largest violation and result."""
     problem, history = random_case(seed)
     try:
         result, ending = solve(problem, history, nodes=NODES), "solved"
@@ -97,6 +97,7 @@ def outcome(seed: int) -> tuple[str, float, Result | None]:
 
 
 def main() -> None:
+    """Run the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0)

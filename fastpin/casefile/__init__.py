@@ -1,4 +1,4 @@
-"""Case files: TOML in, a case or all faults with their lines out.
+"""The reader of case files: from TOML text to a case, or to all faults with their lines.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -14,12 +14,30 @@ from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 
 MAX_CORNERS = 100_000_000
-MAX_ROWS = 10_000_000  # of corners that are held in memory
+"""Largest number of corners of a history, repeats included."""
+
+MAX_ROWS = 10_000_000
+"""Largest number of corners of a repeated block. They are held in memory."""
+
 HARMONIC = ("mean", "amplitude", "phase", "points")
+"""Keys of a [[load]] block with harmonic cycles, besides ``repeat``."""
 
 
 def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
-    """The load history; None when it can't be used, which is reported. A CSV file is looked for from `folder` on."""
+    """Read the load history of a case file.
+
+    Parameters
+    ----------
+    source : CaseText
+        The text of the case file. All faults of the loads are reported to it.
+    folder : Path
+        Folder in which relative paths of CSV files start.
+
+    Returns
+    -------
+    LoadHistory or None
+        None if the history can't be used. The reason is reported.
+    """
     section = source.section("history")
     if "load" in source.root and "csv" in section:
         source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
@@ -40,8 +58,8 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
 
 
 def report_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
-    """Report every load that does not go with the problem."""
-    # What a corner leaves out is taken from the one before; what was never given stays away.
+    """Report every load of the history that the problem does not allow."""
+    # A load that a corner leaves out keeps its value. A load that was never given stays NaN and is not checked.
     columns = history.distinct(initial=np.full(len(LOADS), np.nan)).T
     for name, column in zip(LOADS, columns, strict=True):
         values = np.unique(column[~np.isnan(column)])
@@ -53,7 +71,7 @@ def report_loads(source: CaseText, problem: Problem, history: LoadHistory) -> No
 
 
 def _report_load(source: CaseText, name: str, message: str) -> None:
-    """Report a load where it acts first, or where it is given as nothing but 0."""
+    """Report a load at the first block in which it is not 0. If it is 0 everywhere, report it at its first block."""
     giving = [block for block in source.blocks("load") if name in block]
     acting = [block for block in giving if block.value(name) != 0]
     if giving:
@@ -76,7 +94,7 @@ def _from_blocks(source: CaseText, folder: Path) -> LoadHistory | None:
 
 
 def _from_block(block: Section, folder: Path) -> LoadHistory | None:
-    """The history of one block: its corners, those of a file, or harmonic cycles."""
+    """The history of one block: listed corners, the corners of a CSV file, or harmonic cycles."""
     if "csv" in block:
         for name in (*LOADS, *HARMONIC):
             if name in block:
@@ -95,7 +113,10 @@ def _from_block(block: Section, folder: Path) -> LoadHistory | None:
 
 
 def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None:
-    """A history, as often as the key ``repeat`` of its section says; each time is a cycle."""
+    """The history repeated as the key ``repeat`` of its section says. Each repeat is a cycle.
+
+    None if the result has too many corners, which is reported, or if `history` is None.
+    """
     count = section.checked("repeat", whole_number, 1)
     if count is None or history is None:
         return history
@@ -127,7 +148,7 @@ def _harmonic(block: Section) -> LoadHistory | None:
 
 
 def _loads(block: Section, name: str) -> dict[str, float] | None:
-    """A table of loads, such as ``mean = {P = 1e6, Q = 0}``; None where it is wrong, which is reported."""
+    """A table of loads like ``mean = {P = 1e6, Q = 0}``. Faults are reported, and the result is then None."""
     table = block.value(name)
     if table is None:
         return {}
@@ -144,7 +165,7 @@ def _loads(block: Section, name: str) -> dict[str, float] | None:
 
 
 def _corners(block: Section) -> list[dict[str, float]]:
-    """The corners of one block."""
+    """The corners of one block, loads by name. Faults are reported; an empty list stands for unusable corners."""
     if not set(block.table) & set(LOADS):
         block.report(f"[[load]]: gives no load; the loads are {', '.join(LOADS)}")
     columns = {name: column for name in LOADS if (column := _numbers(block, name)) is not None}
@@ -162,7 +183,7 @@ def _corners(block: Section) -> list[dict[str, float]]:
 
 
 def _numbers(block: Section, name: str) -> list[float] | float | None:
-    """The number or numbers of one load in one block."""
+    """The number or the list of numbers of one load in one block. None if it is missing or wrong (reported)."""
     value = block.value(name)
     if not isinstance(value, list):
         return block.number(name)

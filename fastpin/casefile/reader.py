@@ -1,8 +1,9 @@
-"""Case files: a problem, its load history and the solver's options in one TOML file.
+"""The reader of case files: a problem, its load history and the options of the solver in one TOML file.
 
-All faults of a file are reported at once, each with its line: what is missing or wrong is reported and replaced by
-something harmless, so that the rest is checked all the same. :data:`EXAMPLE` is a commented case file;
-``fastpin example`` prints it.
+All faults of a file are reported at once, each with its line. A missing or wrong value is reported and replaced by a
+harmless one, so that the rest is still checked.
+
+:data:`EXAMPLE` is a commented case file. ``fastpin example`` prints it.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ KEYS: dict[str, tuple[str, ...]] = {
 }
 """Sections of a case file and their keys."""
 
-_STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # where a pair is wrong, to check the rest
+_STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
 
 T = TypeVar("T")
 
@@ -59,19 +60,30 @@ def builtin_case() -> Case:
 
 
 def read_case(path: str | Path) -> Case:
-    """Read a case file.
+    """Read a case from a TOML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The case file. Relative paths of CSV files start in its folder.
 
     Raises
     ------
     CaseFileError
-        With all faults of the file.
+        If the file can't be read or has faults. It lists all faults with their lines.
     """
     path = Path(path)
     return parse_case(read_text(path), str(path), path.parent)
 
 
 def read_text(path: Path) -> str:
-    """The text of a case file, or :class:`CaseFileError`."""
+    """Read the text of a case file (UTF-8).
+
+    Raises
+    ------
+    CaseFileError
+        If the file can't be read, or is not UTF-8 text.
+    """
     try:
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
@@ -85,21 +97,21 @@ def read_text(path: Path) -> str:
 
 
 def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> Case:
-    """Read a case from `text`.
+    """Read a case from a TOML text.
 
     Parameters
     ----------
     text : str
-        TOML.
+        The text of a case file.
     name : str
-        What errors call the file.
-    folder : path
-        Where a relative path of a CSV file starts.
+        Name of the file in error messages.
+    folder : str or Path
+        Folder in which relative paths of CSV files start.
 
     Raises
     ------
     CaseFileError
-        With all faults of the text.
+        If the text has faults. It lists all faults with their lines.
     """
     source = CaseText(text)
     case = case_from(source, Path(folder)) if source.readable else None
@@ -112,7 +124,22 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
 def case_from(
     source: CaseText, folder: Path, read: Callable[[CaseText, Path], LoadHistory | None] = read_history
 ) -> Case | None:
-    """The case; without meaning if there are faults. `read` finds its loads."""
+    """Build the case from the tables of a text, and report all faults to the text.
+
+    Parameters
+    ----------
+    source : CaseText
+        The text. If it has faults afterwards, the returned case has no meaning.
+    folder : Path
+        Folder in which relative paths of CSV files start.
+    read : callable
+        Reads the load history.
+
+    Returns
+    -------
+    Case or None
+        None if the problem or the history is unusable.
+    """
     _check_keys(source)
     title = source.root.checked("title", string) or ""
     pair = _pair(source, source.section("contact"))
@@ -129,7 +156,7 @@ def case_from(
 
 
 def _check_together(source: CaseText, check: Callable[[], None]) -> None:
-    """Report an option of the solver that does not go with the rest of the case."""
+    """Report an option of the solver that contradicts the problem or the history."""
     try:
         check()
     except InputError as error:
@@ -139,7 +166,10 @@ def _check_together(source: CaseText, check: Callable[[], None]) -> None:
 def _built(
     section: Section, make: Callable[..., T], values: Mapping[str, Any], harmless: Mapping[str, Any]
 ) -> T | None:
-    """``make(**values)``, with harmless values for what is missing or wrong; all that is wrong is reported."""
+    """Call ``make(**values)`` and report every wrong value.
+
+    Missing and wrong values are replaced by the `harmless` ones. None if a wrong value has no harmless replacement.
+    """
     values = {key: harmless.get(key) if value is None else value for key, value in values.items()}
     left = dict(harmless)
     while True:
@@ -150,9 +180,6 @@ def _built(
             if error.field not in left:
                 return None
             values[error.field] = left.pop(error.field)
-
-
-# -- names of sections and keys ----------------------------------------------------------------------------
 
 
 def _check_keys(source: CaseText) -> None:
@@ -175,16 +202,13 @@ def _check_keys(source: CaseText) -> None:
 
 
 def _owners(key: str) -> str:
-    """A hint at the sections that know a key, or nothing."""
+    """A hint at the sections that have a key of this name; empty if there are none."""
     owners = [_in_brackets(section) for section, keys in KEYS.items() if key in keys]
     return f"; it belongs in {' or '.join(owners)}" if owners else ""
 
 
 def _in_brackets(section: str) -> str:
     return "[[load]]" if section == "load" else f"[{section}]"
-
-
-# -- sections ----------------------------------------------------------------------------------------------
 
 
 def _pair(source: CaseText, contact: Section) -> MaterialPair | None:
@@ -252,7 +276,7 @@ def _dundurs(section: Section, contact: Section, plane: str) -> MaterialPair | N
 
 
 def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
-    """The problem; None when it is not known how the pin is held, which the loads depend on."""
+    """The problem. None if [contact] is missing, or if pin_load or rotation is wrong: the loads depend on both."""
     if not contact.present:
         return None
     make: Callable[..., Problem] = Problem
@@ -281,5 +305,5 @@ def _options(section: Section) -> SolveOptions:
     given = {key: section.value(key) for key in KEYS["solve"] if key in section}
     harmless = SolveOptions().keywords()
     if "increments" in given:
-        harmless["method"] = "increment"  # where the method is wrong, its increments are not
+        harmless["method"] = "increment"  # replaces a wrong method, so that its increments are not reported as well
     return _built(section, SolveOptions, given, harmless) or SolveOptions()

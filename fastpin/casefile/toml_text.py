@@ -1,7 +1,7 @@
-"""TOML text, read so that every fault is reported with its line, and all of them at once.
+"""TOML text with line numbers. All faults of a text are reported at once, each with its line.
 
-The parser of the standard library stops at the first fault and does not tell where a value stands. Here the lines of
-all keys are found beside it, and reading goes on after a faulty line.
+The parser of the standard library stops at the first fault and does not give the lines of values. This module finds the
+lines of all keys itself, and parses again without a faulty line.
 """
 
 from __future__ import annotations
@@ -15,25 +15,27 @@ from typing import Any, TypeVar
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, number
 
-Place = tuple[str | int, ...]  # where a value stands in the text: ("load", 0, "P")
+Place = tuple[str | int, ...]
+"""The keys and indices that lead to a value: ("load", 0, "P")."""
+
 T = TypeVar("T")
 
-_FAULTY = object()  # stands for a value that could not be parsed: reported already, and not missing
+_FAULTY = object()  # stands for a value that can't be parsed: it is reported already, and not missing
 
 
 class CaseText:
-    """The tables of a TOML text, and all faults found in it so far.
+    """The tables of a TOML text and all its faults so far.
 
     Attributes
     ----------
     faults : list of (int, str)
-        Line, from 1, and one sentence for each. Line 0 is the whole text.
+        Line (from 1) and sentence of each fault. Line 0 stands for the whole text.
     placed : list of (place, str)
-        Of the faults of values: where the value stands, and the sentence.
+        Place and sentence of each fault that belongs to a value.
     readable : bool
-        Whether there are tables to look at; they hold everything but the values on faulty lines.
+        Whether the text could be parsed. The tables then hold all values except the values on faulty lines.
     root : Section
-        The keys before the first section, and the sections.
+        The keys before the first section, and all sections.
     """
 
     def __init__(self, text: str) -> None:
@@ -45,7 +47,7 @@ class CaseText:
         self.root = Section(self, (), self._parse(lines, keys, starts))
 
     def _parse(self, lines: list[str], keys: dict[int, Place], starts: dict[int, int]) -> dict[str, Any]:
-        """Parse; after a faulty ``key = value`` line go on without it, to report the other faults as well."""
+        """Parse the lines. Blank a faulty ``key = value`` line and parse again, to report the other faults as well."""
         faulty: list[Place] = []
         while True:
             try:
@@ -72,17 +74,17 @@ class CaseText:
         return tables
 
     def report(self, message: str, *place: str | int) -> None:
-        """Add a fault, on the line of the value at `place` or of the closest thing around it."""
+        """Add a fault, on the line that :meth:`line` gives for `place`."""
         self.placed.append((place, message))
         self._add(self.line(*place), message)
 
     def line(self, *place: str | int) -> int:
-        """The line of the value at `place` or of the closest thing around it; 0 if there is none."""
+        """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
         around = (place[:length] for length in range(len(place), 0, -1))
         return next((self._lines[part] for part in around if part in self._lines), 0)
 
     def with_tables(self, tables: dict[str, Any]) -> CaseText:
-        """This text with other tables; what is wrong with them is reported on the lines of this text."""
+        """A copy of this text with other tables and no faults. Their faults get the lines of this text."""
         other = copy.copy(self)
         other.faults, other.placed = [], []
         other.root = Section(other, (), tables)
@@ -93,7 +95,10 @@ class CaseText:
             self.faults.append((line, message))
 
     def section(self, name: str, required: bool = False) -> Section:
-        """The section [name]; an empty one when it is missing or not a table, which is reported."""
+        """The section [name], or an empty section if it is missing or not a table.
+
+        A value that is not a table is reported. A missing section is reported if it is `required`.
+        """
         table = self.root.value(name)
         if isinstance(table, dict):
             return Section(self, (name,), table)
@@ -104,7 +109,7 @@ class CaseText:
         return Section(self, (name,), {}, present=False)
 
     def blocks(self, name: str) -> list[Section]:
-        """All tables of the name: [[name]] blocks, or the one [name]."""
+        """All tables of a name: the [[name]] blocks, or the one section [name]."""
         value = self.root.value(name)
         if isinstance(value, dict):
             return [self.section(name)]
@@ -113,7 +118,15 @@ class CaseText:
 
 
 class Section:
-    """One table of a text. Values come out checked; what is wrong with them is reported on their line."""
+    """One table of a text. It checks its values and reports faults on their lines.
+
+    Attributes
+    ----------
+    table : dict
+        The parsed values by key.
+    present : bool
+        Whether the text has this section.
+    """
 
     def __init__(self, text: CaseText, place: Place, table: dict[str, Any], present: bool = True) -> None:
         self.table = table
@@ -123,27 +136,28 @@ class Section:
 
     @property
     def name(self) -> str:
+        """Name of the section, without brackets."""
         return str(self._place[0])
 
     def __contains__(self, key: str) -> bool:
         return key in self.table
 
     def report(self, message: str, *key: str) -> None:
-        """Add a fault of a key, or of the section."""
+        """Add a fault of a key, or of the whole section if no key is given."""
         self._text.report(message, *self._place, *key)
 
     def require(self, key: str, hint: str = "") -> None:
-        """Report a key that is missing."""
+        """Report the key if it is missing. The message ends with `hint`."""
         if key not in self:
             self.report(f"[{self.name}]: {key} is missing{hint}")
 
     def value(self, key: str) -> Any:
-        """A value as it was parsed; None when it is missing or faulty."""
+        """The parsed value of a key; None if it is missing or faulty."""
         value = self.table.get(key)
         return None if value is _FAULTY else value
 
     def checked(self, key: str, check: Callable[..., T], *limits: Any) -> T | None:
-        """``check(key, value, *limits)``; None when the value is missing, or does not pass and is reported."""
+        """The result of ``check(key, value, *limits)``; None if the value is missing or fails (reported)."""
         value = self.value(key)
         if value is None:
             return None
@@ -154,14 +168,13 @@ class Section:
             return None
 
     def number(self, key: str) -> float | None:
+        """A finite number; None if it is missing or wrong (reported)."""
         return self.checked(key, number)
 
     def choice(self, key: str, allowed: tuple[str, ...]) -> str | None:
-        """One of `allowed`; the first one when the key is missing."""
+        """One of the words `allowed`. The first one if the key is missing; None if the word is wrong (reported)."""
         return self.checked(key, choice, allowed) if key in self else allowed[0]
 
-
-# -- lines -------------------------------------------------------------------------------------------------
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
 _KEY_LINE = re.compile(rf"\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*=(.*)")
@@ -179,16 +192,16 @@ _STRING_OR_COMMENT = re.compile(
 
 
 def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
-    """Where every key stands.
+    """The lines of all headers and keys.
 
     Returns
     -------
     places : dict
-        Line of every header and key; the first one wins.
+        Line of every header and key. Of several the first line counts.
     keys : dict
-        The key that begins on a line.
+        Place of the key that begins on a line.
     starts : dict
-        For every line inside a value of several lines, the line on which the value begins.
+        For every line after the first of a value of several lines: the line on which the value begins.
     """
     places: dict[Place, int] = {}
     keys: dict[int, Place] = {}
@@ -220,13 +233,14 @@ def _parts(dotted: str) -> Place:
 
 
 def _nesting(lines: list[str]) -> list[int]:
-    """By how many levels the brackets of each line open (or close) more than they close."""
-    # A string becomes a pair of brackets around its line ends, a comment an empty pair.
+    """Number of opening minus closing brackets of each line, without the brackets in strings and comments."""
+    # A string becomes a pair of brackets around its line ends, so that it counts as nested. A comment becomes "[]".
     bare = _STRING_OR_COMMENT.sub(lambda found: "[" + "\n" * found[0].count("\n") + "]", "\n".join(lines))
     return [len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line)) for line in bare.split("\n")]
 
 
 def _mark_faulty(tables: dict[str, Any], place: Place) -> None:
+    """Put the mark of a faulty value at its place in the tables, so that its key does not count as missing."""
     table: Any = tables
     for part in place[:-1]:
         if isinstance(table, dict):
@@ -240,7 +254,7 @@ def _mark_faulty(tables: dict[str, Any], place: Place) -> None:
 
 
 def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
-    """A sentence and a line from what the TOML parser says."""
+    """A sentence and a line for a message of the TOML parser."""
     last = max((number for number, line in enumerate(lines, start=1) if line.strip()), default=1)
     found = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
     if not found:

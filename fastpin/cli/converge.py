@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from fastpin import casefile, figures, studies
+from fastpin import casefile, figures, report, studies
 from fastpin.cli.progress import bar
 from fastpin.cli.terminal import (
     EXIT_FAILED,
@@ -19,12 +19,10 @@ from fastpin.cli.terminal import (
     write_text,
 )
 from fastpin.errors import InputError
-from fastpin.report import convergence
-from fastpin.studies.convergence import Convergence, StudyInterrupted, StudyLostError
 
 
 def run(options: argparse.Namespace) -> int:
-    """Solve a case on several grids."""
+    """Study the convergence of a case on several grids, and write tables, files and a figure."""
     nodes = _numbers("--nodes", options.nodes)
     increments = [] if options.increments is None else _numbers("--increments", options.increments)
 
@@ -40,13 +38,13 @@ def run(options: argparse.Namespace) -> int:
             progress_bar.update(done - progress_bar.n)
 
         try:
-            study: Convergence | None = studies.converge(
+            study: studies.convergence.Convergence | None = studies.converge(
                 case.problem, case.history, nodes, increments, options.increment_nodes, options.corner,
                 case.options.arc, progress,
             )  # fmt: skip
-        except StudyInterrupted as ended:
+        except studies.convergence.StudyInterrupted as ended:
             study, code, trouble = ended.study, EXIT_INTERRUPTED, "interrupted"
-        except StudyLostError as lost:
+        except studies.convergence.StudyLostError as lost:
             study, code, trouble = lost.study, EXIT_FAILED, str(lost)
         except InputError as error:
             option = error.field.replace("_", "-")
@@ -57,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     return _hand_out(study, options, case.title) or (code and fail(f"{trouble}; {_describe_kept(study)}", code))
 
 
-def _describe_kept(study: Convergence) -> str:
+def _describe_kept(study: studies.convergence.Convergence) -> str:
     corners = ", ".join(map(str, study.loads))
     return f"kept: corner {corners} with {', '.join(map(str, study.studies[0].counts))} nodes" + (
         "" if len(study.studies) == 1 else f" and {', '.join(map(str, study.studies[1].counts))} increments"
@@ -71,16 +69,16 @@ def _numbers(option: str, text: str) -> list[int]:
         raise InputError(option, f"must be whole numbers with commas, such as 101,201,401, not {text!r}") from None
 
 
-def _hand_out(study: Convergence, options: argparse.Namespace, title: str) -> int:
-    """Write the files that were asked for and print the tables, which a reader of our output may leave."""
-    document = json.dumps(convergence.document(study, title), indent=2, allow_nan=False) + "\n"
+def _hand_out(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:
+    """Write the files, then print the tables. Printing comes last: the reader of the output may close it early."""
+    document = json.dumps(report.convergence.document(study, title), indent=2, allow_nan=False) + "\n"
 
     def plot(path: Path) -> None:
         figures.plot_convergence(study, path, title=title)
 
     code = write_files(
         [
-            (options.csv, lambda path: convergence.write_csv(study, path)),
+            (options.csv, lambda path: report.convergence.write_csv(study, path)),
             (None if options.json == "-" else options.json, lambda path: write_text(path, document)),
             (options.plot, plot),
         ]
@@ -88,5 +86,5 @@ def _hand_out(study: Convergence, options: argparse.Namespace, title: str) -> in
     if options.json == "-":
         sys.stdout.write(document)
     else:
-        print("\n".join([title, ""] if title else []) + convergence.text(study))
+        print("\n".join([title, ""] if title else []) + report.convergence.text(study))
     return code

@@ -1,6 +1,6 @@
 """The command line: read the options, carry out the command, turn errors into messages and exit codes.
 
-A command's own file is imported only when it was chosen: help and wrong options are answered without NumPy.
+The file of a command is imported only when the command is chosen. Help and wrong options are answered without NumPy.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from fastpin.cli.options import join_keep_words, parser
+from fastpin.cli.options import join_words, parser
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail
 from fastpin.errors import CaseFileError, FastpinError, InputError
 
@@ -24,14 +24,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0; 1 when the loads could not be followed to their end, a check of the installation has failed or
-        a file could not be written; 2 for input that can't be used; 130 when interrupted.
+        Exit code. 0: success. 1: the loads could not be followed to their end, a run of a sweep or a check of the
+        installation has failed, a file could not be written, or memory did not suffice. 2: input that can't be used.
+        130: interrupted. 141: the reader of the output has closed it.
     """
     try:
-        options = parser().parse_args(join_keep_words(sys.argv[1:] if arguments is None else list(arguments)))
+        options = parser().parse_args(join_words(sys.argv[1:] if arguments is None else list(arguments)))
         _log(getattr(options, "verbose", 0))
         if threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems ask in this way
+            signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems end a job by SIGTERM
         file, function = options.command
         code = int(getattr(importlib.import_module(f"fastpin.cli.{file}"), function)(options))
         sys.stdout.flush()
@@ -55,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _log(verbose: int) -> None:
-    """Send the package's messages to standard error: warnings only, unless asked for more."""
+    """Send the package's messages to standard error. `verbose` 0: warnings, 1: each step, 2: everything."""
     handler = logging.StreamHandler()
     handler.setFormatter(logging.Formatter("fastpin: %(message)s"))
     logger = logging.getLogger("fastpin")

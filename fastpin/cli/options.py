@@ -1,30 +1,31 @@
 """All commands and their options. Nothing heavy is imported here: help is answered at once.
 
-Each command names the file of this folder and the function in it that do the work.
+Each command names a file of this folder, and the function of that file that carries it out.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 from typing import Any
 
 from fastpin.version import __version__
 
 DEFAULT_KEY_FIGURE = "peak_pressure"
-"""The key figure that a figure of a sweep shows unless another one is chosen."""
+"""The key figure in the figure of a sweep, unless another one is chosen."""
 
 
 def parser() -> argparse.ArgumentParser:
-    """The parser of the command line."""
-    found = argparse.ArgumentParser(
+    """Build the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
+    root = argparse.ArgumentParser(
         prog="fastpin",
         description="Frictional contact of an elastic pin in the hole of an elastic plate.",
         epilog="Start with: fastpin example > case.toml; fastpin run case.toml",
         allow_abbrev=False,
     )
-    found.add_argument("--version", action="version", version=f"fastpin {__version__}")
-    commands = found.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    root.add_argument("--version", action="version", version=f"fastpin {__version__}")
+    commands = root.add_subparsers(title="commands", required=True, metavar="COMMAND")
     add_case_commands(commands)
     add_run(commands)
     add_stored_commands(commands)
@@ -32,19 +33,28 @@ def parser() -> argparse.ArgumentParser:
     add_sweep(commands)
     add_paper(commands)
     add_verify(commands)
-    return found
+    return root
 
 
-def join_keep_words(arguments: list[str]) -> list[str]:
-    """The arguments with ``--keep every N`` in one word, as ``--keep "every N"``."""
-    for k in range(len(arguments) - 2):
-        if arguments[k : k + 2] == ["--keep", "every"]:
-            return [*arguments[: k + 1], f"every {arguments[k + 2]}", *arguments[k + 3 :]]
-    return arguments
+def join_words(arguments: list[str]) -> list[str]:
+    """Return the arguments with ``--keep every N`` and ``--arc -2.5,-0.6`` joined for argparse.
+
+    They become ``--keep "every N"`` and ``--arc=-2.5,-0.6``. argparse takes a list that begins with a minus sign for an
+    option.
+    """
+    joined: list[str] = []
+    for word in arguments:
+        if joined[-2:] == ["--keep", "every"]:
+            joined[-1] = f"every {word}"
+        elif joined[-1:] == ["--arc"] and re.match(r"-[\d.]", word):
+            joined[-1] = f"--arc={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _command(commands: Any, name: str, file: str, function: str, text: str) -> argparse.ArgumentParser:
-    """A command, carried out by a function of a file of this folder."""
+    """Add a command that `function` of `file` carries out. `text` is its help."""
     command: argparse.ArgumentParser = commands.add_parser(name, help=text, allow_abbrev=False)
     command.set_defaults(command=(file, function))
     return command
@@ -91,10 +101,10 @@ def add_run(commands: Any) -> None:
 def add_stored_commands(commands: Any) -> None:
     """Add ``resume`` and ``show``."""
     resume = _command(commands, "resume", "run", "resume", "continue a run that ended early")
-    resume.add_argument("output", metavar="FILE", type=Path, help="its HDF5 file (run -o FILE)")
+    resume.add_argument("output", metavar="FILE", type=Path, help="HDF5 file of the run (run -o FILE)")
     _add_outputs(resume)
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
-    show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still go on")
+    show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still be going")
     _add_outputs(show)
 
 
@@ -111,10 +121,13 @@ def add_converge(commands: Any) -> None:
         "--increments", metavar="N,N,N", help="also run the increment solver, with these numbers of increments a step"
     )
     converge.add_argument(
-        "--increment-nodes", metavar="N", type=int, help="its number of nodes (default: the first of 201 or more)"
+        "--increment-nodes",
+        metavar="N",
+        type=int,
+        help="number of nodes for the increment solver (default: the first of --nodes that is at least 201)",
     )
     converge.add_argument(
-        "--corner", metavar="K", type=int, help="corner to study (default: all of up to six, else the last one)"
+        "--corner", metavar="K", type=int, help="corner to study (default: all corners of up to six, else the last one)"
     )
     converge.add_argument("--csv", metavar="FILE", type=Path, help="write all values, orders, limits and error bars")
     _add_json(converge, "write the study as JSON")
@@ -130,7 +143,7 @@ def add_sweep(commands: Any) -> None:
     )
     sweep.add_argument("--status", action="store_true", help="report progress; run nothing")
     sweep.add_argument("--retry", action="store_true", help="also run again all failed runs")
-    sweep.add_argument("--workers", metavar="N", type=int, help="worker processes (default: one a processor)")
+    sweep.add_argument("--workers", metavar="N", type=int, help="worker processes (default: one for each processor)")
     sweep.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
     sweep.add_argument("--shard", metavar="I/N", help="only the I-th of N parts, each in a directory of its own")
     sweep.add_argument(
@@ -143,7 +156,7 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one key figure (png, pdf or svg)")
     sweep.add_argument("--value", metavar="NAME", help=f"key figure to plot (default {DEFAULT_KEY_FIGURE})")
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
-    sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis: a map")
+    sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")
 
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
     merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")

@@ -13,7 +13,7 @@ from fastpin.paper import catalog
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compute and draw figures; say how long each took."""
+    """Compute, draw and write figures. Print the files of each figure and its seconds."""
     nodes = catalog.NODES if options.nodes is None else options.nodes
     try:
         names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))

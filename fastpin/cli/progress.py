@@ -6,11 +6,14 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from tqdm import tqdm
-
 
 def bar(total: int, text: str) -> Any:
-    """A progress bar on standard error after two seconds; nothing when that is not a terminal."""
+    """Return a progress bar of `total` units. It appears on standard error after two seconds, on terminals only.
+
+    `text` is a format with the fields of tqdm, such as ``{n} of {total}``.
+    """
+    from tqdm import tqdm
+
     return tqdm(
         total=total,
         delay=2,
@@ -22,7 +25,7 @@ def bar(total: int, text: str) -> Any:
 
 
 def progress_to(progress_bar: Any) -> Callable[[float, float], None]:
-    """A callable ``progress(done, total)`` that moves a bar."""
+    """Return a callable ``progress(done, total)`` that moves a bar."""
 
     def progress(done: float, total: float) -> None:
         progress_bar.total = total

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from fastpin import casefile, figures, solver, storage
+from fastpin import casefile, figures, report, solver, storage
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
@@ -25,25 +25,23 @@ from fastpin.cli.terminal import (
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.report.states import cycle_lines, state_table
-from fastpin.report.summary import document
 from fastpin.report.table import visible_rows
-from fastpin.solver.errors import Interrupted, SolveError
-from fastpin.solver.result import Result
 
 LARGE_STRAIN = 0.05
-"""Strain above which results are beyond linear elasticity, and units are probably wrong."""
+"""Contact strain above which linear elasticity fails; probably the units of the case are wrong."""
 
 SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars")
 """Options of the solver that the command line can set."""
 
 LISTS = ("arc", "between")
-"""Those that may be lists, written with commas."""
+"""Options that take a number or a list of numbers, written with commas."""
 
 PROGRESS = "load point {n:.2f} of {total}"
+"""Text of the progress bar."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Solve a case."""
+    """Solve a case, and write its states."""
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
     case = _with_options(case, options)
     _check_outputs(options)
@@ -51,21 +49,21 @@ def run(options: argparse.Namespace) -> int:
     start = _start(options)
     saved = _corners(len(case.history), options.save_after)
     keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
-    found: list[Result] = []
+    solved: list[solver.Result] = []
     with bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:
-            ended = _ending(lambda: found.append(solver.solve(case.problem, case.history, **keywords)))
+            ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
         else:
             keywords |= {"title": case.title, "save_after": saved, "overwrite": options.overwrite}
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
         return _write_stored(case, options, ended)
-    return _write_result(case, options, found[0] if ended is None else ended.result, ended)
+    return _write_result(case, options, solved[0] if ended is None else ended.result, ended)
 
 
 def resume(options: argparse.Namespace) -> int:
-    """Continue a run that ended early."""
+    """Continue a run that ended early, and write its states."""
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
@@ -82,20 +80,17 @@ def show(options: argparse.Namespace) -> int:
     return _write_stored(case, options, None)
 
 
-def _ending(work: Callable[[], object]) -> SolveError | Interrupted | None:
-    """Do the work, and return the error that ended it early; None if it came to its end."""
+def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:
+    """Do the work. Return the error that ended it early, or None."""
     try:
         work()
-    except (SolveError, Interrupted) as ended:
+    except (solver.SolveError, solver.Interrupted) as ended:
         return ended
     return None
 
 
-# -- options -------------------------------------------------------------------------------------------------
-
-
 def _with_options(case: Case, options: argparse.Namespace) -> Case:
-    """The case with the solver's options of the command line."""
+    """Return the case with the solver's options of the command line in place of its own."""
     given = {
         name: _value(text, name in LISTS) for name in SOLVE_OPTIONS if (text := getattr(options, name)) is not None
     }
@@ -106,7 +101,7 @@ def _with_options(case: Case, options: argparse.Namespace) -> Case:
 
 
 def _value(text: object, may_be_list: bool) -> Any:
-    """The value that an option's text stands for: a number, a list of numbers, or the text itself."""
+    """Convert the text of an option to a number or a list of numbers. Other texts stay as they are."""
     if not isinstance(text, str):
         return text
     if may_be_list and "," in text:
@@ -121,7 +116,7 @@ def _value(text: object, may_be_list: bool) -> Any:
 
 @contextlib.contextmanager
 def _as_options(options: argparse.Namespace) -> Any:
-    """Errors name a field of the solver by its option, if that was given."""
+    """Name the option instead of the solver's field in errors raised within, if the command line has the option."""
     try:
         yield
     except InputError as error:
@@ -150,7 +145,7 @@ def _check_cycles(case: Case, options: argparse.Namespace) -> None:
 
 
 def _corners(corners: int, text: str | None) -> list[int]:
-    """The corners after which a restart is kept."""
+    """Return the corners of ``--save-after``, from 1 to `corners`."""
     try:
         numbers = [] if text is None else [int(part) for part in text.split(",")]
     except ValueError:
@@ -160,8 +155,8 @@ def _corners(corners: int, text: str | None) -> list[int]:
     return numbers
 
 
-def _start(options: argparse.Namespace) -> Result | None:
-    """The result to go on from."""
+def _start(options: argparse.Namespace) -> solver.Result | None:
+    """Return the result to continue from (``--start``), or None."""
     if options.start is None:
         if options.after is not None:
             raise InputError("--after", "needs --start FILE")
@@ -181,17 +176,14 @@ def _start(options: argparse.Namespace) -> Result | None:
 
 
 def _check_outputs(options: argparse.Namespace) -> None:
-    """Find out before the work what could not be written after it."""
+    """Check before the work that all output files can be written."""
     names = {"--json": options.json, "--plot": options.plot, "--cycles": options.cycles, "--output": options.output}
     check_outputs(names, getattr(options, "case", None))
 
 
-# -- what was found ------------------------------------------------------------------------------------------
-
-
-def _write_stored(case: Case, options: argparse.Namespace, ended: SolveError | Interrupted | None) -> int:
-    """Print and draw what is in the file of a run; of many states no more than that takes is read."""
-    if ended is not None and ended.result is None:  # the file, if there is one, is not of this run
+def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
+    """Write the states of a stored run. Of many states, only those in the table and the figure are read."""
+    if ended is not None and ended.result is None:  # a file with this name, if any, belongs to another run
         return _write_result(case, options, None, ended)
     count = storage.state_count(options.output)
     if options.json is not None:
@@ -206,13 +198,16 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: SolveError | I
 def _write_result(
     case: Case,
     options: argparse.Namespace,
-    result: Result | None,
-    ended: SolveError | Interrupted | None,
+    result: solver.Result | None,
+    ended: solver.SolveError | solver.Interrupted | None,
     hidden: int = 0,
 ) -> int:
-    """Print the states and write the files that were asked for; `hidden` states in the middle are left out."""
+    """Write the files, then print the states, and return the exit code.
+
+    `ended` is the error that ended the run early. `hidden` states in the middle were left out of `result`.
+    """
     code, error = EXIT_OK, None
-    if isinstance(ended, SolveError):
+    if isinstance(ended, solver.SolveError):
         error = str(ended)
         code = fail(error, EXIT_FAILED)
     elif ended is not None:
@@ -231,7 +226,7 @@ def _write_result(
 
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
-        text = json.dumps(document(case, result, error), indent=2, allow_nan=False) + "\n"
+        text = json.dumps(report.summary.document(case, result, error), indent=2, allow_nan=False) + "\n"
         if options.json != "-":
             writers.append((options.json, lambda path: write_text(path, text)))
     if result is not None and len(result):
@@ -243,19 +238,19 @@ def _write_result(
     elif options.cycles is not None:
         code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
     code = write_files(writers) or code
-    if options.json == "-":  # last, for whoever reads our output may leave
+    if options.json == "-":  # last: the reader of the output may close it early
         sys.stdout.write(text)
     else:
         _print_states(case, result, hidden)
     return code
 
 
-def _reached(result: Result) -> int:
-    """Corners that were solved, kept or not."""
+def _reached(result: solver.Result) -> int:
+    """Return the number of corners that were solved, whether their states were kept or not."""
     return 0 if result.restart is None else result.restart.corner
 
 
-def _print_states(case: Case, result: Result | None, hidden: int) -> None:
+def _print_states(case: Case, result: solver.Result | None, hidden: int) -> None:
     if case.title:
         print(case.title)
     if result is None or not len(result):

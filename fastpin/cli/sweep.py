@@ -11,52 +11,50 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from fastpin import figures
+from fastpin import figures, report, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail
 from fastpin.errors import InputError
-from fastpin.report import sweep as sweep_report
 from fastpin.storage.files import check_writable
-from fastpin.studies import sweep
-from fastpin.studies.plan import Plan, read_plan
-from fastpin.studies.sweep import Summary
 
 MOST_REASONS = 20
-"""Failed runs that are listed with their reasons."""
+"""Most failed runs that are listed with their reasons."""
 
 CLUSTER_SECONDS = 30
-"""A scheduler that does not answer for so long is not there."""
+"""Longest wait for the answer of a scheduler."""
 
 
 def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
     _check_combination(options)
-    plan = read_plan(options.plan)
+    plan = studies.read_plan(options.plan)
     directory = Path(options.plan.stem) if options.output is None else options.output
     _check_outputs(options, plan)
     if options.status:
-        summary = sweep.status(plan, directory, shard)
+        summary = studies.sweep.status(plan, directory, shard)
     else:
         try:
             summary = _run(options, plan, directory, shard)
         except KeyboardInterrupt:
-            now = sweep.status(plan, directory, shard)
+            now = studies.sweep.status(plan, directory, shard)
             kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command goes on"
             return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
     rows = _written(options, plan, directory)
     _print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
-        print(sweep_report.text(plan, rows))
+        print(report.sweep.text(plan, rows))
     return EXIT_FAILED if summary.failed and not options.status else EXIT_OK
 
 
-def _run(options: argparse.Namespace, plan: Plan, directory: Path, shard: tuple[int, int] | None) -> Summary:
+def _run(
+    options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
+) -> studies.sweep.Summary:
     with _executor(options.dask) as executor, bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
         try:
-            return sweep.run(plan, directory, executor, options.workers, options.retry, shard, progress)
+            return studies.sweep.run(plan, directory, executor, options.workers, options.retry, shard, progress)
         except InputError as error:
             if error.field == "workers":
                 raise InputError("--workers", error.reason) from None
@@ -65,7 +63,7 @@ def _run(options: argparse.Namespace, plan: Plan, directory: Path, shard: tuple[
 
 @contextmanager
 def _executor(address: str | None) -> Iterator[Executor | None]:
-    """The executor of a dask cluster; None for processes of our own."""
+    """Yield the executor of the dask cluster at `address`; None without an address, for processes of this machine."""
     if address is None:
         yield None
         return
@@ -101,8 +99,8 @@ def _check_combination(options: argparse.Namespace) -> None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")
 
 
-def _check_outputs(options: argparse.Namespace, plan: Plan) -> None:
-    """Find out before the work what could not be shown after it."""
+def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
+    """Check before the work that the table and the figure can be made and written."""
     if options.table not in (None, "-"):
         if Path(options.table).suffix == ".toml":  # "fastpin sweep --table plan.toml"
             raise InputError("--table", f"won't overwrite the plan {options.table}; write the plan before the options")
@@ -111,12 +109,14 @@ def _check_outputs(options: argparse.Namespace, plan: Plan) -> None:
         check_figure("--plot", options.plot)
         check_writable(options.plot)
         try:
-            sweep_report.check_axes(plan, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
+            report.sweep.check_axes(plan, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
 
 
-def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: bool, retried: bool) -> None:
+def _print_summary(
+    plan: studies.plan.Plan, directory: Path, summary: studies.sweep.Summary, only_status: bool, retried: bool
+) -> None:
     if plan.title:
         print(plan.title)
     counts = f"{summary.done} done, {len(summary.failed)} failed, {summary.waiting} waiting"
@@ -126,22 +126,22 @@ def _print_summary(plan: Plan, directory: Path, summary: Summary, only_status: b
     if same:
         print(f"{same} points of the plan have the same input as another and share its run")
     for point, reason in summary.failed[:MOST_REASONS]:
-        print(f"failed: {point.id}  {describe_values(point.values)}: {reason}")
+        print(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
     if len(summary.failed) > MOST_REASONS:
         print(f"... {len(summary.failed) - MOST_REASONS} more failed")
     if summary.failed and not retried:
         print("--retry runs what failed again")
 
 
-def _written(options: argparse.Namespace, plan: Plan, directory: Path) -> list[dict[str, Any]]:
-    """Write the files that are asked for; returns the rows of the plan."""
+def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> list[dict[str, Any]]:
+    """Write the table and the figure. Return the rows of the plan; none if no table or figure is wanted."""
     if options.table is None and options.plot is None:
         return []
-    rows = sweep.rows(plan, directory)
+    rows = studies.sweep.rows(plan, directory)
     if options.table not in (None, "-"):
-        sweep_report.write_csv(plan, rows, Path(options.table))
+        report.sweep.write_csv(plan, rows, Path(options.table))
     if options.plot is not None:
-        chart = sweep_report.chart(plan, rows, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
+        chart = report.sweep.chart(plan, rows, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
         figures.plot_sweep(chart, options.plot)
         if chart.missing:
             print(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
@@ -150,6 +150,6 @@ def _written(options: argparse.Namespace, plan: Plan, directory: Path) -> list[d
 
 def merge(options: argparse.Namespace) -> int:
     """Join the directories of the parts of a sweep."""
-    count = sweep.merge(options.parts, options.output)
+    count = studies.sweep.merge(options.parts, options.output)
     print(f"{count} runs in {options.output}")
     return EXIT_OK

@@ -1,4 +1,4 @@
-"""What all commands share: exit codes, messages, output files."""
+"""Common parts of all commands: exit codes, messages, output files."""
 
 from __future__ import annotations
 
@@ -14,19 +14,32 @@ FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
 def fail(message: str, code: int) -> int:
-    """Say what went wrong, and return the exit code."""
+    """Print an error message, and return the exit code."""
     print(f"fastpin: {message}", file=sys.stderr)
     return code
 
 
 def check_figure(option: str, path: Path) -> None:
-    """Raise :class:`InputError` naming the option if a file's name is not that of a figure."""
+    """Raise :class:`InputError` with the option as its field if a file's name does not end as a figure's."""
     if path.suffix.lower() not in FIGURE_FORMATS:
         raise InputError(option, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
 
 
 def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> None:
-    """Find out before the work what could not be written after it: files by their options, "-" for standard output."""
+    """Check before the work that all output files can be written.
+
+    Parameters
+    ----------
+    names : mapping of option to path or None
+        "-" means standard output.
+    case : Path or None
+        The case file, which must not be overwritten.
+
+    Raises
+    ------
+    InputError
+        If a file can't be written, is a case file, has the wrong suffix of a figure, or is named twice.
+    """
     chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
     seen: dict[Path, str] = {}
     for name, path in chosen.items():
@@ -42,7 +55,10 @@ def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> 
 
 
 def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], object]]]) -> int:
-    """Write the files that are asked for, and return the exit code; where one can't be written, the others are."""
+    """Call ``write(path)`` for each (path, write) with a path, and return the exit code.
+
+    If one file can't be written, its message is printed, and the others are written.
+    """
     code = EXIT_OK
     for path, write in writers:
         if path is None:

@@ -8,18 +8,14 @@ import json
 import sys
 import time
 
-from fastpin import verification
+from fastpin import report, storage, studies, verification
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_files, write_text
-from fastpin.report.checks import table
-from fastpin.report.summary import plain
-from fastpin.storage.layout import versions
-from fastpin.studies.workers import cores
 from fastpin.version import __version__
 
 
 def run(options: argparse.Namespace) -> int:
-    """Check the installation; exit code 1 where a check fails."""
+    """Check the installation, and print or write the checks. The exit code is 1 if a check fails."""
     check_outputs({"--json": options.json}, None)
     began = time.perf_counter()
     with bar(0, "check {n} of {total}") as progress_bar:
@@ -28,19 +24,19 @@ def run(options: argparse.Namespace) -> int:
     count = sum(check.passed for check in checks)
     code = EXIT_OK if count == len(checks) else EXIT_FAILED
     if options.json != "-":
-        libraries = ", ".join(f"{name} {version}" for name, version in versions().items())
-        print(table(checks))
-        print(f"\n{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
+        libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
+        print(report.checks.table(checks))
+        print(f"\n{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {studies.cores()} cores")
     if options.json is not None:
         document = {
             "fastpin": __version__,
-            "versions": versions(),
-            "cores": cores(),
+            "versions": storage.versions(),
+            "cores": studies.cores(),
             "seconds": seconds,
             "passed": code == EXIT_OK,
             "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
         }
-        text = json.dumps(plain(document), indent=2, allow_nan=False) + "\n"
+        text = json.dumps(report.summary.plain(document), indent=2, allow_nan=False) + "\n"
         if options.json == "-":
             sys.stdout.write(text)
         else:

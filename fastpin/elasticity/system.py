@@ -1,14 +1,14 @@
 """The matrices of one problem on one grid, in dimensionless form.
 
-With a reference force F, tractions are in F/R, displacements in F beta*, rotations in F beta*/R. The pin's motion
-(c_x, c_y, omega) counts from where it came to rest on the hole, and
+With a reference force F, tractions are in F/R, displacements in F beta*, rotations in F beta*/R. The motion of the pin
+is (c_x, c_y, omega). It counts from the place at which the pin came to rest on the hole. Gap and slip are
 
     gap   h = rest gap + direct N + cross T  - c_x cos - c_y sin             + (loads)    Eqs. (9)-(12), (15)
     slip  s =           - cross N + direct T  - c_x sin + c_y cos + omega     + (loads)    Eqs. (9)-(12), (18)
 
-where the rest gap is that of the rigid pin in the undeformed hole, and the terms of the displacement kernels that
-depend on the resultants only (the w terms of the pin's load) stand with the loads: they are known once P and Q are.
-What is left is symmetric.
+The rest gap is the gap of the rigid pin in the undeformed hole. Some terms of the displacement kernels depend on the
+resultants only: the w terms of the pin's load. They stand with the loads, for they are known as soon as P and Q are.
+The remaining operator on (N, T) is symmetric.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 
 from fastpin.kernels import influence
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, ROTATION, SXX, SYY, M, P, Q
+from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
 
@@ -33,25 +33,55 @@ class Scales:
     displacement: float  # F beta*, m
     rotation: float  # F beta*/R, rad
     energy: float  # F^2 beta*, J/m
-    loads: np.ndarray  # unit of every load in the order of LOADS
+    loads: np.ndarray  # unit of every load, in the order of LOADS
 
     @classmethod
     def of(cls, problem: Problem, force: float) -> Scales:
+        """The units of `problem` with reference force `force`, N/m."""
         radius, beta = problem.hole_radius, problem.pair.beta_star
         traction, rotation = force / radius, force * beta / radius
-        loads = np.array([force, force, force * radius, traction, traction, rotation])
+        unit = {"force": force, "moment": force * radius, "traction": traction, "rotation": rotation}
+        loads = np.array([unit[kind] for kind in LOAD_KIND.values()])
         return cls(force, traction, force * beta, rotation, force * force * beta, loads)
 
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """The collocation matrices of one problem on one grid.
+    """The collocation matrices of one problem on one grid. All quantities are dimensionless.
 
-    ``operator`` (2n, 2n) maps (N, T) to (h, s), ``motion`` (2n, 3) the rigid motion and ``loads`` (2n, 6) the loads.
-    ``rest_clearance`` is the clearance, ``plate`` the radial displacement of the hole per remote stress (42). The
-    equilibrium conditions (50), (51), or the prescription of a rotation that is held, are
+    The conditions of equilibrium (50), (51) are
 
         equilibrium @ (N, T) + motion_rows @ motion = forces @ load.
+
+    For a pin whose rotation is held, the third row prescribes the rotation instead.
+
+    Attributes
+    ----------
+    problem : Problem
+    grid : Grid
+        n nodes.
+    scales : Scales
+        The units.
+    rest_clearance : float
+        The clearance.
+    friction : float
+        Coefficient of friction.
+    operator : ndarray, shape (2n, 2n)
+        Maps (N, T) to (h, s).
+    motion : ndarray, shape (2n, 3)
+        Maps the motion (c_x, c_y, omega) of the pin to (h, s).
+    loads : ndarray, shape (2n, loads)
+        Maps the loads to (h, s).
+    equilibrium : ndarray, shape (3, 2n)
+        Maps (N, T) to the conditions of equilibrium.
+    motion_rows : ndarray, shape (3, 3)
+        Maps the motion of the pin to the conditions of equilibrium.
+    forces : ndarray, shape (3, 6)
+        Maps the loads to the conditions of equilibrium.
+    weights : ndarray, shape (n,)
+        Integrals of the hat functions of the nodes, rad.
+    plate : float
+        Radial displacement of the hole per remote stress, Eq. (42).
     """
 
     problem: Problem
@@ -111,7 +141,7 @@ class System:
         )  # fmt: skip
 
     def without_friction(self) -> System:
-        """The same system for mu = 0, with the rotation held at the load's ``rotation``."""
+        """The same system without friction (mu = 0). The rotation is held at the load's ``rotation``."""
         equilibrium, motion_rows, forces = self.equilibrium.copy(), np.zeros((3, 3)), self.forces.copy()
         equilibrium[2], forces[2] = 0.0, 0.0
         motion_rows[2, 2] = forces[2, ROTATION] = 1.0
@@ -120,13 +150,27 @@ class System:
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
     ) -> np.ndarray:
-        """Gap and slip (2n,) of given tractions, motion and load, straight from the matrices."""
+        """Gap and slip, shape (2n,), straight from the matrices.
+
+        Parameters
+        ----------
+        tractions : ndarray, shape (2n,)
+            Pressure N, then shear traction T.
+        motion : ndarray, shape (3,)
+            Motion (c_x, c_y, omega) of the pin.
+        load : ndarray, shape (6,)
+        rest_gap : ndarray, shape (n,), or float
+            Gap of the rigid pin in the undeformed hole.
+        """
         return self.total_displacement(self.operator @ tractions, motion, load, rest_gap)
 
     def total_displacement(
         self, elastic: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
     ) -> np.ndarray:
-        """Gap and slip (2n,) from what the tractions make of them, ``operator @ tractions``."""
+        """Gap and slip, shape (2n,), from their elastic part ``operator @ tractions``.
+
+        The other arguments are as in :meth:`displacement`.
+        """
         result = elastic + self.motion @ motion + self.loads @ load
         result[: self.grid.size] += rest_gap
         return result

@@ -1,4 +1,4 @@
-"""Figures of convergence studies: distances to the limit against nodes and increments."""
+"""Figures of convergence studies: distance to the limit against the number of nodes and of increments."""
 
 from __future__ import annotations
 
@@ -18,30 +18,51 @@ from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.convergence import Convergence
 
 MOST_PANELS = 9
+"""Most panels of a figure."""
+
 COLUMNS = 3
+"""Panels side by side."""
+
 ORDER_OF_PANELS = (
     "peak_pressure", "peak_shear", "shear_magnitude", "contact_1_start", "contact_1_stop", "stick_1_start",
     "stick_1_stop", "rotation", "dissipation", "dx", "dy", "pressure_integral",
 )  # fmt: skip
-"""What is drawn first; then come all others."""
+"""Quantities that get the first panels. All other quantities follow."""
 
 _GUIDES: dict[int, Line] = {1: {"color": "0.6", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
            2: {"color": "0.6", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.0}}  # fmt: skip
 
 _STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
 _NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
-TITLE_WIDTH = 90  # characters
+TITLE_WIDTH = 90
+"""Characters in a line of the title."""
 
 
 def plot_convergence(
     convergence: Convergence, path: str | Path, corner: int | None = None, title: str = "", dpi: float = 160.0
 ) -> None:
-    """Save a figure of one corner, the last one unless given: up to nine panels, a quantity each.
+    """Save a figure of the convergence at one corner, with up to nine panels, one for each quantity.
 
-    The distance of the values to the limit of their sequence falls with the number of nodes, or of increments, as a
-    power where an order is observed (filled marks; the order is written in the panel). Where none is, the distance is
-    that to the last value (open marks). A dash at the last count is the error bar. Guides have the orders 1 and 2. What
-    is exact to rounding, or can't be compared, has no panel.
+    A panel shows the distance of the values to the limit of their sequence, against the number of nodes or of
+    increments. Marks are filled if an order is observed; the panel names it. Else the marks are open, and the distance
+    is measured from the last value. A dash at the last count is the error bar. Guides have the orders 1 and 2.
+    Quantities that are exact to rounding, or can't be compared, have no panel.
+
+    Parameters
+    ----------
+    convergence : Convergence
+    path : path
+        The suffix chooses the format.
+    corner : int, optional
+        From 1; the last corner of the study unless given.
+    title : str
+    dpi : float
+        Dots per inch of a bitmap.
+
+    Raises
+    ------
+    InputError
+        If the figure's format is unknown, or the file can't be written.
     """
     chosen = max(convergence.loads) if corner is None else corner
     draw_with(lambda study: _draw(study, chosen, title), convergence, path, dpi)
@@ -95,20 +116,20 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Reporte
     words = []
     for method, (counts, row) in sequences.items():
         style = _STYLES[method]
-        seen = row.verdict == "observed"
-        away = factor * np.abs(np.subtract(row.values, row.limit if seen else row.values[-1]))
-        away[away == 0.0] = np.nan
-        filled = "full" if seen else "none"
-        panel.plot(counts, away, markersize=3.6, fillstyle=filled, **style)
+        observed = row.verdict == "observed"
+        distance = factor * np.abs(np.subtract(row.values, row.limit if observed else row.values[-1]))
+        distance[distance == 0.0] = np.nan
+        fillstyle = "full" if observed else "none"
+        panel.plot(counts, distance, markersize=3.6, fillstyle=fillstyle, **style)
         panel.plot(
             counts[-1:], [factor * row.bar], marker="_", markersize=9.0, markeredgewidth=1.6, color=style["color"]
         )
-        words.append((f"order {row.order:.1f}" if seen else "no order", style["color"]))
-        if np.isfinite(away).any():
-            first = int(np.flatnonzero(np.isfinite(away))[0])
+        words.append((f"order {row.order:.1f}" if observed else "no order", style["color"]))
+        if np.isfinite(distance).any():
+            first = int(np.flatnonzero(np.isfinite(distance))[0])
             span = np.array([counts[first], counts[-1]], dtype=float)
             for order, guide in _GUIDES.items():
-                panel.plot(span, away[first] * (counts[first] / span) ** order, zorder=0, **guide)
+                panel.plot(span, distance[first] * (counts[first] / span) ** order, zorder=0, **guide)
     for place, (word, colour) in enumerate(words):
         panel.text(
             0.98, 0.98 - 0.11 * place, word, color=colour, fontsize=8.0, ha="right", va="top", transform=panel.transAxes

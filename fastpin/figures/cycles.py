@@ -22,18 +22,23 @@ from fastpin.states.cycles import consecutive_cycles
 def plot_cycles(
     result: Result, path: str | Path | None = None, width: float = 6.7, title: str = "", dpi: float = 200.0
 ) -> Figure:
-    """What each cycle of a load history has changed, from its beginning to its end.
+    """Draw the changes that each cycle of a load history makes, from the beginning to the end of the cycle.
 
-    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure; what has
-    changed by rounding only, where the contact is periodic, has no place on its logarithmic scale.
-    Below are the energy dissipated in each cycle, and how far the cycles of a block have turned the pin (ratcheting).
+    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure. Its scale
+    is logarithmic, so it omits the cycles of a periodic contact, whose change is zero to rounding. The middle panel
+    shows the energy dissipated in each cycle. The lower panel shows how far the cycles of a block have turned the pin
+    in all (ratcheting), counter-clockwise positive.
 
     Parameters
     ----------
     result : Result
-        With cycles: of a history with repeated blocks.
+        Result of a history with repeated blocks.
     path, title, width, dpi
-        See :func:`plot_tractions`.
+        See :func:`fastpin.plot_tractions`.
+
+    Returns
+    -------
+    Figure
 
     Raises
     ------
@@ -51,27 +56,27 @@ def _draw_cycles(result: Result, title: str, width: float) -> Figure:
     panels = figure.subplots(3, 1, sharex=True)
     kind = units(result.problem)
     lengths = sorted({cycle.length for cycle in result.cycles})[:MAX_NAMED]
-    shown = [one for one in consecutive_cycles(result.cycles) if one[0].length in lengths]
+    blocks = [cycles for cycles in consecutive_cycles(result.cycles) if cycles[0].length in lengths]
     energy, unit = scaled([cycle.dissipation for cycle in result.cycles], kind["energy"])
-    turns = [np.nancumsum([0.0, *(cycle.rotation_change for cycle in one)]) for one in shown]
+    turns = [np.nancumsum([0.0, *(cycle.rotation_change for cycle in cycles)]) for cycles in blocks]
     angle, unit_of_angle = scaled(np.concatenate(turns).tolist(), kind["rotation"])
-    for one, turned in zip(shown, turns, strict=True):
-        colour = lengths.index(one[0].length)
-        corner = [cycle.corner + 1 for cycle in one]
-        marker: dict[str, Any] = {"marker": "o", "markersize": 2.2} if len(one) <= 60 else {}
+    for cycles, turn in zip(blocks, turns, strict=True):
+        colour = lengths.index(cycles[0].length)
+        corner = [cycle.corner + 1 for cycle in cycles]
+        marker: dict[str, Any] = {"marker": "o", "markersize": 2.2} if len(cycles) <= 60 else {}
         for dashes, field in enumerate(("pressure_change", "shear_change")):
-            change = np.array([getattr(cycle, field) for cycle in one])
+            change = np.array([getattr(cycle, field) for cycle in cycles])
             change[change == 0.0] = np.nan
             panels[0].plot(corner, change, **line(colour, dashes), **marker)
-        dissipated = np.array([energy * cycle.dissipation for cycle in one])
+        dissipated = np.array([energy * cycle.dissipation for cycle in cycles])
         dissipated[~(dissipated > 0.0)] = np.nan
         panels[1].plot(corner, dissipated, **line(colour), **marker)
-        panels[2].plot([corner[0] - one[0].length, *corner], angle * turned, **line(colour), **marker)
+        panels[2].plot([corner[0] - cycles[0].length, *corner], angle * turn, **line(colour), **marker)
     for panel in panels[:2]:
         panel.set_yscale("log")
     largest = np.nanmax([0.0, *(energy * cycle.dissipation for cycle in result.cycles)])
     if largest > 0.0:
-        panels[1].set_ylim(bottom=max(panels[1].get_ylim()[0], 1e-9 * largest))  # below is rounding
+        panels[1].set_ylim(bottom=max(panels[1].get_ylim()[0], 1e-9 * largest))  # less is rounding
     panels[0].set_ylabel("largest change / peak N")
     panels[1].set_ylabel(f"dissipated in a cycle  [{unit}]")
     panels[2].set_ylabel(f"turned, in all  [{unit_of_angle}]")

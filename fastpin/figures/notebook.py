@@ -1,4 +1,4 @@
-"""States and results in notebooks: a small table and a figure as one piece of HTML."""
+"""States and results in notebooks: HTML with a small table and a figure."""
 
 from __future__ import annotations
 
@@ -14,18 +14,19 @@ from fastpin.solver.result import Result
 from fastpin.states.state import State
 
 WIDTH = 5.6
-"""Inches of the figure."""
+"""Width of the figure, inches."""
 
 DPI = 110.0
+"""Dots per inch of the figure."""
 
 
 def state_html(state: State) -> str:
-    """One state: a table with one row, and its tractions."""
+    """Return the HTML of a state: a table with one row, and a figure of the tractions."""
     return _html([state], "")
 
 
 def result_html(result: Result) -> str:
-    """A result: a table and the tractions of at most six states, the first and the last among them."""
+    """Return the HTML of a result: a table and the tractions of at most six states, with the first and the last one."""
     if not len(result):
         return f"<pre>{html.escape(repr(result))}</pre>"
     states = [result[k] for k in spread(len(result), MAX_NAMED)]

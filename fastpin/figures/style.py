@@ -1,4 +1,7 @@
-"""The house style: colours, dashes, legends, saving."""
+"""The style of all figures: colours, dashes, legends, and how figures are saved.
+
+Matplotlib is used without global state and needs no display.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +21,8 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.errors import InputError
 from fastpin.storage.files import check_writable, replacing
 
-# Okabe and Ito's colours, distinct for all kinds of colour vision, without the yellow: too light for a line.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
+"""Okabe and Ito's colours, distinct for all kinds of colour vision. Their yellow is left out: too light for a line."""
 
 DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
     (0, ()),
@@ -29,9 +32,10 @@ DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
     (0, (8.0, 2.0)),
     (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
 )
+"""Line styles of Matplotlib, as many as colours; the first one is solid."""
 
 MAX_NAMED = len(COLOURS)
-"""Up to so many states are drawn with a legend; more get a colour scale."""
+"""Most states that a figure names in its legend; more states get a colour scale."""
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -47,10 +51,26 @@ STYLE: Any = {
     "mathtext.default": "regular",
     "svg.fonttype": "none",
 }
+"""Settings of Matplotlib (``rcParams``)."""
 
 
 def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: float) -> Figure:
-    """The figure that ``draw()`` returns, drawn in the house style, and saved if there is a path."""
+    """Draw a figure in the house style, save it if a path is given, and return it.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw()`` returns the figure.
+    path : path or None
+        The suffix chooses the format.
+    dpi : float
+        Dots per inch of a bitmap.
+
+    Raises
+    ------
+    InputError
+        If the format is unknown, or the file can't be written. It comes before the figure is drawn where possible.
+    """
     if path is not None:
         _check_format(Path(path))
     with mpl.rc_context(STYLE):
@@ -61,26 +81,26 @@ def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: floa
 
 
 def spread(count: int, most: int) -> list[int]:
-    """Places of at most so many of `count` things, evenly spread, the first and the last among them."""
+    """Return the indices of at most `most` of `count` items, evenly spread, with the first and the last one."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
 
 
 Line = dict[str, Any]
-"""How a line is drawn: keywords of ``Axes.plot``."""
+"""Keywords of ``Axes.plot``: colour, dashes, width."""
 
 
 def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
-    """A line in the house's colours and dashes, of which there are :data:`MAX_NAMED` each; 0 is solid."""
+    """Return the keywords of a line. `colour` and `dashes` are below :data:`MAX_NAMED`; dashes 0 are solid."""
     return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
 
 
 def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
-    """Save the figure that ``draw(curves)`` returns, drawn in the house style."""
+    """Draw the figure of ``draw(curves)`` in the house style and save it, see :func:`draw_and_save`."""
     draw_and_save(lambda: draw(curves), path, dpi)
 
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
-    """A figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
+    """Return a new figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
     figure = Figure(figsize=(width, rows * height + 0.6), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False)
@@ -91,12 +111,12 @@ def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> 
 
 
 def angle_axis(panel: Axes) -> None:
-    """Ticks at whole parts of a right angle."""
+    """Put the ticks of an axis in degrees at whole parts of a right angle."""
     panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
 
 
 def key(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
-    """A legend below the panels; each row holds labels with their lines."""
+    """Add a legend below the panels. Each of `rows` is a row of the legend: labels and their lines."""
     columns = max(len(row) for row in rows)
     entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]
     blank = Line2D([], [], linestyle="none", label=" ")
@@ -119,7 +139,7 @@ def _save(figure: Figure, path: Path, dpi: float) -> None:
 
 
 def fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
-    """A legend below the panels, in a font small enough for the figure's width."""
+    """Add a legend below the panels, in a font that fits the figure's width (4 to 8 points)."""
     size = 8.0
     while True:
         legend = figure.legend(

@@ -19,19 +19,35 @@ from fastpin.report.sweep import Axis, Chart
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MOST_COLUMNS = 3
+"""Most maps side by side."""
 
 
 def plot_sweep(chart: Chart, path: str | Path, dpi: float = 160.0) -> None:
-    """Save the figure of a chart (:func:`fastpin.sweeptable.chart`); the suffix of `path` chooses the format.
+    """Save the figure of a sweep: maps over two fields, or curves over one field.
 
-    A map has one cell for each pair of values, whose edges lie halfway between neighbours (on a logarithmic axis by
-    their ratio); cells of failed runs are hatched. Curves have crosses at the lower edge where a run has failed.
+    A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
+    at the geometric mean. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are failed
+    runs, too.
+
+    Parameters
+    ----------
+    chart : Chart
+        From :func:`fastpin.report.sweep.chart`.
+    path : path
+        The suffix chooses the format.
+    dpi : float
+        Dots per inch of a bitmap.
+
+    Raises
+    ------
+    InputError
+        If the figure's format is unknown, or the file can't be written.
     """
     draw_with(_draw_curves if chart.y is None else _draw_maps, chart, path, dpi)
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
-    """Edges of the cells round the values of an axis, shape (n + 1,)."""
+    """Return the edges of the cells around the n values of an axis, shape (n + 1,)."""
     centres = np.log(axis.values) if axis.log else axis.values
     if len(centres) == 1:
         half = 0.5 * (abs(centres[0]) or 1.0)
@@ -73,7 +89,7 @@ def _draw_maps(chart: Chart) -> Figure:
 
 
 def _explain(figure: Figure, chart: Chart) -> None:
-    """What the cells without a value are."""
+    """Add a legend of the cells without a value: of failed runs, and of all others."""
     failed = any(part.any() for _, _, part in chart.parts)
     empty = any((np.isnan(numbers) & ~part).any() for _, numbers, part in chart.parts)
     handles = [Patch(label="failed", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
@@ -91,10 +107,10 @@ def _draw_curves(chart: Chart) -> Figure:
     for index, (name, (_, numbers, failed)) in enumerate(zip(names, chart.parts, strict=True)):
         style = line(index, index) if len(chart.parts) <= MAX_NAMED else {**line(), "color": shades[index]}
         panel.plot(chart.x.values, numbers, marker="o", markersize=2.5, **style)
-        lost = chart.x.values[failed]
+        x = chart.x.values[failed]
         panel.plot(
-            lost,
-            np.full(len(lost), 0.02 + 0.03 * index),
+            x,
+            np.full(len(x), 0.02 + 0.03 * index),
             transform=panel.get_xaxis_transform(),
             marker="x",
             markersize=4.0,
@@ -121,7 +137,7 @@ def _scale_axes(panel: Axes, chart: Chart) -> None:
 
 
 def _finish(figure: Figure, axes: np.ndarray, chart: Chart) -> None:
-    """Title and names of the x axes; panels without a map are taken away."""
+    """Add the title and the labels of the x axes, and hide the panels without a map."""
     filled = 1 if chart.y is None else len(chart.parts)
     for index, panel in enumerate(axes.flat):
         panel.set_visible(index < filled)

@@ -1,4 +1,4 @@
-"""Figures. Only this module and sweepplot.py import matplotlib; they keep no global state and need no display."""
+"""Figures of states: pressure, shear traction, and zones of stick and slip round the hole."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ from fastpin.states.state import State
 _SHADE = "0.93"
 
 MAX_LINES = 60
+"""Most states in a figure. Of more, it shows an even choice."""
 
 
 def plot_tractions(
@@ -39,20 +40,22 @@ def plot_tractions(
     width: float = 6.7,
     dpi: float = 200.0,
 ) -> Figure:
-    """Pressure and shear traction round the hole.
+    """Draw pressure and shear traction round the hole.
 
-    The upper panel shows the pressure N, the middle one the shear traction T on the pin (counter-clockwise
-    positive) within its bounds +-mu N (thin), the lower one where a state slips (shaded) or sticks (solid).
-    Angles are in degrees from the bottom of the hole, counter-clockwise positive. More than
-    :data:`MAX_NAMED` states are coloured by their place in the history instead of being named, and the lower
-    panel is left out.
+    The upper panel shows the pressure N. The middle panel shows the shear traction T on the pin, counter-clockwise
+    positive, and its bounds +-mu N as thin lines. The lower panel shows where each state slips (shaded) or sticks
+    (solid). A single state has no lower panel; its slip zones are shaded in the panels above. Without friction there is
+    only the upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
+
+    Up to :data:`~fastpin.figures.style.MAX_NAMED` states are named in the legend. More states are coloured by their
+    place in the history, without a lower panel. Of more than :data:`MAX_LINES` states an even choice is drawn.
 
     Parameters
     ----------
     states : State, Result or sequence of State
         Of one problem and on one grid.
     path : path, optional
-        Also save the figure; its suffix chooses the format.
+        Also save the figure; the suffix chooses the format.
     title : str
     width : float
         Width in inches.
@@ -66,14 +69,14 @@ def plot_tractions(
     Raises
     ------
     InputError
-        If there is no state, or the figure's format is unknown.
+        If there is no state, the figure's format is unknown, or the file can't be written.
     """
-    shown = [states] if isinstance(states, State) else list(states)
-    if not shown:
+    drawn = [states] if isinstance(states, State) else list(states)
+    if not drawn:
         raise InputError("states", "there is no state to plot")
-    if len(shown) > MAX_LINES:
-        shown = [shown[k] for k in drawn_places(len(shown))]
-    return draw_and_save(lambda: _draw(shown, title, width), path, dpi)
+    if len(drawn) > MAX_LINES:
+        drawn = [drawn[k] for k in drawn_places(len(drawn))]
+    return draw_and_save(lambda: _draw(drawn, title, width), path, dpi)
 
 
 def _draw(states: list[State], title: str, width: float) -> Figure:
@@ -126,19 +129,29 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
 
 
 def drawn_places(count: int) -> list[int]:
-    """Places of the states that a figure draws of `count`: all of a few, evenly spread ones of many."""
+    """Return the indices of the states that a figure draws of `count`: all, or :data:`MAX_LINES` spread evenly."""
     return spread(count, MAX_LINES)
 
 
 class _Frame:
-    """Where on the angle axis things are drawn: all that touches in some state, and a little more."""
+    """The angle axis of a figure. It spans all nodes that touch in some state, and a little more.
+
+    Attributes
+    ----------
+    order : ndarray of int
+        Nodes in the order in which they are drawn. A circle is cut open; its first node then stands at both ends.
+    angle : ndarray
+        Angles of these nodes, degrees from the bottom, increasing.
+    limits : (float, float)
+        Ends of the axis, degrees.
+    """
 
     def __init__(self, states: list[State]) -> None:
         grid = states[0].grid
         touched = np.any([state.status != OPEN for state in states], axis=0)
         self.order = np.arange(grid.size)
         if grid.closed and not touched.all():
-            # The circle is cut open in the middle of the longest stretch that never touches.
+            # The circle is cut open in the middle of the longest stretch that is open in all states.
             self.order = np.roll(self.order, -_middle_of_longest_gap(touched))
         angle = np.degrees(np.unwrap(grid.theta[self.order])) + 90.0
         if grid.closed:
@@ -152,20 +165,20 @@ class _Frame:
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
 
     def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Angle, pressure and shear to draw; nothing where two neighbours are open."""
+        """Return angle, pressure and shear in the order of drawing; NaN at open nodes without a closed neighbour."""
         closed = state.status != OPEN
-        beside = closed.copy()
-        beside[1:] |= closed[:-1]
-        beside[:-1] |= closed[1:]
+        drawn = closed.copy()
+        drawn[1:] |= closed[:-1]
+        drawn[:-1] |= closed[1:]
         if state.grid.closed:
-            beside[0] |= closed[-1]
-            beside[-1] |= closed[0]
-        pressure = np.where(beside, state.pressure, np.nan)
-        shear = np.where(beside, state.shear, np.nan)
+            drawn[0] |= closed[-1]
+            drawn[-1] |= closed[0]
+        pressure = np.where(drawn, state.pressure, np.nan)
+        shear = np.where(drawn, state.shear, np.nan)
         return self.angle, pressure[self.order], shear[self.order]
 
     def place(self, start: float, stop: float) -> list[tuple[float, float]]:
-        """Parts (first angle, width) of an interval in rad on the axis, in degrees."""
+        """Return the parts of an interval, given in rad, that lie on the axis: (first angle, width) in degrees."""
         length = math.degrees(stop - start)
         first = math.degrees(start) + 90.0
         first += 360.0 * math.ceil((self.limits[0] - first - length) / 360.0)
@@ -181,7 +194,7 @@ class _Frame:
 def _middle_of_longest_gap(touched: np.ndarray) -> int:
     size = touched.size
     best, middle, run = 0, 0, 0
-    for k in range(2 * size):  # twice round, so that a stretch across the seam counts in full
+    for k in range(2 * size):  # twice round: a stretch may cross the seam of the circle
         run = 0 if touched[k % size] else run + 1
         if run > best:
             best, middle = run, k - run // 2
@@ -196,7 +209,7 @@ def _shade_slip(axes: Sequence[Axes], state: State, frame: _Frame) -> None:
 
 
 def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame: _Frame) -> None:
-    """One row a state: solid where it sticks, shaded where it slips, with an arrow for the pin's sense."""
+    """Draw one row for each state: solid where it sticks, shaded where it slips. Arrows show the pin's direction."""
     for row, state in enumerate(states):
         colour = colours[row]
         for start, stop, sign in state.slip_zones:
@@ -218,7 +231,7 @@ def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame:
 def _name_states(
     figure: Figure, axes: np.ndarray, states: list[State], colours: Sequence[Any], title: str, named: bool
 ) -> None:
-    """Legend or colour scale; what all states share goes to the title."""
+    """Add the legend or the colour scale. Loads that are equal in all states stand in the title."""
     loads = [state.load for state in states]
     acting = acting_loads(loads)
     varying = [name for name in acting if any(load[name] != loads[0][name] for load in loads)]
@@ -252,7 +265,7 @@ def _name_states(
 
 
 def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:
-    """Legend entries, filled up so that states and styles stand in columns of their own, and the columns."""
+    """Return legend entries and the number of columns. Blank entries keep states and styles in separate columns."""
     if not states:
         return styles, max(len(styles), 1)
     rows = len(states) if len(states) <= 3 else math.ceil(len(states) / 2)
@@ -266,9 +279,9 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
 
 
 def _load_text(states: list[State], index: int, name: str) -> str:
-    """A load with its unit; all loads of one kind are given in the same one."""
-    alike = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = scaled(alike, units(states[0].problem)[LOAD_KIND[name]])
+    """Return a load with its unit as text. All loads of one kind have the same unit."""
+    same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
+    factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
     symbol = {"sxx": "$σ_{xx}$", "syy": "$σ_{yy}$"}.get(name, name)
     value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
     if states[index].load[name] == 0.0:

@@ -1,1 +1,1 @@
-"""Compiled code and BLAS: arrays and numbers in, arrays and a status code out."""
+"""Compiled code and BLAS. Its functions take arrays and numbers, and return arrays or a code."""

@@ -1,25 +1,26 @@
 """Compiled exchange steps: follow the contact along a straight piece of the load history, exactly.
 
-Between two changes of status everything is linear in the load. The tableau holds, for every node, a normal pair
-(N, h) and a tangential pair (tau, s), where tau = T + tie mu N; at slipping nodes the tie is the status, and tau = 0.
-One of each pair is *dependent*, the other one has rate zero:
+Between two changes of status everything is linear in the load. The tableau holds two pairs for every node: a normal
+pair (N, h) and a tangential pair (tau, s), where tau = T + tie mu N. At slipping nodes the tie is the status, and
+tau = 0. One member of each pair is *dependent*, the other member has rate zero:
 
     open:   N and tau have rate zero,  h and s are dependent
     stick:  h and s have rate zero,    N and tau are dependent
     slip:   h and tau have rate zero,  N and s are dependent
 
-The matrix maps the zero-rate variables to the dependent ones and to the three components of the pin's motion (its
-last rows). A change of status exchanges the members of a pair, which is a rank-one update, and so is a change of a
-tie. Updates are kept in order, and a column of the matrix is brought up to date only when it is asked for: update k
-adds to column j
+The matrix maps the zero-rate variables to the dependent variables. Its last three rows give the components of the
+pin's motion. A change of status exchanges the members of a pair, which is a rank-one update. A change of a tie is a
+rank-one update too. Updates are kept in order. A column of the matrix is brought up to date only when it is needed.
+Update k adds to column j
 
-    left[:, k] (M_k[source_k, j] + delta_k [j = slot_k]),      M_k the matrix before it (source_k < 0: no first term),
+    left[:, k] (M_k[source_k, j] + delta_k [j = slot_k]),
 
-so an update is one vector and three numbers. Columns are kept in blocks of `WIDTH`; the caller computes the blocks
-that are asked for and brings them up to date, `CHUNK` updates at a time, by matrix products. Only the rates of the
-dependent variables are updated at once.
+where M_k is the matrix before the update; for source_k < 0 the first term is absent. So an update is one vector and
+three numbers. Columns are kept in blocks of `WIDTH`. The caller computes the blocks that are needed. It brings them up
+to date by matrix products, `CHUNK` updates at a time. Only the rates of the dependent variables are updated
+immediately.
 
-Kernels take arrays and numbers, change only their own arrays, and return a code.
+Kernels take arrays and numbers, change only arrays among their arguments, and return a code.
 """
 
 from __future__ import annotations
@@ -39,13 +40,11 @@ WIDTH = 32
 CHUNK = 64
 """Updates applied to a block at a time."""
 
-# What `follow` returns.
-REACHED = 0  # the requested point of the step
-STALE = 1  # a column is needed whose block is not up to date: counts[ASKED]
+# Codes that `follow` returns.
+REACHED = 0  # the contact is at the requested point of the step
+STALE = 1  # the block of the column counts[NEEDED_COLUMN] is not up to date
 REBUILD = 2  # a pivot was small, or there is no room for more updates: rebuild the tableau and call again
-
-ALL_AT_ONCE = 3  # all statuses of the queue were changed at once; it has the old ones: rebuild and call again
-
+ALL_AT_ONCE = 3  # all queued statuses were changed at once; the queue holds the old ones: rebuild and call again
 NO_SUPPORT = 4  # nothing holds the pin any more
 CYCLING = 5  # the statuses did not settle
 ARC_END = 6  # the contact reaches an end node
@@ -56,19 +55,30 @@ UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, COUNTS = 0, 1, 2
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
 
-RATE_TOLERANCE = 1e-11  # rates below this part of the largest one are zero
+RATE_TOLERANCE = 1e-11  # rates below this part of the largest rate are zero
 VALUE_TOLERANCE = 1e-13  # likewise for gaps and the reserve mu N - |T|
-PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, for mirrored nodes to open together
-SMALL_PIVOT = 1e-9  # pivots below this part of a typical one belong to a mechanism
-UNUSUAL_PIVOT = 1e-6  # stiffnesses so far below a typical one, and compliances so far above, ask for a new tableau
-TOGETHER_ROUNDS = 12  # rounds in which all violators change at once; afterwards one at a time
-MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, a node that takes over included
+PRESSURE_TOLERANCE = 1e-10  # likewise for pressures; wider, so that mirrored nodes open together
+SMALL_PIVOT = 1e-9  # pivots below this part of a typical pivot belong to a mechanism
+UNUSUAL_PIVOT = 1e-6  # a stiffness this far below a typical one, or a compliance this far above: a new tableau is built
+TOGETHER_ROUNDS = 12  # rounds in which all violators change together; afterwards one at a time
+MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, with the change of a node that takes over
 
 
 class Tableau(NamedTuple):
-    """The matrix (2n+3, 2n), column by column, its updates, and the rates (2n+3,) of the dependent variables.
+    """A matrix, its updates, and the rates of the dependent variables.
 
-    ``fresh`` has, for every block of columns, the number of updates that it contains; -1 if it was never computed.
+    Attributes
+    ----------
+    matrix : ndarray, shape (2n+3, 2n), column by column
+    fresh : ndarray of int, shape (blocks,)
+        Number of updates that each block of columns contains; -1 if the block was never computed.
+    left : ndarray, shape (2n+3, room), column by column
+        The vector of each update.
+    source, slot : ndarray of int, shape (room,)
+    delta : ndarray, shape (room,)
+        The three numbers of each update.
+    rates : ndarray, shape (2n+3,)
+        Rates of the dependent variables and of the pin's motion, per unit of the step.
     """
 
     matrix: np.ndarray
@@ -81,7 +91,10 @@ class Tableau(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """What evolves along a step, shape (n,) each but for ``motion`` (3,). ``touched``: was the node ever closed?"""
+    """The contact that evolves along a step. All arrays have shape (n,), only ``motion`` has shape (3,).
+
+    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module.
+    """
 
     pressure: np.ndarray
     shear: np.ndarray
@@ -94,8 +107,21 @@ class Contact(NamedTuple):
 
 
 class LoadTerms(NamedTuple):
-    """What enters the work of the loads: the weights (2n,) of traction rates and the force (Q, -P) at the beginning of
-    the step, and how much both grow along it; and the weights of the nodes."""
+    """Terms of the work of the loads.
+
+    Attributes
+    ----------
+    column : ndarray, shape (2n,)
+        Weights of the traction rates at the beginning of the step.
+    column_rate : ndarray, shape (2n,)
+        Growth of ``column`` along the step.
+    force : ndarray, shape (2,)
+        Force (Q, -P) at the beginning of the step.
+    force_rate : ndarray, shape (2,)
+        Growth of ``force`` along the step.
+    weights : ndarray, shape (n,)
+        Weights of the nodes.
+    """
 
     column: np.ndarray
     column_rate: np.ndarray
@@ -105,7 +131,10 @@ class LoadTerms(NamedTuple):
 
 
 class Queue(NamedTuple):
-    """Changes of status that are waiting (2n,), and what is counted and summed along a step."""
+    """Waiting changes of status, and the counters and sums of a step.
+
+    ``node`` and ``status``, shape (2n,), are the waiting changes. ``counts`` and ``sums`` have the slots above.
+    """
 
     node: np.ndarray
     status: np.ndarray
@@ -115,7 +144,7 @@ class Queue(NamedTuple):
 
 @inner
 def _column(tableau, updates, p, out):
-    """Column p after so many updates. Its block must have been computed."""
+    """Write column p after so many updates to `out`. Its block must have been computed."""
     matrix, left = tableau.matrix, tableau.left
     for i in range(out.size):
         out[i] = matrix[i, p]
@@ -132,13 +161,13 @@ def _column(tableau, updates, p, out):
 
 @inner
 def _stale(tableau, updates, p):
-    """Whether column p has a block that was never computed, or that lacks a whole chunk of updates."""
+    """Whether the block of column p was never computed, or lacks a whole chunk of updates."""
     return tableau.fresh[p // WIDTH] < updates - updates % CHUNK
 
 
 @inner
 def _exchange(tableau, updates, p):
-    """Exchange the members of pair p, whose column stands in left[:, updates]; appends that update."""
+    """Exchange the members of pair p, and append this update. Column p must stand in left[:, updates]."""
     column, rates = tableau.left[:, updates], tableau.rates
     pivot = column[p]
     column[p] += 1.0
@@ -151,7 +180,7 @@ def _exchange(tableau, updates, p):
 
 @inner
 def _add_row(tableau, updates, target, source, factor):
-    """Row `target` += factor * row `source`; appends one update."""
+    """Add factor * row `source` to row `target`. This appends one update."""
     left = tableau.left
     for i in range(left.shape[0]):
         left[i, updates] = 0.0
@@ -162,7 +191,7 @@ def _add_row(tableau, updates, target, source, factor):
 
 @inner
 def _add_column(tableau, updates, target, source, factor):
-    """Column `target` += factor * column `source`; appends one update."""
+    """Add factor * column `source` to column `target`. This appends one update."""
     column = tableau.left[:, updates]
     _column(tableau, updates, source, column)
     for i in range(column.size):
@@ -172,7 +201,7 @@ def _add_column(tableau, updates, target, source, factor):
 
 @inner
 def _needed_column(tableau, updates, node, old, new, tie):
-    """The first column that a change of status needs and that is not up to date; -1 if there is none."""
+    """The first stale column among the columns that a change of status needs; -1 if none is stale."""
     tangential = tableau.matrix.shape[1] // 2 + node
     if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
         return node
@@ -183,17 +212,18 @@ def _needed_column(tableau, updates, node, old, new, tie):
 
 @inner
 def _change_status(tableau, updates, contact, friction, typical, node, new):
-    """Give `node` the status `new`; the values of N and T must fit both. A sticking node opens in two changes.
+    """Give `node` the status `new`. The values of N and T must fit the old and the new status.
 
-    Returns (updates, size of the pivot over a typical one). If the pivot belongs to a mechanism its size is 0 and
-    nothing is changed; left[:, updates] then holds the motion that would be free.
+    A sticking node opens in two changes. Returns (updates, size of the pivot over a typical pivot). If the pivot
+    belongs to a mechanism, the size is 0 and nothing is changed. Then left[:, updates] holds the motion that would be
+    free.
     """
     tangential = contact.status.size + node
     old, tie = contact.status[node], contact.tie[node]
     column = tableau.left[:, updates]
     pair = tangential if old == STICK or new == STICK else node
     _column(tableau, updates, pair, column)
-    if old == STICK:  # the change of T, not of tau, with s
+    if old == STICK:  # the stiffness is the change with s of T, not of tau
         stiffness = abs(column[tangential] - tie * friction * column[node]) * typical
     elif new == OPEN:
         stiffness = abs(column[node]) * typical
@@ -228,7 +258,7 @@ def _shear_rate(rates, contact, friction, i):
 
 @inner
 def _rate_scales(rates, contact, friction):
-    """Largest traction rate and largest displacement rate."""
+    """The largest traction rate and the largest displacement rate."""
     status = contact.status
     n = status.size
     traction, length = 0.0, 0.0
@@ -246,7 +276,10 @@ def _rate_scales(rates, contact, friction):
 
 @inner
 def _friction_violators(contact, rates, friction, traction_tol, length_tol, queue):
-    """Queue the nodes whose friction status contradicts the rates: first those that stick, then those that slip."""
+    """Queue the nodes whose friction status contradicts the rates. Returns their number.
+
+    Nodes that are to stick come first, then nodes that are to slip.
+    """
     status = contact.status
     n = status.size
     queued = 0
@@ -276,7 +309,7 @@ def _friction_violators(contact, rates, friction, traction_tol, length_tol, queu
 
 @inner
 def _contact_violators(contact, rates, traction_tol, length_tol, queue):
-    """Queue the open nodes that close; if there are none, the closed nodes that open."""
+    """Queue the open nodes that close. If none closes, queue the closed nodes that open. Returns their number."""
     status = contact.status
     n = status.size
     queued = 0
@@ -296,9 +329,9 @@ def _contact_violators(contact, rates, traction_tol, length_tol, queue):
 
 @inner
 def _relief(free_motion, status, rates, node, direction):
-    """The slipping node that sticks first when `node`, the last one that holds the pin, lets go in `direction`.
+    """The slipping node that sticks first when `node`, the last node that holds the pin, lets go in `direction`.
 
-    `free_motion` (2n+3,) is the motion that becomes free. Returns -1 if no node would stop it.
+    `free_motion` (2n+3,) is the motion that becomes free. Returns -1 if no node would stop this motion.
     """
     n = status.size
     best, chosen = np.inf, -1
@@ -314,7 +347,7 @@ def _relief(free_motion, status, rates, node, direction):
 
 @inner
 def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
-    """Time to the next change of status, at most `limit`."""
+    """Time to the next event, at most `limit`."""
     status = contact.status
     first = limit
     for i in range(status.size):
@@ -338,7 +371,10 @@ def _next_event(contact, rates, friction, traction_tol, length_tol, limit):
 
 @inner
 def _advance(contact, rates, friction, weights, step):
-    """Move everything by `step`; values that reach their bound are put exactly there. Returns what friction takes."""
+    """Advance the contact by `step`, and set values that reach their bound exactly to it.
+
+    Returns the energy that friction dissipates.
+    """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
     n = status.size
     most_pressure, most_gap = 0.0, 0.0
@@ -376,7 +412,7 @@ def _advance(contact, rates, friction, weights, step):
 
 @inner
 def _work(contact, rates, friction, load, time, step):
-    """Work of the loads over a step, exact for the piecewise linear path (call it before `_advance`)."""
+    """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`."""
     status = contact.status
     n = status.size
     middle = time + 0.5 * step
@@ -399,7 +435,7 @@ def _work(contact, rates, friction, load, time, step):
 
 @inner
 def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
-    """Make the changes of status that are waiting; returns REACHED when there are none left."""
+    """Make the waiting changes of status. Returns REACHED when none is left, or another code."""
     counts = queue.counts
     n = contact.status.size
     while counts[NEXT] < counts[QUEUED]:
@@ -421,7 +457,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
         if size == 0.0:
             if old != STICK:
                 return NO_SUPPORT
-            # The last node that holds the pin: another one must take over first.
+            # This is the last node that holds the pin: another node must take over first.
             other = _relief(tableau.left[:, updates], contact.status, tableau.rates, node, new)
             if other < 0:
                 return NO_SUPPORT
@@ -449,7 +485,7 @@ def _apply_queue(tableau, contact, queue, friction, typical, closed_grid):
 
 @inner
 def _change_all_at_once(contact, queue, queued, closed_grid):
-    """Give all queued nodes their new statuses at once, for a new tableau; the queue keeps the old ones."""
+    """Give all queued nodes their new statuses at once, for a new tableau. The queue keeps the old statuses."""
     n = contact.status.size
     for k in range(queued):
         node, new = queue.node[k], queue.status[k]
@@ -464,27 +500,30 @@ def _change_all_at_once(contact, queue, queued, closed_grid):
 
 @compiled
 def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, most_events, all_at_once):
-    """Follow the load from sums[TIME] to `stop`, status change by status change.
+    """Follow the load from sums[TIME] to `stop`, event by event.
 
     Parameters
     ----------
-    tableau, contact, load, queue : Tableau, Contact, LoadWork, Queue
-        Time runs from 0 to 1 along the step; rates are per unit of it.
+    tableau, contact, load, queue : Tableau, Contact, LoadTerms, Queue
+        All but `load` are changed in place. Time runs from 0 to 1 along the step. Rates are per unit of this time.
     friction : float
+        Coefficient of friction.
     closed_grid : bool
-        Whether the grid is the whole circle; if not, its end nodes must stay open.
+        Whether the grid is the whole circle. If not, its end nodes must stay open.
     typical : float
         A typical compliance (diagonal of the operator), to judge pivots.
     stop : float
+        Time at which to stop, 0 to 1.
     most_events : int
         More events than this mean that the statuses cycle.
-    wholesale : int
-        More changes than this at once are made in one go, without exchanges, and WHOLESALE is returned.
+    all_at_once : int
+        If more nodes than this violate their statuses, all change at once without exchanges, and ALL_AT_ONCE is
+        returned.
 
     Returns
     -------
     int
-        One of the codes above. After STALE, REBUILD and WHOLESALE the caller calls again.
+        One of the codes above. After STALE, REBUILD and ALL_AT_ONCE the caller calls again.
     """
     counts, sums, rates = queue.counts, queue.sums, tableau.rates
     settled = False

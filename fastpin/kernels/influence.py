@@ -1,23 +1,23 @@
-"""Compiled: closed-form influence integrals of hat functions.
+"""Compiled closed-form integrals of the influence functions over hat functions.
 
-Notation of the paper, with x = theta - xi:
+The notation is the paper's, with x = theta - xi:
 
     C = cos x,  S = sin x,  L = ln(2 - 2 cos x),  A = x/2 - (pi/2) sign x  (2 pi-periodic).
 
-Two combinations carry the displacements (30), (31), and one the integral equations (46), (47):
+Two kernels give the displacements (30), (31). The third gives the integral equations (46), (47):
 
     direct(x) = ratio S A - C L   (even),      ratio = alpha*/beta*
     cross(x)  = ratio C A + S L   (odd)
     cot(x/2)                      (odd, principal value)
 
-A hat is two half hats, and a half hat that falls from 1 at u = theta - node to 0 over a length h gives
+A hat is two half hats. A half hat falls from 1 at its node to 0 over a length h. With u = theta - node it gives
 
     int_0^h k(u - t) (1 - t/h) dt = K1(u) - [K2(u) - K2(u - h)]/h,      K2'' = K1' = k.
 
-K1 and K2 vanish at 0 (but for K1 = L of the cotangent), so that their difference near a node keeps its
-digits. Further away than 8 lengths of the half hat it would lose them; there 4-point Gauss quadrature is
-right to 1e-12. That is for single hats. In matrices nearly all hats are seen from afar, and are summed up by their
-moments (:func:`log_columns`), to 1e-14.
+K1 and K2 vanish at 0, so that their difference keeps its digits near a node. The only exception is K1 = L of the
+cotangent. Farther away than 8 lengths of the half hat, the difference would lose digits. There 4-point Gauss quadrature
+is right to 1e-12. This is the way for single hats. In matrices nearly all hats are far away. They are replaced by their
+moments (:func:`log_columns`), which is right to 1e-14.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ TWO_PI = 2.0 * math.pi
 TWO_PI_LOW = 2.4492935982947064e-16
 NEAR = 8.0  # lengths of a half hat within which the exact difference is used
 
-# Cl2(x) = x - x ln|x| + sum a_k x^(2k+1) and Cl2(pi - y) = y ln 2 - sum b_k y^(2k+1); the Bernoulli numbers
-# are written as |B_2k| / (2k)! = 2 zeta(2k) / (2 pi)^(2k).
+# Cl2(x) = x - x ln|x| + sum a_k x^(2k+1) and Cl2(pi - y) = y ln 2 - sum b_k y^(2k+1). The Bernoulli numbers
+# are |B_2k| / (2k)! = 2 zeta(2k) / (2 pi)^(2k).
 _ORDERS = 2.0 * np.arange(1, 19)
 AROUND_ZERO = 2.0 * zeta(_ORDERS) / (TWO_PI**_ORDERS * _ORDERS * (_ORDERS + 1.0))
 AROUND_PI = AROUND_ZERO * (2.0**_ORDERS - 1.0)
@@ -45,8 +45,8 @@ AROUND_PI_TERMS = 18
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
 
 FAR = 6.0  # lengths of the longer half of a hat beyond which a series in its moments is used
-TERMS = 15  # of that series
-HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of half a hat, on (0, 1)
+TERMS = 15  # terms of this series
+HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of a half hat, on (0, 1)
 HAT_POINT = 0.5 * (1.0 + HAT_POINT)
 HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
 
@@ -54,7 +54,7 @@ HAT_WEIGHT = 0.5 * HAT_WEIGHT * (1.0 - HAT_POINT)
 @compiled
 def clausen(x):
     """Clausen's function Cl2(x) = -int_0^x ln|2 sin(t/2)| dt for any real x, to 1e-15."""
-    if abs(x) > math.pi:  # fmod is exact; TWO_PI_LOW is what the double TWO_PI lacks of 2 pi
+    if abs(x) > math.pi:  # fmod is exact; TWO_PI_LOW is 2 pi minus the double TWO_PI
         rest = np.fmod(x, TWO_PI)
         turns = math.floor((x - rest) / TWO_PI + 0.5)
         if abs(rest) > math.pi:
@@ -81,7 +81,7 @@ def clausen(x):
 
 @compiled
 def log_kernels(x, ratio):
-    """The kernels (direct, cross) at x, x not a multiple of 2 pi, |x| < 4 pi."""
+    """The kernels (direct, cross) at x, rad. |x| < 4 pi, and x is no multiple of 2 pi."""
     s = math.sin(x)
     c = math.cos(x)
     half = math.sin(0.5 * x)
@@ -94,7 +94,7 @@ def log_kernels(x, ratio):
 
 @compiled
 def log_antiderivatives(x, ratio):
-    """First and second antiderivatives of (direct, cross) at x, |x| < 4 pi.
+    """First and second antiderivatives of (direct, cross) at x, rad, |x| < 4 pi.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def log_antiderivatives(x, ratio):
     sa_2 = versed - 0.5 * x * s + jump * (s - x)
     ca_1 = 0.5 * x * s - jump * s - 0.5 * versed
     ca_2 = (s - x) + 0.5 * x * versed - jump * versed
-    if abs(x) > TWO_PI:  # past the next jump of A; only hats wider than half a turn come here
+    if abs(x) > TWO_PI:  # beyond the next jump of A: only for hats wider than half a turn
         jump *= 2.0
         sa_1 -= jump * versed
         sa_2 += jump * (s - x) + TWO_PI * math.pi
@@ -150,7 +150,7 @@ def hat_log(u, h_left, h_right, ratio):
     Parameters
     ----------
     u : float
-        theta minus the hat's node, rad, any turn.
+        Angle theta minus the node of the hat, rad, in any turn.
     h_left, h_right : float
         Distances to the outer knots, rad; 0 for a half hat at the end of an arc.
     ratio : float
@@ -174,7 +174,7 @@ def hat_log(u, h_left, h_right, ratio):
 def half_hat_cauchy(u, h):
     """int_0^h cot((u - t)/2) (1 - t/h) dt for u in [-pi, pi].
 
-    At u = 0, where the integral diverges, its finite part without the logarithm: the two halves of a hat have
+    At u = 0 the integral diverges. Then this is its finite part without the logarithm: the two halves of a hat have
     opposite logarithms there.
     """
     if max(u - h, -u) > NEAR * h:
@@ -191,9 +191,9 @@ def half_hat_cauchy(u, h):
 
 @compiled
 def hat_cauchy(u, h_left, h_right):
-    """Principal value of the integral of cot(x/2) over a hat; arguments as in :func:`hat_log`.
+    """Principal value of the integral of cot(x/2) over a hat. Arguments are as in :func:`hat_log`.
 
-    A half hat at its own node has no principal value: NaN.
+    A half hat has no principal value at its own node: the result is NaN.
     """
     u = u - TWO_PI * math.floor(u / TWO_PI + 0.5)
     if u == 0.0 and (h_left == 0.0 or h_right == 0.0):
@@ -208,7 +208,7 @@ def hat_cauchy(u, h_left, h_right):
 
 @compiled
 def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
-    """The loops of :func:`log_columns`; `series` as from :func:`_hat_series`."""
+    """Run the loops of :func:`log_columns`. The `series` come from :func:`_hat_series`."""
     m = seen.size
     sin_seen, cos_seen = np.empty(m), np.empty(m)
     for i in range(m):
@@ -221,7 +221,7 @@ def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
         sin_node, cos_node = math.sin(0.5 * node), math.cos(0.5 * node)
         real, imag = series[j, 0], series[j, 1]
         near = math.sin(min(0.5 * FAR * max(h_left[j], h_right[j]), 0.5 * math.pi))
-        for i in range(m):  # of half the distance
+        for i in range(m):  # sine and cosine of half the distance
             sine[i] = sin_seen[i] * cos_node - cos_seen[i] * sin_node
             cosine[i] = cos_seen[i] * cos_node + sin_seen[i] * sin_node
         for i in range(m):
@@ -251,12 +251,14 @@ def _columns(seen, nodes, h_left, h_right, ratio, scale, series, direct, cross):
 
 
 def _hat_series(h_left, h_right, ratio):
-    """Coefficients of the powers of cot(x/2) in :func:`log_columns` for each hat, by Gauss quadrature over its halves.
+    """Coefficients of the powers of cot(x/2) in :func:`log_columns`, for each hat.
+
+    They come from Gauss quadrature over the two halves of the hat.
 
     Returns
     -------
     series : ndarray, shape (k, 2, TERMS + 1)
-        Real and imaginary parts; last the factor of ratio A(x) - i L(x).
+        Real and imaginary parts. The last coefficient is the factor of ratio A(x) - i L(x).
     """
     t = np.hstack([np.multiply.outer(h_right, HAT_POINT), np.multiply.outer(-h_left, HAT_POINT)])
     weight = np.hstack([np.multiply.outer(h_right, HAT_WEIGHT), np.multiply.outer(h_left, HAT_WEIGHT)])
@@ -272,14 +274,14 @@ def _hat_series(h_left, h_right, ratio):
 
 
 def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
-    """`scale` times the integrals of direct and cross over hats, one column for each hat.
+    """Compute `scale` times the integrals of direct and cross over hats, one column for each hat.
 
     Far from a hat's node, at x = seen - node, the kernels at x - t are
 
         cross + i direct = exp(i (x - t)) [ratio A(x - t) - i L(x - t)],
         A(x - t) = A(x) - t/2,   L(x - t) = L(x) + 2 ln cos(t/2) - 2 sum_p (cot(x/2) tan(t/2))^p / p,
 
-    so that a hat is known by its moments, and a point costs one logarithm and a polynomial in cot(x/2).
+    so the moments of a hat are enough. Each point costs one logarithm and a polynomial in cot(x/2).
 
     Parameters
     ----------
@@ -288,7 +290,7 @@ def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
     nodes, h_left, h_right : ndarray, shape (k,)
         Nodes of the hats and distances to their outer knots, rad. `seen` and `nodes` lie within one turn.
     ratio, scale : float
-        alpha*/beta*; a factor.
+        The ratio alpha*/beta*, and a factor of all integrals.
     direct, cross : ndarray, shape (m, k), output
     """
     series = _hat_series(h_left, h_right, ratio)
@@ -297,7 +299,10 @@ def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
 
 @compiled
 def cauchy_columns(seen, nodes, h_left, h_right, out):
-    """Principal values of the integrals of cot(x/2) over hats, one column each; arguments as in :func:`log_columns`."""
+    """Compute the principal values of the integrals of cot(x/2) over hats, one column for each hat.
+
+    Arguments are as in :func:`log_columns`. Output is `out`, shape (m, k).
+    """
     for j in range(nodes.size):
         for i in range(seen.size):
             out[i, j] = hat_cauchy(seen[i] - nodes[j], h_left[j], h_right[j])
@@ -313,24 +318,26 @@ def fill_operator(
     uniform_part: float,
     operator: np.ndarray,
 ) -> None:
-    """The symmetric part of the displacements (30), (31): (gap, slip) of tractions (N, T), without the motion.
+    """Fill the symmetric part of the displacements (30), (31). It maps tractions (N, T) to (gap, slip).
+
+    The motion of the pin is not part of it.
 
     Parameters
     ----------
     theta, left, right : ndarray, shape (n,)
-        Nodes and the outer knots of their hats, rad; a half hat has its outer knot at the node.
+        Nodes and the outer knots of their hats, rad. A half hat has its outer knot at the node.
     uniform : bool
-        Nodes are equally spaced: two columns are integrated, the others are copies, and mirrored entries have the
-        same bits.
+        Whether the nodes are equally spaced. Then at most two columns are integrated, the other columns are copies, and
+        mirrored entries have the same bits.
     closed : bool
-        The nodes go round the whole circle.
+        Whether the nodes go round the whole circle.
     ratio : float
         alpha*/beta*.
     uniform_part : float
-        Expansion of the pin, taken off `direct` in the gap of a pressure.
+        Expansion of the pin. It is subtracted from `direct` in the gap of a pressure.
     operator : ndarray, shape (2n, 2n), Fortran order, output
-        [[direct - uniform_part, cross], [-cross, direct]] / (4 pi), where direct[i, j] is the integral over hat j of
-        ratio S A - C L at theta_i - xi, and cross likewise that of ratio C A + S L.
+        The matrix [[direct - uniform_part, cross], [-cross, direct]] / (4 pi). Here direct[i, j] is the integral of
+        ratio S A - C L at theta_i - xi over hat j, and cross[i, j] is the integral of ratio C A + S L.
     """
     n = theta.size
     blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
@@ -347,10 +354,10 @@ def fill_operator(
 def fill_cauchy(
     theta: np.ndarray, left: np.ndarray, right: np.ndarray, uniform: bool, closed: bool, out: np.ndarray
 ) -> None:
-    """Principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
+    """Fill `out`, shape (n, n), with the principal values out[i, j] = PV int hat_j(xi) cot((theta_i - xi)/2) dxi.
 
-    Parameters as in :func:`fill_operator`. The half hats of an arc have no principal value at their own nodes:
-    out[0, 0] and out[n-1, n-1] are NaN (tractions vanish at the ends of an arc: leave those columns out).
+    The other parameters are as in :func:`fill_operator`. The half hats of an arc have no principal value at their own
+    nodes: out[0, 0] and out[n-1, n-1] are NaN. Tractions vanish at the ends of an arc, so leave these columns out.
     """
     seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
     cauchy_columns(seen, nodes, h_left, h_right, out[:, : nodes.size])
@@ -359,11 +366,11 @@ def fill_cauchy(
 
 
 def _hats(theta, left, right, uniform, closed):
-    """The hats to be integrated: all; of equally spaced nodes those from which the others follow.
+    """The hats to be integrated. For equally spaced nodes these are the hats from which all columns follow.
 
-    Returns where they are seen from, shape (n,), and their nodes and distances to the outer knots, shape (k,). Equally
-    spaced nodes are counted from the first one; an arc's first half hat and first whole one are enough, or one hat of
-    a circle.
+    Returns the angles at which the integrals are taken, shape (n,), then the nodes of the hats and the distances to
+    their two outer knots, shape (k,) each. Angles of equally spaced nodes count from the first node. The first half hat
+    and the first whole hat are enough for an arc, and one hat for a circle.
     """
     if not uniform:
         return theta, theta, theta - left, right - theta
@@ -376,9 +383,10 @@ def _hats(theta, left, right, uniform, closed):
 
 
 def _copy_columns(out, parity, closed):
-    """The columns of equally spaced nodes from those of :func:`_hats`: entries depend on i - j, with a parity.
+    """Fill the columns of equally spaced nodes from the columns of the hats of :func:`_hats`.
 
-    `out` (..., n, n) are matrices of which the first columns are given, `parity` (...) is 1 or -1 for each.
+    Entries depend on i - j, with a parity. `out` (..., n, n) holds matrices with given first columns. `parity` (...) is
+    1 or -1 for each matrix.
     """
     n = out.shape[-1]
     odd = parity < 0.0
@@ -387,7 +395,7 @@ def _copy_columns(out, parity, closed):
         values = out[..., 0].copy()
         values[..., n // 2 + 1 :] = parity * values[..., (n - 1) // 2 : 0 : -1]
         if n % 2 == 0:
-            values[odd, n // 2] = 0.0  # odd about the opposite node
+            values[odd, n // 2] = 0.0  # odd about the opposite node, so exactly zero
         inner = out
     else:
         values = out[..., 1:, 1].copy()

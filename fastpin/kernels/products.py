@@ -1,8 +1,9 @@
-"""Matrix products in two threads, with the same bits for any number of cores: the two halves are always the same.
+"""Matrix products in two threads. Their bits are the same for any number of cores.
 
-Where every core has work of its own, :func:`in_one_thread` computes the halves one after the other. BLAS runs on one
-thread each. Its own threads wait in loops that cost more than they give as soon as another process wants a core, and
-the bits of their results may depend on how many there are.
+A product is always cut into the same two halves. If every core has other work, :func:`in_one_thread` computes the
+halves one after the other. BLAS runs on one thread for each half. BLAS's own threads wait in loops. The loops cost more
+than they give as soon as another process wants a core. The bits of BLAS's results may also depend on its number of
+threads.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ import numpy as np
 from fastpin.kernels.jit import blas_address
 
 WORTHWHILE = 4_000_000
-"""Multiplications from which on a product is made in two threads."""
+"""Least number of multiplications of a product in two threads."""
 
 _POINTER = ctypes.c_void_p
 
-# Called in this way it leaves the interpreter free, and works on parts of arrays in place.
+# Called by its address, dgemm leaves the interpreter free, and works on parts of arrays in place.
 _dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
 _alone = ContextVar("_alone", default=False)
@@ -31,7 +32,7 @@ _alone = ContextVar("_alone", default=False)
 
 @contextmanager
 def in_one_thread() -> Iterator[None]:
-    """Inside the block the calling thread makes its products alone; their bits stay the same."""
+    """Let the calling thread compute its products alone inside the block. Their bits stay the same."""
     before = _alone.set(True)
     try:
         yield
@@ -40,7 +41,15 @@ def in_one_thread() -> Iterator[None]:
 
 
 def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
-    """out (m, n) += left (m, k) @ right (k, n), in place; all of them stored column by column, parts of arrays too."""
+    """Add a product in place: out (m, n) += left (m, k) @ right (k, n).
+
+    All three are stored column by column. They may be parts of larger arrays.
+
+    Raises
+    ------
+    ValueError
+        If shapes do not fit, or an array is not stored column by column in double precision.
+    """
     m, n = out.shape
     if left.shape[0] != m or right.shape != (left.shape[1], n):
         raise ValueError(f"shapes do not fit: {out.shape} += {left.shape} @ {right.shape}")
@@ -60,7 +69,7 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
 
 
 def _start(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> Future[None] | None:
-    """The product on its way in the second thread; None if the interpreter is about to end."""
+    """Start a product in the second thread. Return None if the interpreter is about to end."""
     global _second
     if _second is None:
         _second = ThreadPoolExecutor(1, thread_name_prefix="fastpin")
@@ -81,7 +90,7 @@ def _add(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
 
 
 def _place(array: np.ndarray) -> tuple[int, object]:
-    """Where an array begins, and the distance of its columns, for BLAS."""
+    """The address of an array and the distance of its columns, for BLAS."""
     rows, columns = array.shape
     step = array.strides[1] if columns > 1 else 8 * rows
     if array.dtype != np.float64 or (rows > 1 and array.strides[0] != 8) or step < 8 * rows or step % 8:

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """Status of a node. The slip is that of the pin over the plate."""
+    """Status of a node. Slip is the motion of the pin over the plate."""
 
     SLIP_NEGATIVE = -1
     """Closed, slipping clockwise."""
@@ -18,10 +18,10 @@ class Status(IntEnum):
     """Closed, slipping counter-clockwise."""
 
     OPEN = 2
-    """Without contact."""
+    """Open: without contact."""
 
 
-# Plain integers: compiled code and arrays of int8 take these.
+# Compiled code and arrays of int8 take plain integers.
 SLIP_NEGATIVE = int(Status.SLIP_NEGATIVE)
 STICK = int(Status.STICK)
 SLIP_POSITIVE = int(Status.SLIP_POSITIVE)

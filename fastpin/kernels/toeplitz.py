@@ -1,14 +1,15 @@
-"""Compiled: symmetric block Toeplitz matrices with blocks of two, in O(n^2).
+"""Compiled inverse of symmetric block Toeplitz matrices with 2 x 2 blocks, in O(n^2).
 
-On equally spaced nodes the operator of m neighbours that all stick is such a matrix T: entries depend on the distance
-of two nodes only. Its inverse follows from its first and last block columns (Whittle's recursion, the block form of
-Levinson's) by a recurrence along the diagonals (Gohberg, Semencul and Heinig); a factorisation takes O(m^3). What the
-set does to the nodes beside it has recurrences of the same kind (:class:`Beside`).
+The operator of m sticking neighbours on equally spaced nodes is such a matrix T: its entries depend on the distance of
+two nodes only. Whittle's recursion, the block form of Levinson's recursion, gives the first and last block columns of
+the inverse. A recurrence along the diagonals then gives the whole inverse (Gohberg, Semencul and Heinig). A
+factorisation takes O(m^3). The responses of the other nodes have recurrences of the same kind
+(:class:`NeighbourResponses`).
 
-Seen from the other end the nodes are the same with the shear turned round, D = diag(1, -1): blocks at opposite
-distances are B(-k) = D B(k) D, and the last block column of the inverse is the first one in reverse, D F D.
+From the other end the nodes look the same with the shear turned round, D = diag(1, -1). So blocks at opposite distances
+are B(-k) = D B(k) D. The last block column of the inverse is the first block column in reverse, D F D.
 
-Blocks of two are kept as four rows, 00, 01, 10 and 11, of arrays (4, m).
+A column of 2 x 2 blocks is held as an array (4, m). Its rows are the entries 00, 01, 10 and 11 of the blocks.
 """
 
 from __future__ import annotations
@@ -19,21 +20,21 @@ from scipy.linalg import matmul_toeplitz
 from fastpin.kernels.jit import compiled
 
 TURNED = np.array([1.0, -1.0, -1.0, 1.0])
-"""D B D of a block B."""
+"""Signs of the entries of a block B in D B D."""
 
 
 @compiled
 def _predictor(first, second, cross, F, error):
-    """The block column F with T F = (E, 0, ..., 0) that begins with the unit matrix, by Whittle's recursion.
+    """Compute the block column F with T F = (E, 0, ..., 0), by Whittle's recursion. F begins with the unit matrix.
 
     `first`, `second` (even) and `cross` (odd), shape (m,), are the entries [[first, cross], [-cross, second]] of T at
-    the distances 0 to m - 1. `F` (4, m) and `error` (4,), which is E, are output.
+    the distances 0 to m - 1. Output are `F` (4, m) and the block E in `error` (4,).
     """
     F[:, :] = 0.0
     F[0, 0] = F[3, 0] = 1.0
     e00, e01, e10, e11 = first[0], cross[0], -cross[0], second[0]
     for k in range(1, first.size):
-        # What the column, extended by a zero, leaves in the new block row.
+        # The block g is T times the column, extended by a zero block, in the new block row.
         g00 = g01 = g10 = g11 = 0.0
         for j in range(k):
             a, b, c = first[k - j], cross[k - j], second[k - j]
@@ -41,7 +42,7 @@ def _predictor(first, second, cross, F, error):
             g01 += a * F[1, j] + b * F[3, j]
             g10 += c * F[2, j] - b * F[0, j]
             g11 += c * F[3, j] - b * F[1, j]
-        # D p = E^-1 D g takes it away: F_j - D F_{k-j} D p, two blocks at a time.
+        # With D p = E^-1 D g, the column F_j - D F_{k-j} D p makes g zero; two blocks at a time.
         d = e00 * e11 - e01 * e10
         p00, p01 = (e11 * g00 + e01 * g10) / d, (e11 * g01 + e01 * g11) / d
         p10, p11 = (e00 * g10 + e10 * g00) / d, (e00 * g11 + e10 * g01) / d
@@ -53,7 +54,7 @@ def _predictor(first, second, cross, F, error):
             F[2, j], F[3, j] = u + y * p00 - z * p10, v + y * p01 - z * p11
             F[0, i], F[1, i] = w - s * p00 + t * p10, x - s * p01 + t * p11
             F[2, i], F[3, i] = y + u * p00 - v * p10, z + u * p01 - v * p11
-        # E - D g D p
+        # the new E is E - D g D p
         e00, e01 = e00 - g00 * p00 + g01 * p10, e01 - g00 * p01 + g01 * p11
         e10, e11 = e10 + g10 * p00 - g11 * p10, e11 + g10 * p01 - g11 * p11
     error[0], error[1], error[2], error[3] = e00, e01, e10, e11
@@ -61,9 +62,9 @@ def _predictor(first, second, cross, F, error):
 
 @compiled
 def _fill(before, after, out):
-    """out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1]; its first row and column are given.
+    """Fill `out` by out[i, j] = out[i - 1, j - 1] + before[:, i - 1] @ after[:, j - 1].
 
-    `before` is (4, rows - 1), `after` (4, columns - 1).
+    The first row and the first column of `out` are given. `before` is (4, rows - 1), `after` (4, columns - 1).
     """
     for i in range(1, out.shape[0]):
         a, b, c, d = before[0, i - 1], before[1, i - 1], before[2, i - 1], before[3, i - 1]
@@ -73,10 +74,10 @@ def _fill(before, after, out):
 
 
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
-    """Inverse of [[first, cross], [-cross, second]], shape (2m, 2m), three Toeplitz matrices given by first columns.
+    """Inverse of the symmetric matrix [[first, cross], [-cross, second]] of three Toeplitz matrices, shape (2m, 2m).
 
-    `first` and `second` are symmetric, `cross` is antisymmetric, shape (m,) each; the whole is symmetric. Not finite
-    if a leading block is singular.
+    The arguments, shape (m,) each, are the first columns of the three matrices. `first` and `second` are symmetric,
+    `cross` is antisymmetric. The inverse is not finite if a leading block is singular.
     """
     m = first.size
     forward, error = np.empty((4, m)), np.empty(4)
@@ -88,7 +89,7 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
     for r in range(2):
         for s in range(2):
             block = out[r * m : (r + 1) * m, s * m : (s + 1) * m]
-            block[0] = column[2 * s + r]  # the first block column transposed: T is symmetric
+            block[0] = column[2 * s + r]  # T is symmetric: the first block row is the first block column transposed
             block[:, 0] = column[2 * r + s]
             before = np.concatenate([column[2 * r : 2 * r + 2, 1:], last[2 * r : 2 * r + 2, :-1]])
             after = np.concatenate([forward[2 * s : 2 * s + 2, 1:], -backward[2 * s : 2 * s + 2, :-1]])
@@ -97,7 +98,7 @@ def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndar
 
 
 def _divide_blocks(column: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """column error^-1, block by block."""
+    """The product column error^-1, block by block."""
     a, b, c, d = error
     one, two, three, four = column
     return np.array([one * d - two * c, two * a - one * b, three * d - four * c, four * a - three * b]) / (
@@ -106,19 +107,19 @@ def _divide_blocks(column: np.ndarray, error: np.ndarray) -> np.ndarray:
 
 
 class NeighbourResponses:
-    """What a set of neighbours, all other nodes free, does to the nodes beside it, without a product of matrices.
+    """Responses of a run of neighbours to tractions at the other nodes, without a product of large matrices.
 
-    With the nodes of the set 0 to m-1, b_j the block column of T that a node j beside it makes in the rows of the set
-    and T_ij the block of two nodes, these are, for all nodes beside,
+    The nodes of the run are 0 to m-1. All other nodes j are free. T_ij is the block of T of two nodes, and b_j is the
+    block column of T of node j in the rows of the run. The responses are, for all other nodes,
 
         x_j = T^-1 b_j,        Y_ij = T_ij - b_i^T x_j.
 
-    b_j+1 is b_j moved on by one. So, with A and Z the first and the last block column of the inverse,
+    The column b_j+1 is b_j moved on by one node. With A and Z the first and the last block column of the inverse,
 
         x_j+1[i] = x_j[i-1] + x_m[i] x_j[m-1] + A[i] Y_-1,j,
         Y_i+1,j+1 = Y_ij + Y_i+1,m x_j[m-1] - x_i+1[0]^T Y_-1,j,
 
-    and the same from the other end. What stands on the right is known for all j from products with few columns:
+    and likewise from the other end. Products with few columns give the right-hand sides for all j:
     x_j[0] = A^T b_j, x_j[m-1] = Z^T b_j, Y_-1,j and Y_mj.
 
     Parameters
@@ -126,23 +127,23 @@ class NeighbourResponses:
     entries : ndarray, shape (3, n)
         First, second and cross as for :func:`inverse`, for all n nodes.
     core : ndarray, shape (2m, 2m)
-        The inverse of the set.
+        The inverse of T in the run.
     low : int
-        Number of nodes before the set.
+        Number of nodes before the run.
     """
 
     def __init__(self, entries: np.ndarray, core: np.ndarray, low: int) -> None:
         n, m = entries.shape[1], core.shape[0] // 2
-        self._entries = np.zeros((3, n + 1))  # what would be further away than any two nodes are is not used
+        self._entries = np.zeros((3, n + 1))  # the last entry, farther than any two nodes, is not used
         self._entries[:, :n] = entries
         self._m, self._low, self._others = m, low, np.r_[:low, low + m : n] - low
-        self._back = slice(low - 1, None, -1) if low else slice(0, 0)  # the nodes before the set, from it on
+        self._back = slice(low - 1, None, -1) if low else slice(0, 0)  # the nodes before the run, from the run outwards
         corners = core[:, [0, m]], core[:, [m - 1, 2 * m - 1]]
         columns = np.hstack([self._block_column(np.arange(m), node) for node in (-1, m, -low)])
         neighbours = np.split(core @ columns, 3, axis=1)
         seeds = np.hstack([*corners, *neighbours])
         at_others = self._products(seeds).reshape(2, n - m, 5, 2)
-        # blocks as [kind of the node, node, kind of the column]
+        # Blocks stand as [kind of the node, node, kind of the column].
         self._corner = [corner.reshape(2, m, 2) for corner in corners]
         self._neighbour = [x.reshape(2, m, 2) for x in neighbours[:2]]
         self._end = [at_others[:, :, k] for k in (0, 1)]  # x_j[0], x_j[m-1]
@@ -152,7 +153,7 @@ class NeighbourResponses:
         ]  # Y_j,-1, Y_jm and Y_j,-low
 
     def responses(self) -> np.ndarray:
-        """x_j of all nodes beside, shape (2m, 2(n-m)), first the columns of the first kind."""
+        """The x_j of all other nodes, shape (2m, 2(n-m)). Rows and columns of the first kind come first."""
         (before, after, _), low, w = self._across, self._low, self._others.size
         out, back = np.empty((2, self._m, 2, w)), self._back
         for r in range(2):
@@ -170,7 +171,7 @@ class NeighbourResponses:
         return out.reshape(2 * self._m, 2 * w)
 
     def complement(self) -> np.ndarray:
-        """Y of all nodes beside, shape (2(n-m), 2(n-m)), first the rows and columns of the first kind."""
+        """The matrix Y of all other nodes, shape (2(n-m), 2(n-m)). Rows and columns of the first kind come first."""
         (before, after, far), low, w = self._across, self._low, self._others.size
         first, last = self._end
         out, back = np.empty((2, w, 2, w)), self._back
@@ -186,13 +187,13 @@ class NeighbourResponses:
         return out.reshape(2 * w, 2 * w)
 
     def _block_column(self, nodes: np.ndarray, column: int) -> np.ndarray:
-        """Blocks of T at `nodes` in the columns of the node `column`, shape (2 nodes, 2)."""
+        """The blocks of T in the rows of `nodes` and the columns of node `column`, shape (2 nodes, 2)."""
         first, second, cross = self._entries[:, np.abs(nodes - column)]
         cross = np.sign(nodes - column) * cross
         return np.column_stack([np.r_[first, -cross], np.r_[cross, second]])
 
     def _products(self, vectors: np.ndarray) -> np.ndarray:
-        """b_j^T times vectors (2m, k) on the set, for all nodes beside, shape (2(n-m), k)."""
+        """The products of b_j^T and vectors (2m, k) on the run, for all other nodes, shape (2(n-m), k)."""
         n, m, low = self._entries.shape[1] - 1, self._m, self._low
         one, two = np.zeros((2, n, vectors.shape[1]))
         one[low : low + m], two[low : low + m] = vectors[:m], vectors[m:]

@@ -1,4 +1,4 @@
-"""The input: materials, geometry, loads, nodes and options, checked and frozen, in SI units.
+"""The input: materials, geometry, loads, nodes and options. All are checked, frozen and in SI units.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

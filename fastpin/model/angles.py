@@ -8,11 +8,12 @@ import numpy as np
 
 
 def angle_between(angles: np.ndarray | float, angle: np.ndarray | float) -> np.ndarray:
-    """How far `angles` are from `angle`, rad, the short way round: -pi to pi, positive counter-clockwise."""
+    """The differences `angles` - `angle`, the short way round: -pi to pi rad, positive counter-clockwise."""
     return np.remainder(np.asarray(angles) - angle + math.pi, 2.0 * math.pi) - math.pi
 
 
 BOTTOM = -0.5 * math.pi
+"""Angle of the bottom of the hole, rad."""
 
 
 def from_bottom(angle: float) -> float:
@@ -22,6 +23,6 @@ def from_bottom(angle: float) -> float:
 
 
 def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
-    """An interval in rad as degrees from the bottom; the stop may exceed 180."""
+    """An interval in rad as degrees from the bottom of the hole. Its stop may exceed 180."""
     first = from_bottom(start)
     return first, first + math.degrees(stop - start)

@@ -1,8 +1,7 @@
-"""A case: problem, load history, options and title; and the checks of how they go together."""
+"""A case: problem, load history, options and title, with the checks that need two of them."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 from fastpin.errors import InputError
@@ -21,6 +20,7 @@ class Case:
     history : LoadHistory
     options : SolveOptions
     title : str
+        Empty if there is none.
     """
 
     problem: Problem
@@ -31,11 +31,11 @@ class Case:
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:
     """Raise :class:`InputError` if the arc is too short for an interference fit."""
-    if problem.clearance < 0.0 and options.arc is not None and options.arc[1] - options.arc[0] < 2.0 * math.pi:
+    if problem.clearance < 0.0 and options.arc is not None and not options.is_full_turn:
         raise InputError("arc", "an interference fit is in contact all round: the arc must span 2 pi, or be left out")
 
 
 def check_keep(history: LoadHistory, options: SolveOptions) -> None:
-    """Raise :class:`InputError` if ends of cycles are to be kept, and the history has no cycles."""
+    """Raise :class:`InputError` if the ends of cycles are to be kept, but the history has no cycles."""
     if options.keep == "cycles" and not history.longest_cycle:
         raise InputError("keep", "the history has no cycles: none of its blocks is repeated")

@@ -1,6 +1,6 @@
 """The only validators of single values. Each returns the value, or raises :class:`InputError` naming its field.
 
-Python, case files, plans and the command line all call these, so the same value gets the same sentence.
+Python, case files, plans and the command line all call these validators. So the same fault gets the same message.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike
 from fastpin.errors import InputError
 
 LONGEST_TEXT = 60
-"""Characters of a value that a message repeats, at most."""
+"""Most characters of a value that a message repeats."""
 
 
 def number(field: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
-    """A finite number from `least` to `most`."""
+    """Check a finite number from `least` to `most`, and return it as a float."""
     if isinstance(value, (bool, np.bool_, str, bytes)) or np.ndim(value) > 0:  # type: ignore[arg-type]
         raise InputError(field, f"must be a number, not {as_toml(value)}")
     try:
@@ -36,7 +36,7 @@ def number(field: str, value: object, least: float = -math.inf, most: float = ma
 
 
 def whole_number(field: str, value: object, least: int, most: int | None = None) -> int:
-    """A whole number from `least` to `most`."""
+    """Check a whole number from `least` to `most`. No `most` means no upper limit."""
     is_whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not is_whole or value < least or (most is not None and value > most):  # type: ignore[operator]
         limits = f"of at least {least}" if most is None else f"from {least} to {most}"
@@ -45,7 +45,7 @@ def whole_number(field: str, value: object, least: int, most: int | None = None)
 
 
 def choice(field: str, value: object, allowed: Sequence[str]) -> str:
-    """One of the words `allowed`."""
+    """Check that a value is one of the words `allowed`."""
     if isinstance(value, str) and value in allowed:
         return value
     hint = closest(value, allowed) if isinstance(value, str) else ""
@@ -54,14 +54,14 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> str:
 
 
 def true_or_false(field: str, value: object) -> bool:
-    """A truth value."""
+    """Check a truth value."""
     if not isinstance(value, (bool, np.bool_)):
         raise InputError(field, f"must be true or false, not {as_toml(value)}")
     return bool(value)
 
 
 def string(field: str, value: object) -> str:
-    """A string."""
+    """Check a string."""
     if not isinstance(value, str):
         raise InputError(field, f"must be text in quotes, not {as_toml(value)}")
     return value
@@ -76,7 +76,7 @@ def numbers(
     open_low: bool = False,
     open_high: bool = False,
 ) -> np.ndarray:
-    """Finite numbers from `low` to `high` as a float array. An open end is not itself allowed."""
+    """Check finite numbers from `low` to `high`, and return them as a float array. An open end is itself excluded."""
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
@@ -96,7 +96,7 @@ def numbers(
 
 
 def as_toml(value: object) -> str:
-    """A value as a case file would have it, cut short where it is long."""
+    """A value as text, in the notation of case files. Long values are cut short."""
     if isinstance(value, (bool, np.bool_)):
         return str(value).lower()
     if isinstance(value, Mapping):
@@ -115,7 +115,7 @@ def _cut(words: str) -> str:
 
 
 def closest(word: str, known: Sequence[str]) -> str:
-    """A hint at the known word that is meant, or nothing."""
+    """A hint at the known word closest to `word`; empty if no word is close."""
     lower = {name.lower(): name for name in known}
     close = difflib.get_close_matches(word.lower(), lower, n=1)
     return f', did you mean "{lower[close[0]]}"?' if close else ""

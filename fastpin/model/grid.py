@@ -1,4 +1,4 @@
-"""The fixed grid of nodes on which tractions live, piecewise linear between nodes."""
+"""The fixed grid of nodes. Tractions are given at the nodes and are piecewise linear between them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fastpin.model.checks import number, whole_number
 
 LEAST_NODES = 5
 MAX_NODES = 20_000
-"""Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest."""
+"""Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest grid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Grid:
     theta : ndarray, shape (n,)
         Node angles in rad, strictly increasing, spanning less than a full turn. theta = -pi/2 is the bottom.
     closed : bool
-        Whether the last node is joined to the first one (the whole circle).
+        Whether the last node is joined to the first node: the grid is the whole circle.
 
     Raises
     ------
@@ -49,7 +49,7 @@ class Grid:
 
     @classmethod
     def arc(cls, start: float, stop: float, nodes: int) -> Grid:
-        """`nodes` equally spaced nodes from angle `start` to angle `stop`, rad, both included."""
+        """An arc of `nodes` equally spaced nodes from angle `start` to angle `stop`, rad, both included."""
         a, b = number("arc start", start), number("arc stop", stop)
         if not 0.0 < b - a < 2.0 * math.pi:
             raise InputError(
@@ -59,24 +59,25 @@ class Grid:
 
     @classmethod
     def circle(cls, nodes: int, start: float = -1.5 * math.pi) -> Grid:
-        """`nodes` equally spaced nodes on the whole circle, the first one at angle `start`."""
+        """A whole circle of `nodes` equally spaced nodes. The first node is at angle `start`, rad."""
         count = whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)
         return cls(number("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
 
     def with_nodes(self, nodes: int) -> Grid:
-        """`nodes` equally spaced nodes on the same arc or circle."""
+        """A grid of `nodes` equally spaced nodes on the same arc or circle."""
         if self.closed:
             return Grid.circle(nodes, float(self.theta[0]))
         return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
 
     @property
     def size(self) -> int:
+        """Number of nodes n."""
         return int(self.theta.size)
 
     def knots(self) -> tuple[np.ndarray, np.ndarray]:
-        """Left and right knots of every node's hat function, shape (n,) each.
+        """Left and right knots of every node's hat function, rad, shape (n,) each.
 
-        The end nodes of an arc carry half hats (their outer knot is the node itself).
+        The end nodes of an arc carry half hats. The outer knot of a half hat is the node itself.
         """
         theta = self.theta
         left = np.concatenate([theta[:1], theta[:-1]])
@@ -94,14 +95,14 @@ class Grid:
 
     @property
     def uniform(self) -> bool:
-        """Whether all nodes are equally spaced, on a circle also across the seam."""
+        """Whether all nodes are equally spaced; on a circle also from the last node to the first."""
         spacing = self.knots()[1] - self.theta
         if not self.closed:
             spacing = spacing[:-1]
         return bool(np.ptp(spacing) <= 1e-12 * self.size * spacing[0])
 
     def trig_moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Integrals of every node's hat function times cos theta and times sin theta, shape (n,) each. Exact."""
+        """Exact integrals of every node's hat function times cos theta and times sin theta, shape (n,) each."""
         left, right = self.knots()
         total = np.zeros(self.size, dtype=complex)
         for length, sense in ((self.theta - left, -1.0), (right - self.theta, 1.0)):
@@ -113,7 +114,7 @@ class Grid:
 def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
     """int_0^h (1 - t/h) exp(i sense t) dt = (h/2) sinc(h/2)^2 + i sense (1 - sin(h)/h), for lengths h >= 0."""
     even = 0.5 * length * np.sinc(0.5 * length / math.pi) ** 2
-    series = np.zeros_like(length)  # of 1 - sin(h)/h, which loses no digits where h is small
+    series = np.zeros_like(length)  # series of 1 - sin(h)/h: no digits are lost where h is small
     for k in range(8, 0, -1):
         series = length**2 / (2.0 * k * (2.0 * k + 1.0)) * (1.0 - series)
     odd = np.where(length > 0.5, 1.0 - np.sinc(length / math.pi), series)
@@ -121,14 +122,15 @@ def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:
 
 
 BESIDE = 2
-"""Nodes at each end of the coarse arc beyond the fine one: a coarse contact may be wider."""
+"""Coarse nodes added at each end of a halved arc: the contact may be wider on the coarse grid."""
 
 
 def halved(grid: Grid, direction: float | None) -> Grid:
-    """The grid with half the intervals: every second node, among them the one nearest to the angle `direction`.
+    """The grid with half the intervals: every second node.
 
-    Equal spacings become twice as large, also where the number of intervals is odd: an arc then ends beyond that of
-    `grid`, which changes nothing, for the nodes there are open. Other grids keep their first and last node.
+    One of these nodes is the node nearest to the angle `direction`, rad. Equal spacings become twice as large, also
+    where the number of intervals is odd. A coarse arc then ends beyond the fine arc. This changes nothing, for
+    the nodes there are open. A grid with unequal spacings keeps its first node, and an arc also its last.
     """
     n = grid.size
     if not grid.uniform:
@@ -142,7 +144,7 @@ def halved(grid: Grid, direction: float | None) -> Grid:
     room = math.floor((2.0 * math.pi / spacing - (last - first)) / 4.0 - 0.5)  # at each end, in coarse nodes
     if room < 0:
         last -= 2
-    beside = 2 * max(0, min(BESIDE, room))
-    first, last = first - beside, last + beside
+    extra = 2 * max(0, min(BESIDE, room))
+    first, last = first - extra, last + extra
     start = float(grid.theta[0]) + spacing * first
     return Grid.arc(start, start + spacing * (last - first), (last - first) // 2 + 1)

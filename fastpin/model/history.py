@@ -1,7 +1,7 @@
-"""Load histories: corner points of the loads, linear in between, starting from no load.
+"""Load histories: corners of the loads. The loads start from zero and are linear between corners.
 
-A history is a sequence of blocks, each of which is a table of corners and how often it is run through: a million cycles
-take the memory of one, a table of a million corners is held once.
+A history is a sequence of blocks. A block is a table of corners, and the number of times that it is run through. So a
+million cycles take the memory of one cycle, and a table of a million corners is held once.
 """
 
 from __future__ import annotations
@@ -23,36 +23,38 @@ from fastpin.model.loads import LOADS, Corner, check_corner, load_index
 from fastpin.model.problem import Problem
 
 POINTS = 24
-"""Corners a cycle of loads that are out of phase, unless said otherwise."""
+"""Default number of corners in a cycle of loads that are out of phase."""
 
 MOST_POINTS = 100_000
-"""Corners a cycle of loads that are out of phase, at most."""
+"""Most corners in a harmonic cycle."""
 
 MOST_SHOWN = 6
-"""Blocks that the short form of a history shows."""
+"""Most blocks that the short form of a history shows."""
 
 CycleKey = tuple[int, int]
-"""A cycle of a history: its block, and which of the cycles inside, counted from 1, or 0 for the block itself."""
+"""A cycle of a history: the block, counted from 0, and the inner cycle, counted from 1; 0 is the block itself."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Corners that are run through once or more.
+    """A table of corners that is run through once or more.
+
+    Inner cycles are cycles inside the table.
 
     Attributes
     ----------
     given : ndarray, shape (corners, loads)
-        The loads as they were given; NaN keeps the last value.
+        The loads as given; NaN keeps the last value.
     ends : ndarray of int, shape (corners,)
-        Which of the cycles inside ends at a corner, counted from 1; 0 where none does.
+        The inner cycle that ends at a corner, counted from 1; 0 where none ends.
     lengths : tuple of int
-        Corners of each of the cycles inside.
+        Number of corners of each inner cycle.
     count : int
-        How often the block is run through.
+        Number of times that the block is run through.
     cycle : bool
-        Whether each time through is a cycle.
+        Whether each time through is a cycle, or the end of one in a block cut from a longer cycle.
     size : int
-        Corners of the cycle of which this is the end; 0 if it is not cut.
+        Number of corners of the whole table, if this block is cut from it; 0 if it is not cut.
     """
 
     given: np.ndarray
@@ -69,7 +71,7 @@ class Block:
 
     @cached_property
     def begins(self) -> np.ndarray:
-        """Which of the cycles inside begin with a corner, a bit each, shape (corners,)."""
+        """The inner cycles that begin with each corner, as bits, shape (corners,); cycles 63 apart share a bit."""
         begins = np.zeros(len(self.given), dtype=np.int64)
         for inner, length in enumerate(self.lengths, start=1):
             first = np.flatnonzero(self.ends == inner) - length + 1
@@ -77,7 +79,7 @@ class Block:
         return begins
 
     def cut(self, start: int, stop: int) -> Iterator[Block]:
-        """The corners from `start` to `stop`, as few blocks."""
+        """Yield the corners from `start` up to `stop`, not included, as few blocks."""
         size = len(self.given)
         first, last = -(-start // size), stop // size  # whole times through
         if first > last:
@@ -96,12 +98,12 @@ class Block:
 
 
 class LoadHistory:
-    """A sequence of load corners. Loads vary linearly from one corner to the next, starting from no load.
+    """A sequence of load corners. The loads start from zero and vary linearly from one corner to the next.
 
     Parameters
     ----------
     corners : sequence of mappings
-        Each maps some of :data:`LOADS` to a number; what is left out keeps its last value.
+        Each maps some of :data:`fastpin.model.LOADS` to numbers. A load that is left out keeps its last value.
 
     Raises
     ------
@@ -142,14 +144,14 @@ class LoadHistory:
 
     @classmethod
     def of_blocks(cls, blocks: Iterable[Block]) -> LoadHistory:
-        """A history of given blocks."""
+        """A history of given blocks. No corners at all raise :class:`InputError`."""
         history = cls.__new__(cls)
         history._set(blocks)
         return history
 
     @classmethod
     def monotonic(cls, steps: int = 1, **loads: float) -> LoadHistory:
-        """Proportional loading from nothing to `loads`, with `steps` equally spaced corners."""
+        """Proportional loading from zero to `loads`, with `steps` equally spaced corners."""
         whole_number("steps", steps, 1)
         return cls({k: v * (i + 1) / steps for k, v in loads.items()} for i in range(steps))
 
@@ -164,11 +166,12 @@ class LoadHistory:
         mean, amplitude : mapping
             Loads of the mean state and of the cycle's half range.
         count : int
-            Number of cycles. One cycle is mean -> +amplitude -> -amplitude -> +amplitude.
+            Number of cycles. One cycle runs mean -> +amplitude -> -amplitude -> +amplitude. Each further cycle appends
+            -amplitude -> +amplitude.
         start : {1, -1}
             Sign of the first excursion.
         return_to_mean : bool
-            Append the mean load as a last corner.
+            Whether to append the mean load as a last corner.
         """
         whole_number("count", count, 1)
         if start not in (1, -1):
@@ -191,14 +194,15 @@ class LoadHistory:
         Parameters
         ----------
         mean, amplitude : mapping
-            Loads; one that is left out of one of them is 0 there.
+            Loads. A load that only one of the two gives is 0 in the other.
         phase : mapping, optional
-            By how much loads of `amplitude` run ahead, degrees.
+            Lead of each load of `amplitude`, degrees; 0 where left out.
         count : int
-            Number of cycles. The first corner is the point t = 0, every cycle ends there.
+            Number of cycles. The first corner is the point t = 0. Every cycle ends at this point.
         points : int, optional
-            Corners a cycle, at least 2. By default 2 (the extremes, between which all loads are proportional) where all
-            phases are 0 or 180 degrees, else :data:`POINTS`: the path is a polygon inscribed in the ellipse.
+            Corners of a cycle, 2 to :data:`MOST_POINTS`. If all phases are 0 or 180 degrees the default is 2: the two
+            extremes, between which all loads are proportional. Otherwise the default is :data:`POINTS`, and the path is
+            a polygon inscribed in the ellipse.
         """
         whole_number("count", count, 1)
         phase = {} if phase is None else phase
@@ -226,12 +230,12 @@ class LoadHistory:
 
     @classmethod
     def from_array(cls, corners: np.ndarray, loads: Sequence[str] = LOADS) -> LoadHistory:
-        """Corners in the rows of an array, whose columns are `loads`; NaN keeps the last value.
+        """A history from an array: its rows are corners, its columns are `loads`. NaN keeps the last value.
 
         Raises
         ------
         InputError
-            If a load is unknown or named twice, the shape does not fit or a value is infinite.
+            If a load is unknown or named twice, the shape does not fit, a value is infinite or there are no corners.
         """
         columns = [load_index(name, "loads") for name in loads]
         array = np.asarray(corners, dtype=float)
@@ -249,14 +253,14 @@ class LoadHistory:
     def from_csv(cls, path: str | Path) -> LoadHistory:
         """Read corners from a CSV file: a header of load names, one corner a line.
 
-        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Spectra and
-        sequences of reversals of other programs are read in this way.
+        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Load spectra and
+        sequences of reversals from other programs can be read in this way.
 
         Raises
         ------
         CaseFileError
-            If the file can't be read, a column is unknown, or cells are not finite numbers: all faulty lines, the first
-            :data:`MOST_FAULTS` of them.
+            If the file can't be read, a column is unknown, or cells are not finite numbers. The error lists the first
+            :data:`fastpin.model.history_csv.MOST_FAULTS` faulty lines.
         """
         path = Path(path)
         try:
@@ -267,9 +271,10 @@ class LoadHistory:
             raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
 
     def repeated(self, count: int) -> LoadHistory:
-        """This history `count` times in a row; each time is a cycle.
+        """This history `count` times in a row. Each time is a cycle.
 
-        Cycles may lie inside others. Where several end at one corner, only the innermost and the outermost are told.
+        Cycles may lie inside other cycles. Where several cycles end at one corner, the history knows only the innermost
+        and the outermost of them.
         """
         whole_number("count", count, 1)
         given = np.vstack([_times(block, block.count) for block in self._blocks])
@@ -304,7 +309,7 @@ class LoadHistory:
         return self._begins[-1]
 
     def __getitem__(self, item: slice) -> LoadHistory:
-        """A part of the history (a slice without a step); what a part leaves out keeps the value before it."""
+        """A part of the history: a slice without a step. A load that it leaves out keeps its value from before."""
         if not isinstance(item, slice):
             raise InputError(
                 "history", "parts are slices, such as history[2:5]; values() has the loads at every corner"
@@ -326,51 +331,56 @@ class LoadHistory:
 
     @property
     def longest_cycle(self) -> int:
-        """Corners of the longest cycle; 0 if there is none."""
-        own = [len(block.given) for block in self._blocks if block.cycle]
-        return max([0, *own, *(length for block in self._blocks for length in block.lengths)])
+        """Number of corners of the longest cycle; 0 if there is none."""
+        whole = [len(block.given) for block in self._blocks if block.cycle]
+        return max([0, *whole, *(length for block in self._blocks for length in block.lengths)])
 
     def corner(self, index: int) -> tuple[np.ndarray, list[CycleKey]]:
-        """The loads given at a corner (NaN keeps the last value), and the cycles that end there."""
-        number, place = self._locate(index)
-        block = self._blocks[number]
+        """The loads given at a corner, shape (loads,), and the cycles that end there. NaN keeps the last value."""
+        block_index, place = self._locate(index)
+        block = self._blocks[block_index]
         row = place % len(block.given)
-        ended = [(number, inner)] if (inner := int(block.ends[row])) else []
+        cycles = [(block_index, inner)] if (inner := int(block.ends[row])) else []
         if block.cycle and row == len(block.given) - 1:
-            ended.append((number, 0))
-        return block.given[row], ended
+            cycles.append((block_index, 0))
+        return block.given[row], cycles
 
     def cycle_length(self, cycle: CycleKey) -> int:
-        """Corners of a cycle."""
+        """Number of corners of a cycle."""
         block = self._blocks[cycle[0]]
         return block.lengths[cycle[1] - 1] if cycle[1] else block.size or len(block.given)
 
     def cycles_after(self, index: int) -> list[CycleKey]:
-        """The cycles that begin after a corner (-1: with the first one)."""
+        """The cycles that begin with the step after corner `index`; -1 stands for the first step."""
         if index + 1 >= len(self):
             return []
-        number, place = self._locate(index + 1)
-        block = self._blocks[number]
+        block_index, place = self._locate(index + 1)
+        block = self._blocks[block_index]
         row = place % len(block.given)
-        begun = [(number, 0)] if block.cycle and row == 0 and block.size in (0, len(block.given)) else []
+        cycles = [(block_index, 0)] if block.cycle and row == 0 and block.size in (0, len(block.given)) else []
         for inner, length in enumerate(block.lengths, start=1):
             if row + length <= len(block.given) and block.ends[row + length - 1] == inner:
-                begun.append((number, inner))
-        return begun
+                cycles.append((block_index, inner))
+        return cycles
 
     def same_ahead(self, index: int, period: int) -> int:
-        """How many corners from `index` on are given as those `period` corners before, as far as is easily told."""
+        """Number of corners from `index` on that repeat the corners `period` before them.
+
+        The given loads must be equal, and the same cycles must begin and end. The number is a lower bound: only
+        corners of one block are compared. Unless `period` is a multiple of the block's table, only corners of the same
+        time through are compared.
+        """
         if index >= len(self):
             return 0
-        number, place = self._locate(index)
-        block = self._blocks[number]
+        block_index, place = self._locate(index)
+        block = self._blocks[block_index]
         size = len(block.given)
         if place < period:
             return 0
         if period % size == 0:
             return block.corners - place
         row = place % size
-        stop = size - 1 if block.cycle else size  # where a cycle ends that did not end a period before
+        stop = size - 1 if block.cycle else size  # there a cycle ends that did not end one period before
         length = 64
         while period <= row < stop:
             last = min(row + length, stop)
@@ -385,19 +395,19 @@ class LoadHistory:
         return row - place % size
 
     def _locate(self, index: int) -> tuple[int, int]:
-        """The block in which a corner lies, and its place there."""
-        number = bisect.bisect_right(self._begins, index) - 1
-        return number, index - self._begins[number]
+        """The block in which a corner lies, and the corner's place in it, both counted from 0."""
+        block_index = bisect.bisect_right(self._begins, index) - 1
+        return block_index, index - self._begins[block_index]
 
     def values(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
-        """All loads at all corners, shape (corners, loads) in the order of :data:`LOADS`.
+        """All loads at all corners, shape (corners, loads), in the order of :data:`fastpin.model.LOADS`.
 
-        `initial` is the load before the first corner (none by default).
+        `initial`, shape (loads,), is the load before the first corner; zero by default.
         """
         return _filled([_times(block, block.count) for block in self._blocks], initial)
 
     def distinct(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
-        """Loads at the corners, shape (corners, loads), with every block at most twice: all loads that ever act."""
+        """All loads that ever act, shape (corners, loads): as :meth:`values`, with every block at most twice."""
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
 
 

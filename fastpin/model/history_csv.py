@@ -1,4 +1,4 @@
-"""Load corners from a CSV file."""
+"""Read load corners from a CSV file."""
 
 from __future__ import annotations
 
@@ -15,15 +15,21 @@ from fastpin.model.checks import number
 from fastpin.model.loads import LOADS, load_index
 
 MOST_FAULTS = 20
-"""Faulty lines of a CSV file that are reported."""
+"""Most faulty lines of a CSV file that an error lists."""
 
 
 def read_corners(file: TextIO, name: str) -> np.ndarray:
-    """The corners of a CSV file, shape (corners, loads). All its faults are raised together."""
+    """Read the corners of the open CSV file `name`, shape (corners, loads). Empty cells are NaN.
+
+    Raises
+    ------
+    CaseFileError
+        With the first :data:`MOST_FAULTS` faulty lines, or with the fault of the header.
+    """
     faults: list[tuple[int, str]] = []
     header: list[int] | None = None
     numbers = array("d")  # grows in place, and becomes the table without a copy
-    nothing = array("d", [math.nan] * len(LOADS))
+    empty_row = array("d", [math.nan] * len(LOADS))
     for line_number, line in enumerate(file, start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -42,7 +48,7 @@ def read_corners(file: TextIO, name: str) -> np.ndarray:
         if len(cells) != len(header):
             faults.append((line_number, f"{len(cells)} cells where the header has {len(header)}"))
         else:
-            numbers.extend(nothing)
+            numbers.extend(empty_row)
             for index, cell in zip(header, cells, strict=True):
                 if cell and not cell.isspace():
                     try:

@@ -1,4 +1,4 @@
-"""The loads: names, kinds, order in every load vector, and the checks of a corner."""
+"""The loads: their names, their kinds, their order in a load vector, and the checks of a corner."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LOAD_KIND = {
     "syy": "traction",
     "rotation": "rotation",
 }
-"""Every load and its kind of quantity, a key of :func:`fastpin.model.units.units`.
+"""The kind of quantity of every load. The kinds are keys of :func:`fastpin.model.units.units`.
 
 * ``P``: force on the pin downwards (-y), N/m.
 * ``Q``: force on the pin along +x, N/m.
@@ -40,12 +40,12 @@ Corner = Mapping[str, float]
 
 
 def load_index(name: object, where: str) -> int:
-    """The place of a load in a load vector.
+    """Return the place of a load in a load vector.
 
     Raises
     ------
     InputError
-        If there is no such load; the message begins with `where` the name stands.
+        If there is no such load. The message begins with `where`, the place of the name in the input.
     """
     if name in LOADS:
         return LOADS.index(str(name))
@@ -61,10 +61,10 @@ def check_corner(field: str, loads: Corner) -> None:
 
 
 def named_load(vector: np.ndarray) -> dict[str, float]:
-    """A load vector as a dict from load name to value."""
+    """A load vector, shape (loads,), as a dict from load name to value."""
     return {name: float(value) for name, value in zip(LOADS, vector, strict=True)}
 
 
 def complete_load(given: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """The loads at a corner: `given`, and the `last` value of each load that is not given (NaN)."""
-    return np.where(np.isnan(given), last, given) + 0.0  # -0 is 0
+    """All loads at a corner, shape (loads,). A load that is NaN in `given` keeps its value in `last`."""
+    return np.where(np.isnan(given), last, given) + 0.0  # + 0.0 turns -0 into 0

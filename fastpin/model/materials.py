@@ -1,13 +1,13 @@
 """Elastic materials and the composite constants of a pin-plate pair.
 
-Equation numbers are those of Sundaram and Farris, "Mechanics of advancing pin-loaded contacts with
-friction". Index I in the paper is the pin here. Stresses in Pa, compliances in 1/Pa.
+Equation numbers refer to Sundaram and Farris, "Mechanics of advancing pin-loaded contacts with friction". The index I
+marks the pin. Stresses are in Pa, compliances in 1/Pa.
 
-Two sign conventions of Dundurs' parameters are in use. The *usual* one, with the pin as body 1, is
+Two sign conventions of Dundurs' parameters are in use. The *usual* convention, with the pin as body 1, is
 
     alpha = [(k+1)/G - (k_I+1)/G_I] / [(k+1)/G + (k_I+1)/G_I],    beta = alpha_star / (2 beta_star),
 
-positive when the plate is the more compliant body. The *paper* prints both with the opposite sign.
+Then alpha is positive where the plate is the more compliant body. The *paper* prints both with the opposite sign.
 """
 
 from __future__ import annotations
@@ -20,7 +20,10 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, number
 
 Plane = Literal["strain", "stress"]
+"""Plane strain or plane stress."""
+
 Convention = Literal["usual", "paper"]
+"""Sign conventions of Dundurs' parameters."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -34,7 +37,7 @@ class Material:
     nu : float
         Poisson's ratio, 0 to 0.5.
     name : str, optional
-        Shown in tables and plots.
+        Name in tables and plots.
 
     Raises
     ------
@@ -62,11 +65,12 @@ class Material:
 
     @classmethod
     def rigid(cls) -> Material:
-        """The exact rigid limit (infinite modulus)."""
+        """A rigid material: the exact limit of an infinite modulus."""
         return cls(math.inf, 0.3, "rigid")
 
     @property
     def is_rigid(self) -> bool:
+        """Whether Young's modulus is infinite."""
         return math.isinf(self.E)
 
     @property
@@ -89,8 +93,8 @@ MATERIALS: dict[str, Material] = {
 }
 """Named materials at room temperature.
 
-* Ti-6Al-4V (116 GPa, 0.32) and aluminium (69 GPa, 0.33): with these the pair has, in plane strain, the Dundurs
-  parameters 0.2507 and 0.0595, the paper's Ti6Al4V-Al pair (-0.2503, -0.0594 in its sign convention).
+* Ti-6Al-4V (116 GPa, 0.32) and aluminium (69 GPa, 0.33): in plane strain the pair has the Dundurs parameters 0.2507
+  and 0.0595. The paper's Ti6Al4V-Al pair has -0.2503 and -0.0594, in the paper's sign convention.
 * steel (210 GPa, 0.30): EN 1993-1-1, 3.2.6.
 * nickel alloy (199.9 GPa, 0.294): INCONEL alloy 718, Special Metals data sheet SMC-045, annealed and aged, 21 C.
 """
@@ -98,12 +102,12 @@ MATERIALS: dict[str, Material] = {
 
 @dataclass(frozen=True, repr=False)
 class MaterialPair:
-    """The pin's and the plate's material and their composite constants.
+    """The materials of pin and plate, with their composite constants.
 
     Parameters
     ----------
     pin, plate : Material
-        At most one of them rigid.
+        At most one of the two is rigid.
     plane : {"strain", "stress"}
 
     Raises
@@ -139,7 +143,7 @@ class MaterialPair:
     ) -> MaterialPair:
         """A pair with given Dundurs parameters.
 
-        The two parameters do not determine the frictional problem: 1/(G_I beta_star) enters too, so the pin's
+        The two parameters do not determine the frictional problem, for 1/(G_I beta_star) enters too. So the pin's
         Poisson ratio and the plane state are needed.
 
         Parameters
@@ -149,12 +153,12 @@ class MaterialPair:
         nu_pin : float
             Poisson's ratio of the pin.
         beta_star : float
-            Composite compliance (32) of the pair, 1/Pa; it sets the scale of the moduli only.
+            Composite compliance (32) of the pair, 1/Pa. It only sets the scale of the moduli.
 
         Raises
         ------
         InputError
-            If no plate with 0 <= nu <= 0.5 gives these parameters.
+            If a value is out of range, or no plate with 0 <= nu <= 0.5 gives these parameters.
         """
         choice("convention", convention, ("usual", "paper"))
         choice("plane", plane, ("strain", "stress"))
@@ -185,7 +189,7 @@ class MaterialPair:
         return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
 
     def scaled(self, beta_star: float) -> MaterialPair:
-        """The same pair with both moduli scaled so that its composite compliance is `beta_star`."""
+        """The same pair with both moduli scaled. Its composite compliance is then `beta_star`, 1/Pa."""
         factor = self.beta_star / beta_star
         pin = Material(self.pin.E * factor, self.pin.nu, self.pin.name)
         plate = Material(self.plate.E * factor, self.plate.nu, self.plate.name)
@@ -203,12 +207,12 @@ class MaterialPair:
 
     @property
     def pin_kolosov(self) -> float:
-        """kappa_I."""
+        """Kolosov's constant of the pin, kappa_I."""
         return self.pin.kolosov(self.plane)
 
     @property
     def plate_kolosov(self) -> float:
-        """kappa."""
+        """Kolosov's constant of the plate, kappa."""
         return self.plate.kolosov(self.plane)
 
     @property
@@ -224,22 +228,22 @@ class MaterialPair:
 
     @property
     def gamma(self) -> float:
-        """gamma of Eq. (39), centre load, 1/Pa."""
+        """Constant gamma of Eq. (39), for a centre load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star - 2.0 * self.pin_compliance
 
     @property
     def gamma_prime(self) -> float:
-        """gamma' of Eq. (39), centre load, 1/Pa."""
+        """Constant gamma' of Eq. (39), for a centre load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star + 2.0 * self.pin_compliance
 
     @property
     def gamma_body(self) -> float:
-        """gamma_B of Eq. (56), body load, 1/Pa."""
+        """Constant gamma_B of Eq. (56), for a body load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star - self.pin_compliance
 
     @property
     def gamma_body_prime(self) -> float:
-        """gamma'_B of Eq. (56), body load, 1/Pa."""
+        """Constant gamma'_B of Eq. (56), for a body load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star + self.pin_compliance
 
     def dundurs(self, convention: Convention = "usual") -> tuple[float, float]:

@@ -18,30 +18,42 @@ from fastpin.model.checks import as_toml, choice, number, true_or_false, whole_n
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 
 Method = Literal["path", "increment"]
+"""Name of a solver, for type checkers."""
+
 METHODS = ("path", "increment")
+"""Names of the solvers."""
 
 DEFAULT_INCREMENTS = 80
-"""Increments a step of the increment solver."""
+"""Increments of a step, by default, with the increment solver."""
 
 MOST_BETWEEN = 10_000
-"""States inside a step, at most."""
+"""Most states inside a step."""
+
+FULL_TURN = 2.0 * math.pi - 1e-5
+"""Length of an arc from which on it is the whole circle, rad. An angle may be written with six digits."""
 
 MOST_TURN = 2.01 * math.pi
-"""Length of an arc, at most. Angles in degrees would make many turns."""
+"""Greatest length of an arc, rad: a full turn with room for rounding. Angles in degrees by mistake exceed it."""
 
 KEEP_WORDS = ("all", "corners", "cycles")
+"""Words for the states that are kept. ``"every N"`` is the other form."""
 
 
 @dataclass(frozen=True)
 class KeepRule:
-    """The states of a history that are kept. The last one always is.
+    """A rule for the states of a history that are kept. The last state is always kept.
 
     Parameters
     ----------
     which : {"all", "corners", "cycles"}
-        All states; those at corners; those at which a cycle ends.
+        Keep all states, the states at corners, or the states at which a cycle ends.
     every : int
-        Of corners, every n-th: 10 keeps the corners 10, 20, 30, ...
+        Keep every n-th corner only: 10 keeps the corners 10, 20, 30, ... More than 1 needs ``which="corners"``.
+
+    Raises
+    ------
+    InputError
+        If `which` is unknown, or `every` does not fit.
     """
 
     which: str = "all"
@@ -58,18 +70,18 @@ class KeepRule:
         Raises
         ------
         InputError
-            If it is none of them.
+            If `text` is none of these.
         """
         if isinstance(text, KeepRule):
             return text
         if isinstance(text, str) and text in KEEP_WORDS:
             return cls(text)
-        found = re.fullmatch(r"every[ =:-]?([1-9]\d{0,8})", text) if isinstance(text, str) else None
-        if found is None:
+        match = re.fullmatch(r"every[ =:-]?([1-9]\d{0,8})", text) if isinstance(text, str) else None
+        if match is None:
             raise InputError(
                 "keep", f'must be "all", "corners", "cycles" or "every N", such as "every 10", not {as_toml(text)}'
             )
-        return cls("corners", int(found[1]))
+        return cls("corners", int(match[1]))
 
     def __str__(self) -> str:
         return self.which if self.every == 1 else f"every {self.every}"
@@ -80,7 +92,7 @@ class KeepRule:
         return self.which == "all"
 
     def at_corner(self, corner: int, corners: int, ends_cycle: bool) -> bool:
-        """Whether the state at a corner, counted from 0, of `corners` is kept."""
+        """Whether the state at a corner is kept. The corner counts from 0, out of `corners` in all."""
         if corner + 1 == corners:
             return True
         return ends_cycle if self.which == "cycles" else (corner + 1) % self.every == 0
@@ -88,35 +100,35 @@ class KeepRule:
 
 @dataclass(frozen=True)
 class SolveOptions:
-    """Options of the solver, checked.
+    """The options of the solver, checked and frozen.
 
     Parameters
     ----------
     nodes : int
-        Number of nodes of the arc, 5 to 20,000. The arc spans all places that are ever in contact and a little more.
+        Number of nodes of the arc, 5 to 20,000. The arc spans all places that ever touch, and a little more.
     method : {"path", "increment"}
-        "path" is exact in load. "increment" is the paper's way: implicit increments, first order in their size.
+        "path" is exact in load. "increment" is the paper's method: implicit increments, first order in their size.
     increments : int, optional
-        Increments a step, only with ``method="increment"``; 80 unless given. They are of equal size, or grow linearly
-        in a step that starts without contact.
+        Increments in each step, only with ``method="increment"``; the default is 80. They have equal sizes. In a step
+        that starts without contact, they grow linearly.
     arc : (float, float), optional
-        Start and end angle of the arc, rad (the bottom is -pi/2). Chosen from a coarse run if not given. A length of
-        2 pi means the whole circle.
+        Start and end angle of the arc, rad (the bottom is -pi/2). By default a coarse run chooses the arc. A length
+        of 2 pi means the whole circle.
     between : int or sequence of float
-        States inside each step: their number (equally spaced), or increasing fractions of the step.
+        States inside each step: the number of equally spaced states, or increasing fractions of the step.
     keep : str
         States that are kept: "all", "corners", "cycles" (where a cycle of the history ends) or "every N" (corners).
         The last state is always kept.
     shortcut : bool
-        Take the states of a contact that has become periodic from the period before. They are the same to the last
-        bit as states that are solved again.
+        Whether to copy states from the period before, once the contact has become periodic. The copies equal newly
+        solved states to the last bit.
     error_bars : bool
-        Also follow the history on a grid with half the intervals. Every state then has ``error_bars``.
+        Whether to follow the history also on a grid with half the intervals. Every state then has ``error_bars``.
 
     Raises
     ------
     InputError
-        Naming the option that can't be used, or that has no effect with the chosen method.
+        If an option can't be used, or has no effect with the chosen method. The error names the option.
     """
 
     nodes: int = 401
@@ -143,7 +155,7 @@ class SolveOptions:
             object.__setattr__(self, name, value)
 
     def changed(self, **changes: Any) -> SolveOptions:
-        """These options with some others. Another method drops the number of increments unless it is given too."""
+        """A copy with some options changed. Method "path" drops ``increments``, unless `changes` give them too."""
         if changes.get("method", self.method) == "path":
             changes.setdefault("increments", None)
         return replace(self, **changes)
@@ -153,13 +165,18 @@ class SolveOptions:
         return asdict(self)
 
     @property
+    def is_full_turn(self) -> bool:
+        """Whether the arc is the whole circle."""
+        return self.arc is not None and self.arc[1] - self.arc[0] >= FULL_TURN
+
+    @property
     def keep_rule(self) -> KeepRule:
-        """The rule that ``keep`` says."""
+        """The option ``keep`` as a rule."""
         return KeepRule.read(self.keep)
 
     @property
     def fractions(self) -> np.ndarray:
-        """Fractions of a step at which there are states, shape (states,); the last one is 1, the corner."""
+        """Fractions of a step at which there are states, shape (states,). The last is 1, the corner."""
         if isinstance(self.between, int):
             return np.arange(1, self.between + 2) / (self.between + 1)
         return np.r_[np.array(self.between, dtype=float), 1.0]

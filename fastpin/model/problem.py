@@ -11,7 +11,10 @@ from fastpin.model.checks import choice, number
 from fastpin.model.materials import MaterialPair
 
 PinLoad = Literal["centre", "body"]
+"""Kinds of pin load."""
+
 Rotation = Literal["free", "fixed"]
+"""Kinds of pin rotation."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -30,19 +33,19 @@ class Problem:
     pin_load : {"centre", "body"}
         The pin's load acts at its centre, or as a uniform body force (section 4 of the paper).
     rotation : {"free", "fixed"}
-        A free pin carries the moment M (0 unless given); a fixed one has a prescribed rotation (0 unless given).
+        A free pin carries the moment M (0 unless given). A fixed pin has a prescribed rotation (0 unless given).
         A body-loaded pin must be free: its potentials have a moment singularity otherwise (section 4).
     hub_radius : float, optional
-        Only with ``rotation="fixed"``: the circle, m, whose mean rotation is prescribed. The rotation of a pin under
-        a centre moment depends on where it is measured; the paper's datum, the default, is
-        R / sqrt(kappa_I + 1). The whole rim is ``hub_radius=hole_radius``.
+        Radius, m, of the circle whose mean rotation is prescribed; only with ``rotation="fixed"``. The rotation of a
+        pin under a centre moment depends on where it is measured. The default is the paper's datum,
+        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``.
     dimensionless : bool
-        Set by :meth:`from_load_parameter`; lifts the check that the clearance is smaller than the hole.
+        Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
 
     Raises
     ------
     InputError
-        Naming the field that is out of range, or the combination that the theory excludes.
+        If a field is out of range, or the theory excludes a combination. The error names the field.
     """
 
     pair: MaterialPair
@@ -107,8 +110,8 @@ class Problem:
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
-        With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`; tractions come out as N R/F,
-        displacements in units of F beta*, rotations in F beta*/R, remote stresses are given in F/R.
+        With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
+        tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R.
         """
         value = number("load_parameter", load_parameter)
         if not isinstance(pair, MaterialPair):
@@ -117,17 +120,18 @@ class Problem:
 
     @property
     def frictionless(self) -> bool:
+        """Whether the coefficient of friction is zero."""
         return self.friction == 0.0
 
     def load_parameter(self, force: float) -> float:
-        """L_p = (R - R_D) / (F beta*) for a force F, N/m."""
+        """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""
         return self.clearance / (force * self.pair.beta_star)
 
     @property
     def hub_compliance(self) -> float:
-        """Rotation per int T dtheta of a held pin, in units of beta*: C_omega = hub_compliance * int T.
+        """Rotation of a held pin per int T dtheta, in units of beta*: C_omega = hub_compliance * int T dtheta.
 
-        Zero for the paper's datum; [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r.
+        It is zero for the paper's datum, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r.
         """
         if self.hub_radius is None:
             return 0.0

@@ -32,14 +32,14 @@ _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 
 
 def units(problem: Problem) -> dict[str, str]:
-    """The unit of every kind of quantity: SI, or those of the paper for a dimensionless problem."""
+    """The unit of every kind of quantity: SI, or the paper's units for a dimensionless problem."""
     return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
-    """A factor and a unit with an SI prefix in which the largest of `values` reads well.
+    """A factor for `values`, and `unit` with an SI prefix. In this unit the largest value reads well.
 
-    Units of a dimensionless problem (those with an F) keep the factor 1.
+    Units of a dimensionless problem, with an F or only R, keep the factor 1 and have no prefix.
     """
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if "F" in unit or unit == "R" or largest == 0.0:
@@ -50,17 +50,18 @@ def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
 
 
 def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
-    """Names of the loads that are not zero throughout."""
+    """Names of the loads that are not zero in at least one of `loads`."""
     return [name for name in LOADS if any(load.get(name, 0.0) != 0.0 for load in loads)]
 
 
 def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
-    """The loads that are not zero, with their units."""
+    """The loads that are not zero, as text with their units."""
     unit = units(problem)
     acting = acting_loads([load])
     return ", ".join(f"{name} = {with_unit(load[name], unit[LOAD_KIND[name]], 5)}" for name in acting) or "no load"
 
 
 def with_unit(value: float, unit: str, digits: int = 6) -> str:
+    """A value as text in its unit with an SI prefix, to so many significant `digits`."""
     factor, label = scaled([value], unit)
     return f"{value * factor:.{digits}g} {label}"

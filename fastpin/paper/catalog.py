@@ -1,8 +1,8 @@
-"""The figures of the paper and those that go beyond it: found, computed, written.
+"""The figures of the paper and four more: find them, compute them, write them.
 
 Each figure is a file of this folder with
 
-* ``TITLE``, what the figure shows, and ``LEAST_NODES``, the fewest nodes with which it shows it;
+* ``TITLE``, a description, and ``LEAST_NODES``, the fewest nodes that resolve the subject of the figure;
 * ``compute(nodes, progress)``, which solves and returns curves;
 * ``draw(curves)``, which draws them.
 """
@@ -31,8 +31,10 @@ BEYOND = ("memory", "sliding-onset", "half-plane", "rigid-pin")
 """Names of the figures that the paper does not have."""
 
 NODES = 400
+"""Number of nodes unless another one is chosen."""
 
 UNITS = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
+"""Units and signs of all columns, for the head of the CSV files."""
 
 
 class Script(Protocol):
@@ -41,13 +43,17 @@ class Script(Protocol):
     TITLE: str
     LEAST_NODES: int
 
-    def compute(self, nodes: int, progress: Report | None = None) -> list[Curve]: ...
+    def compute(self, nodes: int, progress: Report | None = None) -> list[Curve]:
+        """Solve, and return the curves of the figure."""
+        ...
 
-    def draw(self, curves: Sequence[Curve]) -> Figure: ...
+    def draw(self, curves: Sequence[Curve]) -> Figure:
+        """Draw the curves of :meth:`compute`."""
+        ...
 
 
 def figure_name(name: str | int) -> str:
-    """The name of a figure as it stands in :data:`PAPER` or :data:`BEYOND`.
+    """Return the name of a figure as in :data:`PAPER` or :data:`BEYOND`, from a number, "03" or any letter case.
 
     Raises
     ------
@@ -66,13 +72,19 @@ def figure_name(name: str | int) -> str:
 
 
 def stem(name: str | int) -> str:
-    """The first part of the names of a figure's files: ``figure03``, ``half-plane``."""
+    """Return the first part of the names of a figure's files: ``figure03``, ``half-plane``.
+
+    Raises
+    ------
+    InputError
+        If there is no such figure.
+    """
     text = figure_name(name)
     return f"figure{int(text):02d}" if text in PAPER else text
 
 
 def script(name: str | int) -> Script:
-    """The script of a figure, a number from 3 to 17 or one of :data:`BEYOND`.
+    """Return the script of a figure: a number from 3 to 17, or a name of :data:`BEYOND`.
 
     Raises
     ------
@@ -83,12 +95,12 @@ def script(name: str | int) -> Script:
 
 
 def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None:
-    """Find out before the work whether all figures can be made; make `directory` if it is missing.
+    """Check before the work that all figures can be made, and make `directory` if it is missing.
 
     Raises
     ------
     InputError
-        If there is no such figure, `nodes` are too few for what one of them shows, or its files can't be written.
+        If there is no such figure, a figure needs more than `nodes` nodes, or its files can't be written.
     """
     scripts = {figure_name(name): script(name) for name in names}
     for name, needed in scripts.items():
@@ -113,12 +125,12 @@ def _files(name: str | int, directory: str | Path) -> tuple[Path, Path]:
 def make(
     name: str | int, directory: str | Path = ".", nodes: int = NODES, progress: Report | None = None
 ) -> tuple[Path, Path]:
-    """Compute a figure and write it as PNG and its numbers as CSV; the paths of both.
+    """Compute a figure, and write it as PNG and its numbers as CSV. Return the paths of both files.
 
     Raises
     ------
     InputError
-        As :func:`check`.
+        See :func:`check`.
     """
     check([name], directory, nodes)
     chosen = script(name)

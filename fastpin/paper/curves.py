@@ -16,7 +16,7 @@ from fastpin.states.state import State
 from fastpin.storage.files import replacing
 
 Report = Callable[[float], None]
-"""Called with the fraction of a figure that is computed."""
+"""A callable that receives the computed fraction of a figure, 0 to 1."""
 
 Item = TypeVar("Item")
 
@@ -28,9 +28,9 @@ class Curve:
     Attributes
     ----------
     parameters : dict
-        What tells this curve from the others of its figure: L_p, mu, the pair, the load.
-    columns : dict of ndarray, all of one length
-        The numbers, by a name with its unit. NaN breaks the curve.
+        The values that differ between the curves of a figure: L_p, mu, the pair, the load.
+    columns : dict of ndarray
+        The numbers, all of one length, by a name with its unit. NaN breaks the curve.
     """
 
     parameters: dict[str, Any]
@@ -41,9 +41,15 @@ class Curve:
 
 
 def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) -> None:
-    """Write curves one below the other: their parameters repeated, then their columns.
+    """Write curves as CSV, one below the other. Each line has the curve's parameters, then a row of its columns.
 
-    NaN is an empty cell, and a comma in a text becomes a semicolon, for readers that do not know quotes.
+    NaN is an empty cell. A comma in a text becomes a semicolon, for programs that do not know quotes. `remarks` become
+    lines that begin with #.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
     """
     names = list(dict.fromkeys(name for curve in curves for name in (*curve.parameters, *curve.columns)))
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
@@ -70,7 +76,7 @@ def _cell(value: Any) -> str:
 
 
 def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
-    """The items one after the other, reporting the fraction that is done."""
+    """Yield the items, and report the fraction that is done after each of them."""
     for index, item in enumerate(items):
         yield item
         if progress is not None:
@@ -78,14 +84,14 @@ def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
 
 
 def traction_curve(state: State, force: float = 1.0, **parameters: float | str) -> Curve:
-    """Pressure and shear traction of a state from edge to edge, with zeros at the edges read between nodes.
+    """Return pressure and shear traction of a state from edge to edge, with zeros at the edges read between nodes.
 
     Parameters
     ----------
     state : State
         Of a dimensionless problem, :meth:`fastpin.Problem.from_load_parameter`.
     force : float
-        What the tractions are divided by: the pin's load F in the units of the problem.
+        The pin's load F in the units of the problem. Tractions are divided by it.
     parameters
         The curve's parameters.
 

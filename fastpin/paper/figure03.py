@@ -26,7 +26,7 @@ def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> 
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Pressure above shear; one column for each load parameter."""
+    """Draw pressure above shear, with one column for each load parameter."""
     lines = {str(friction): line(index, index) for index, friction in enumerate(FRICTION)}
     titles = {"N": "$L_p$ = {:g}", "T": ""}
     layout = [

@@ -1,9 +1,9 @@
 """Figure 4: tractions of a body-loaded Ti-6Al-4V pin in aluminium, less conforming; pressure left, shear right.
 
-The caption gives the frictionless pressure as the dashed lines, and says that a friction larger than the largest one
-shown changes nothing that can be seen. The load parameters are our choice, but for L_p = 0.5, where the text says
-that the shear hardly changes beyond mu = 0.4. The largest friction of the other two is where the same is true: with
-2.0 instead, the shear changes by less than 2 % of its peak, the pressure by less than 0.1 %.
+By the caption, the dashed lines are the pressure without friction, and more friction than the largest shown changes
+nothing visible. By the text, for L_p = 0.5 the shear hardly changes beyond mu = 0.4. The other two load parameters are
+our choice. Their largest friction has the same effect: with mu = 2.0 instead, the shear changes by less than 2 % of its
+peak, the pressure by less than 0.1 %.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> 
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Colours tell the load parameter; dashes the friction, the largest one solid."""
+    """Draw pressure left, shear right. Colours show the load parameter, dashes the friction; the largest is solid."""
     lines = {
         (load_parameter, friction): line(colour, dashes)
         for colour, (load_parameter, coefficients) in enumerate(FRICTION.items())

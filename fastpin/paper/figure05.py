@@ -1,7 +1,8 @@
 """Figure 5: half-angles of contact and stick over the load parameter; body-loaded Ti-6Al-4V pin in aluminium.
 
 The caption leaves the coefficients of friction and the range of L_p open. Where slip begins inside the contact, rho is
-that of the stick zone at the bottom. It is left out where fewer than nine nodes stick (mu = 0.1, below 2 degrees).
+the half-angle of the stick zone at the bottom. Where fewer than nine nodes stick, rho is left out (mu = 0.1, below
+2 degrees).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Contact half-angles left, stick half-angles right, with one scale."""
+    """Draw contact half-angles left and stick half-angles right, with one scale."""
     figure, axes = panels(1, 2, height=2.9)
     contact, stick = axes[0]
     stick.sharey(contact)

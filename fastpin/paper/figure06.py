@@ -1,6 +1,7 @@
 """Figure 6: tractions of a body-loaded pin in a plate of the same material, highly conforming.
 
-As figure 3. The material is our choice, Ti-6Al-4V; of similar materials only Poisson's ratio enters.
+Loads and friction are the same as in figure 3. The material, Ti-6Al-4V, is our choice: for similar materials only
+Poisson's ratio matters.
 """
 
 from __future__ import annotations

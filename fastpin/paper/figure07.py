@@ -1,7 +1,7 @@
 """Figure 7: tractions of a body-loaded pin in a plate of the same material, less conforming.
 
-As figure 4; beyond the largest friction shown the shear still changes by up to 5 % of its peak. The material is our
-choice, Ti-6Al-4V; of similar materials only Poisson's ratio enters.
+Loads and friction are the same as in figure 4. With more friction than the largest shown, the shear still changes by
+up to 5 % of its peak. The material, Ti-6Al-4V, is our choice: for similar materials only Poisson's ratio matters.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Figure 8: peak pressure and relative size of the stick zone of three pairs over the load parameter, body loads.
 
-The caption leaves the coefficients of friction and the range of L_p open; the text names the materials, and compares
-mu = 0.1 and 0.7: for Ti-6Al-4V in aluminium at L_p = 0.01 the peak pressure with 0.7 should be less than half that with
-0.1. It is 0.70 of it here. The stick half-angle rho is that of figure 5.
+The caption leaves the coefficients of friction and the range of L_p open. The text names the materials, and compares
+mu = 0.1 and 0.7: for Ti-6Al-4V in aluminium at L_p = 0.01, 0.7 should give less than half the peak pressure of 0.1.
+Here it gives 0.70 of it. The stick half-angle rho is defined as in figure 5.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Colours tell the pair, dashes the friction."""
+    """Draw peak pressure left and the ratio of half-angles right. Colours show the pair, dashes the friction."""
     figure, axes = panels(1, 2, height=2.9)
     lines = {
         (pair, mu): line(colour, dashes) for colour, pair in enumerate(PAIRS) for dashes, mu in enumerate(FRICTION)

@@ -19,7 +19,7 @@ LEAST_NODES = 101
 LOAD_PARAMETERS = (0.01, 0.1, 0.5)
 FRICTION = 0.4
 PIN_LOADS: dict[PinLoad, int] = {"centre": 0, "body": 1}
-"""Each kind of load and the dashes it is drawn with."""
+"""Each kind of load and its dashes."""
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
@@ -37,7 +37,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Colours tell the load parameter; centre loads are solid, body loads dashed."""
+    """Draw pressure left, shear right. Colours show the load parameter; centre loads are solid, body loads dashed."""
     lines = {
         (load_parameter, pin_load): line(colour, dashes)
         for colour, load_parameter in enumerate(LOAD_PARAMETERS)

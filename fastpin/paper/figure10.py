@@ -1,8 +1,8 @@
 """Figure 10: remote stresses that grow with a body load; Ti-6Al-4V pin in aluminium, pressure left, shear right.
 
-The caption gives mu = 0.40 and L_p = 0.75; dashed lines are without remote stress. The text names the normalised
-stresses (0.25, -0.25), which gives the largest rise of the peak pressure, and (-0.25, 0.25), which gives the largest
-contact. The two cases with equal stresses are our choice.
+The caption gives mu = 0.40 and L_p = 0.75; dashed lines are without remote stress. The text names two pairs of
+normalised stresses: (0.25, -0.25) gives the largest rise of the peak pressure, (-0.25, 0.25) the largest contact. The
+two cases with equal stresses are our choice.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ LEAST_NODES = 101
 LOAD_PARAMETER = 0.75
 FRICTION = 0.4
 DASHES = {(0.0, 0.0): 1, (0.25, -0.25): 0, (-0.25, 0.25): 2, (0.25, 0.25): 3, (-0.25, -0.25): 5}
-"""Normalised stresses (sigma_x, sigma_y) and the dashes they are drawn with."""
+"""Normalised stresses (sigma_x, sigma_y) and their dashes."""
 
 
 def stress_unit(pair: str) -> float:
-    """The remote stress, in F/R, of normalised size one.
+    """Return the remote stress, in F/R, whose normalised size is one.
 
-    The paper's sigma = sxx R kappa' / (2 G F beta*), kappa' = (kappa + 1)/2 and G of the plate. With R = F = beta* = 1
-    that is sxx kappa' / (2 G), so sxx = sigma * 2 G / kappa'.
+    The paper normalises sigma = sxx R kappa' / (2 G F beta*), with kappa' = (kappa + 1)/2 and G of the plate. With
+    R = F = beta* = 1, sigma is sxx kappa' / (2 G), so sxx = sigma * 2 G / kappa'.
     """
     scaled = PAIRS[pair].scaled(1.0)
     return 4.0 * scaled.plate.shear_modulus / (scaled.plate_kolosov + 1.0)
@@ -44,7 +44,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """One line for each pair of stresses, dashed without."""
+    """Draw pressure left, shear right, one line for each pair of stresses. The line without stress is dashed."""
     lines = {stresses: line(colour, dashes) for colour, (stresses, dashes) in enumerate(DASHES.items())}
     lines[0.0, 0.0]["color"] = "black"
     labels = {stresses: f"$σ_x$ = {stresses[0]:g}, $σ_y$ = {stresses[1]:g}".replace("-", "−") for stresses in DASHES}

@@ -24,5 +24,5 @@ def compute(nodes: int, progress: Report | None = None, load_parameter: float = 
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """A column for each size of Q."""
+    """Draw a column for each size of Q."""
     return cycle_figure(curves, "eta", "η = {:g}")

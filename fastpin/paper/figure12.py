@@ -1,4 +1,4 @@
-"""Figure 12: as figure 11 (fretting with centre loads and no rotation), less conforming: L_p = 0.50."""
+"""Figure 12: fretting with centre loads and no rotation, less conforming than in figure 11: L_p = 0.50."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Figure 13: steady shear tractions of the fretting of figure 12, beginning with +Q (left) or with -Q (right).
 
 The caption gives L_p = 0.50, mu = 0.55 and C_omega = 0; in the text, steady states are solid. The horizontal load
-eta = Q/(mu P) is our choice: 0.5 above, 1 below. "Steady" is the third cycle. The notch in the steady state of the
-first direction is no fault of the grid: there the pin still sticks where slip ended under the opposite load.
+eta = Q/(mu P) is our choice: 0.5 above, 1 below. The steady state is the third cycle. In the first direction it has a
+notch. The notch is no error of the grid: there the pin still sticks where slip ended under the opposite load.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ CYCLES = 3
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
-    """Tractions after each of the horizontal loads of three cycles, for two sizes of Q and both first directions."""
+    """Tractions after each horizontal load of three cycles, for two sizes of Q and both first directions."""
     problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], LOAD_PARAMETER, FRICTION, "centre", "fixed")
     curves = []
     for eta, first in steps([(eta, first) for eta in ETAS for first in FIRST_LOADS], progress):
@@ -44,7 +44,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """The first forward load dashed, the first reverse and both steady states solid."""
+    """Draw shear tractions: the first forward load dashed, the first reverse load and both steady states solid."""
     steady = {load: line(index) for index, load in enumerate(FIRST_LOADS)}
     forward = {load: line(index, 1) for index, load in enumerate(FIRST_LOADS)}
     reverse = {load: {**line(index, 0, 4.0), "alpha": 0.3} for index, load in enumerate(FIRST_LOADS)}
@@ -59,10 +59,10 @@ def draw(curves: Sequence[Curve]) -> Figure:
     for eta in ETAS:
         row = []
         for first, second in (FIRST_LOADS, FIRST_LOADS[::-1]):
-            shown = [
+            drawn = [
                 curve for curve in chosen(curves, eta=eta, first=first) if curve.parameters["cycle"] in (1, CYCLES)
             ]
-            row.append(Panel("T", shown, f"0, {label(first)}, {label(second)}, …;  η = {eta:g}"))
+            row.append(Panel("T", drawn, f"0, {label(first)}, {label(second)}, …;  η = {eta:g}"))
         layout.append(row)
     legend = []
     for load in FIRST_LOADS:

@@ -1,7 +1,7 @@
-"""Figure 15: as figure 14 (fretting with body forces, free rotation), for both dissimilar pairs.
+"""Figure 15: fretting with body forces on a pin that rotates freely, for both dissimilar pairs.
 
-The caption gives L_p = 0.05 and mu = 0.55, the text the pairs. The horizontal load is our choice, as in figure 14:
-eta = B_x/(mu B_y) = 1, which figures 16 and 17 have.
+The caption gives L_p = 0.05 and mu = 0.55, the text gives the pairs. The horizontal load is our choice, as in
+figure 14. It is eta = B_x/(mu B_y) = 1, the load of figures 16 and 17.
 """
 
 from __future__ import annotations
@@ -23,5 +23,5 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """A column for each pair."""
+    """Draw a column for each pair."""
     return cycle_figure(curves, "pair", "{},  η = 1")

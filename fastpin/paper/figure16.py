@@ -1,6 +1,6 @@
 """Figure 16: fretting with body forces on a pin that rotates freely; aluminium pin in Ti-6Al-4V.
 
-The caption gives L_p = 0.25 and 0.50, and |eta| = |B_x|/(mu B_y) = 1. The friction is that of figures 14 and 15.
+The caption gives L_p = 0.25 and 0.50, and |eta| = |B_x|/(mu B_y) = 1. The friction is taken from figures 14 and 15.
 """
 
 from __future__ import annotations
@@ -22,5 +22,5 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """A column for each load parameter."""
+    """Draw a column for each load parameter."""
     return cycle_figure(curves, "L_p", "$L_p$ = {:g}")

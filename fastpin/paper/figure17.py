@@ -1,7 +1,7 @@
-"""Figure 17: as figure 16 (fretting with body forces, free rotation; aluminium pin in Ti-6Al-4V), for L_p = 1.0.
+"""Figure 17: fretting as in figure 16 (body forces, free rotation, aluminium pin in Ti-6Al-4V), for L_p = 1.0.
 
-The contacts under +B_x and -B_x overlap in five degrees only; what the shear does within the last degree of the second
-one takes more than a thousand nodes to see.
+The contacts under +B_x and -B_x overlap in five degrees only. The shear within the last degree of the second contact
+is visible with more than a thousand nodes only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Fretting: a vertical load that stays, and a horizontal one that goes to and fro (figures 11 to 17)."""
+"""Fretting (figures 11 to 17): a vertical load that stays, and a horizontal load that changes its direction."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from fastpin.solver.solving import solve
 
 FRICTION = 0.55
 LOADS: dict[PinLoad, tuple[str, str, str]] = {"centre": ("P", "+Q", "-Q"), "body": ("By", "+Bx", "-Bx")}
-"""The paper's names of the loads after which tractions are shown, for loads at the centre and body forces."""
+"""The paper's names of the loads of a history, for centre loads and for body forces. Figures show all three states."""
 
 
 def cycled(
     cases: Sequence[tuple[str, float, float]], pin_load: PinLoad, nodes: int, progress: Report | None
 ) -> list[Curve]:
-    """Tractions at P = F, then after +Q and -Q = eta mu P, for each pair, load parameter and eta.
+    """Return the tractions after P = F, +Q and -Q, with Q = eta mu P, for each case.
 
-    A centre-loaded pin keeps its rotation, a body-loaded one rotates freely.
+    A case is a pair of :data:`~fastpin.paper.tractions.PAIRS`, a load parameter and eta. A centre-loaded pin keeps its
+    rotation, a body-loaded pin rotates freely.
     """
     rotation: Rotation = "fixed" if pin_load == "centre" else "free"
     curves = []
@@ -38,7 +39,7 @@ def cycled(
 
 
 def cycle_figure(curves: Sequence[Curve], parameter: str, title: str) -> Figure:
-    """Pressure above shear, a column for each value of a parameter, which stands in the `title`."""
+    """Draw pressure above shear, with a column for each value of a parameter. `title` is a format for the value."""
     loads = list(dict.fromkeys(curve.parameters["load"] for curve in curves))
     lines = {load: line(index, index) for index, load in enumerate(loads)}
     values = list(dict.fromkeys(curve.parameters[parameter] for curve in curves))
@@ -49,7 +50,7 @@ def cycle_figure(curves: Sequence[Curve], parameter: str, title: str) -> Figure:
 
 
 def label(load: str) -> str:
-    """A load as it is printed in a legend."""
+    """Return the text of a load, such as "+Bx", for a legend."""
     sign, name = (load[0], load[1:]) if load[0] in "+-" else ("", load)
     symbol = f"${name[0]}_{name[1]}$" if len(name) > 1 else f"${name}$"
     return f"{sign}{symbol}".replace("-", "−")

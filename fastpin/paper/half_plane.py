@@ -1,24 +1,25 @@
-"""From which load parameter on is a half-plane model right: relative errors of its formulas against L_p.
+"""Relative errors of half-plane formulas against L_p: from which load parameter on they are right.
 
-An error is half-plane over fastpin minus 1, in the CSV with its sign; what is too small to be told from that of the
-discretisation is left out (`floor`). Half-plane formulas are taken as one uses them, with Hertz's
-half-width and peak pressure and with arcs for lengths. Similar materials and mu = 0.5 unless said otherwise.
+An error is half-plane over fastpin minus 1, with its sign in the CSV. Errors that are too small to be distinguished
+from the discretisation error are left out (`floor`). The half-plane formulas are used in the usual way, with Hertz's
+half-width and peak pressure and with arcs for lengths. Materials are similar and mu = 0.5 unless said otherwise.
 
-*Hertz*: peak pressure and half-width under P. Without friction from Persson's closed form.
+*Hertz*: peak pressure and half-width under P. Without friction, Persson's closed form takes the place of fastpin.
 
-*Cattaneo-Mindlin*: pin held, centre load, P, then Q = +-0.6 mu P. Stick zone over contact (blurred after -Q, where the
-border comes to lie beside the one that +Q left), largest shear, and int |difference of T| over int mu N, with the
-formula at the bottom of the hole, or moved to the middle of the contact.
+*Cattaneo-Mindlin*: pin held, centre load, P, then Q = +-0.6 mu P. The errors are: stick zone over contact, largest
+shear, and int |difference of T| over int mu N. The formula's middle is the bottom of the hole, or is moved to the
+middle of the contact. The stick zone after -Q is blurred: its border lies beside the border that +Q left.
 
 *Bulk stress*: a remote stress that rises together with +Q. At the bottom of the hole it makes the hoop stress
-sigma = 3 sxx - syy, the bulk stress of the half-plane, here tension: the stick zone should move by
-e = a sigma/(4 mu p0) = 0.15 a to the side to which Q pushes the pin. Its shift is from the middle of the contact to its
-own, over the half-width; without bulk stress it is not zero, and what the stress adds is an error of its own. The
-stress also changes the curvature of the hole, at the bottom in proportion to 7 sxx - 5 syy: not if syy = 1.4 sxx
-(balanced), but if syy = 0 (uniaxial).
+sigma = 3 sxx - syy. This is the bulk stress of the half-plane, here tension. It should move the stick zone by
+e = a sigma/(4 mu p0) = 0.15 a to the side to which Q pushes the pin. The shift is the distance from the middle of the
+contact to the middle of the stick zone, over the half-width. Without bulk stress the shift is not zero, so the shift
+added by the stress has an error of its own. The stress also changes the curvature of the hole, at the bottom in
+proportion to 7 sxx - 5 syy. With syy = 1.4 sxx the curvature stays (balanced), with syy = 0 it changes (uniaxial).
 
 *Unlike materials*: Dundurs' beta = +-0.1438 (alpha = +-0.5), stick zone over contact under P with mu = 0.5, 1 and
-1.5 |beta|, free pin, centre load, against half-planes with pressure and shear coupled (`unlike_half_planes`).
+1.5 |beta|, free pin, centre load. The reference is two half-planes with pressure and shear coupled
+(`unlike_half_planes`).
 """
 
 from __future__ import annotations
@@ -43,25 +44,27 @@ from fastpin.verification import closed_forms
 TITLE = "Relative error of half-plane formulas against the load parameter"
 LEAST_NODES = 201
 LEVELS = (0.05, 0.01)
+"""Relative errors at which a formula counts as right."""
 
 SIMILAR = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])
 FRICTION, LOW_FRICTION = 0.5, 0.2
 RATIO = 0.6
-"""Q/(mu P)."""
+"""Q/(mu P)"""
 SHIFT = 0.15
-"""e/a."""
+"""e/a"""
 REMOTE = {"balanced": {"sxx": 1.0 / 1.6, "syy": 1.4 / 1.6}, "uniaxial": {"sxx": 1.0 / 3.0}}
-"""Remote stresses that make a hoop stress of one at the bottom of the hole."""
+"""Remote stresses whose hoop stress at the bottom of the hole is one."""
 BETA = 0.1438
 MU_OVER_BETA = (0.5, 1.0, 1.5)
 UNLIKE = {sign: MaterialPair.from_dundurs(sign * 0.5, sign * BETA, nu_pin=0.3) for sign in (1, -1)}
 
 LOAD_PARAMETERS = tuple(10.0 ** (k / 3) for k in range(-3, 13))
 BULK_FROM = 0.99
-"""L_p from which the bulk stress acts: below, it drives the stick zone to the edge."""
+"""Smallest L_p with bulk stress. For smaller ones, the stress drives the stick zone to the edge."""
 UNLIKE_LOAD_PARAMETERS = tuple(10.0 ** (k / 2) for k in range(-2, 11))
 
 FLOOR = 1e-3
+"""Smallest error of most quantities that exceeds the discretisation error at 400 nodes."""
 FLOORS = {
     "stick size, -Q": 8e-3,
     "stick size, -Q, mu = 0.2": 8e-3,
@@ -74,30 +77,30 @@ FLOORS = {
         for sign in "><"
     },
 }
-"""Smallest errors that are more than those of the discretisation at 400 nodes, where that is not `FLOOR`."""
+"""The same for all quantities that do not have the value `FLOOR`."""
 
 
 def floor(quantity: str, nodes: int) -> float:
-    """Smallest error that is more than that of the discretisation with so many nodes."""
+    """Return the smallest error of a quantity that exceeds the discretisation error with `nodes` nodes."""
     return FLOORS.get(quantity, FLOOR) * max(1.0, 400.0 / nodes)
 
 
 Error = tuple[str, str, float]
-"""Panel, quantity and error."""
+"""Panel, quantity and relative error."""
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
-    """Errors against L_p, one curve for each quantity, with the L_p from which on it is right to 5 % and 1 %."""
+    """Errors against L_p, a curve for each quantity, with the L_p from which on the formula is right to 5 % and 1 %."""
     cases = [("like", value, mu) for mu in (FRICTION, LOW_FRICTION) for value in LOAD_PARAMETERS]
     cases += [("unlike", value, ratio) for ratio in MU_OVER_BETA for value in UNLIKE_LOAD_PARAMETERS]
     limits = {ratio: unlike_half_planes(ratio * BETA, BETA) for ratio in MU_OVER_BETA}
     rows: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for kind, load_parameter, value in steps(cases, progress):
         if kind == "like":
-            found = like_errors(load_parameter, value, nodes)
+            errors = like_errors(load_parameter, value, nodes)
         else:
-            found = unlike_errors(load_parameter, value, limits[value], nodes)
-        for panel, quantity, error in found:
+            errors = unlike_errors(load_parameter, value, limits[value], nodes)
+        for panel, quantity, error in errors:
             rows.setdefault((panel, quantity), []).append((load_parameter, error))
     return [
         _curve(panel, quantity, np.array(pairs), floor(quantity, nodes)) for (panel, quantity), pairs in rows.items()
@@ -117,7 +120,10 @@ def _curve(panel: str, quantity: str, rows: np.ndarray, least: float) -> Curve:
 
 
 def threshold(load_parameter: np.ndarray, error: np.ndarray, level: float) -> float:
-    """L_p from which on |error| stays below `level`, to three digits (log-log); 0 if it always does, inf if never."""
+    """Return the L_p from which on |error| stays below `level`, to three digits, interpolated between logarithms.
+
+    The result is 0 if all errors are below, inf if the last one is not.
+    """
     size = np.abs(error)
     above = np.flatnonzero(size >= level)
     if above.size == 0:
@@ -131,14 +137,17 @@ def threshold(load_parameter: np.ndarray, error: np.ndarray, level: float) -> fl
 
 
 def stick_and_contact(state: State) -> tuple[float, float, float, float]:
-    """Middle and half-width of the widest stick zone and of the contact, rad."""
+    """Return middle and half-width of the widest stick zone, then of the contact, rad."""
     ((start, stop),) = state.contact
     left, right = max(state.stick, key=lambda zone: zone[1] - zone[0])
     return 0.5 * (left + right), 0.5 * (right - left), 0.5 * (start + stop), 0.5 * (stop - start)
 
 
 def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float = RATIO) -> Iterator[Error]:
-    """Hertz, Cattaneo-Mindlin at Q = +-`ratio` mu P and, where both are the usual ones, bulk stress."""
+    """Yield the errors of Hertz, of Cattaneo-Mindlin at Q = +-`ratio` mu P, and of bulk stress.
+
+    Hertz and bulk stress need `friction` = FRICTION, bulk stress also `ratio` = RATIO and an L_p of at least BULK_FROM.
+    """
     problem = Problem.from_load_parameter(SIMILAR, load_parameter, friction, "centre", "fixed")
     Q = ratio * friction
     pushed, forward, back = solve(problem, [{"P": 1.0}, {"Q": Q}, {"Q": -Q}], nodes=nodes)
@@ -173,13 +182,16 @@ def like_errors(load_parameter: float, friction: float, nodes: int, ratio: float
 
 
 def shift(state: State) -> float:
-    """From the middle of the contact to that of the stick zone, over the half-width of the contact."""
+    """Return the distance from the middle of the contact to the middle of the stick zone, over the half-width."""
     middle_of_stick, _, middle, contact = stick_and_contact(state)
     return (middle_of_stick - middle) / contact
 
 
 def bulk_shift(problem: Problem, stress: str, e: float, nodes: int) -> float:
-    """Shift after P and then +Q with the remote stress that should make it `e` (negative: compression)."""
+    """Return the shift after P, and then +Q with a remote stress.
+
+    The stress is the one that makes the shift `e` in the half-plane (negative: compression).
+    """
     load_parameter = problem.load_parameter(1.0)
     sigma = 4.0 * problem.friction * float(closed_forms.hertz_peak_pressure(load_parameter)) * e
     remote = {name: sigma * part for name, part in REMOTE[stress].items()}
@@ -187,17 +199,20 @@ def bulk_shift(problem: Problem, stress: str, e: float, nodes: int) -> float:
 
 
 def bulk_errors(problem: Problem, without: float, nodes: int) -> Iterator[Error]:
-    """Shift of the stick zone by bulk stress; `without` is the one that Q causes alone."""
+    """Yield the errors of the shift by bulk stress. `without` is the shift by Q alone."""
     for stress in REMOTE:
-        found = bulk_shift(problem, stress, SHIFT, nodes)
-        yield "Bulk stress", f"shift, {stress}", SHIFT / found - 1.0
-        yield "Bulk stress", f"what the stress adds, {stress}", SHIFT / (found - without) - 1.0
+        total = bulk_shift(problem, stress, SHIFT, nodes)
+        yield "Bulk stress", f"shift, {stress}", SHIFT / total - 1.0
+        yield "Bulk stress", f"what the stress adds, {stress}", SHIFT / (total - without) - 1.0
 
 
 def unlike_errors(
     load_parameter: float, ratio: float, limit: float, nodes: int, pin_load: PinLoad = "centre"
 ) -> Iterator[Error]:
-    """Stick zone over contact of both pairs, with mu = `ratio` |beta|."""
+    """Yield the errors of stick zone over contact of both pairs, with mu = `ratio` |beta|.
+
+    `limit` is the value of half-planes, see :func:`unlike_half_planes`.
+    """
     for sign, pair in UNLIKE.items():
         problem = Problem.from_load_parameter(pair, load_parameter, ratio * BETA, pin_load)
         _, stick, _, contact = stick_and_contact(solve(problem, [{"P": 1.0}], nodes=nodes)[-1])
@@ -206,10 +221,11 @@ def unlike_errors(
 
 
 def unlike_half_planes(friction: float, beta: float, cells: int = 60) -> float:
-    """Stick zone over contact of unlike half-planes in normal loading, pressure and shear coupled.
+    """Return stick zone over contact of unlike half-planes in normal loading, with pressure and shear coupled.
 
-    By Spence's self-similarity it is that of a flat punch: the c at which the shear, zero slip for |x| < c and
-    T = mu N sign(x) beyond, is finite at |x| = c. Constant tractions on cells that crowd towards +-1 and +-c.
+    By Spence's self-similarity a flat punch has the same ratio c. The punch does not slip for |x| < c, and has
+    T = mu N sign(x) beyond. c is the value for which the shear is finite at |x| = c. Tractions are constant on cells
+    that crowd towards +-1 and +-c.
     """
 
     def singularity(c: float) -> float:
@@ -231,17 +247,17 @@ def unlike_half_planes(friction: float, beta: float, cells: int = 60) -> float:
         flat = np.hstack([normal - coupling @ shear_of_pressure, -coupling @ shear_of_stick, np.ones((n, 1))])
         load = np.r_[width, np.zeros(np.count_nonzero(sticks) + 1)]
         right = np.r_[np.zeros(n + np.count_nonzero(sticks)), 1.0]
-        found = np.linalg.solve(np.vstack([flat, no_slip[sticks], load]), right)
-        near = np.flatnonzero(sticks)[-8:-2]
-        excess = found[n:-1][-8:-2] - friction * found[near]
-        root = np.sqrt(c - middle[near])
+        solution = np.linalg.solve(np.vstack([flat, no_slip[sticks], load]), right)
+        at_border = np.flatnonzero(sticks)[-8:-2]
+        excess = solution[n:-1][-8:-2] - friction * solution[at_border]
+        root = np.sqrt(c - middle[at_border])
         return float(np.linalg.lstsq(np.column_stack([1.0 / root, root, root**3]), excess)[0][0])
 
     return float(brentq(singularity, 0.05, 0.985))
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """One panel for each theory; solid lines at 5 % and 1 %."""
+    """Draw one panel for each theory, with solid lines at 5 % and 1 %."""
     figure, axes = panels(2, 2, height=2.9)
     for panel, (name, styles) in zip(axes.flat, _styles().items(), strict=True):
         for curve in curves:
@@ -284,7 +300,7 @@ def _load_parameter(degrees: np.ndarray) -> np.ndarray:
 
 
 def _styles() -> dict[str, dict[str, tuple[str | None, Line]]]:
-    """Legend entry and line of each quantity that is drawn, by panel."""
+    """Return the legend entry and the line of each drawn quantity, by panel."""
     back, low = 1, 2
     return {
         "Hertz": {

@@ -1,9 +1,9 @@
-"""The system memory of section 5.3 in numbers: what a contact remembers of the way on which Q began.
+"""The system memory of section 5.3 in numbers: a contact remembers the first direction of Q.
 
-Two pins see the same cycles of +-Q under the same P; one was first pushed to +Q, the other to -Q. In a half-plane
-contact they agree from the first reversal on. Here they go on differing at the same load, and the difference of the
-steady states at +Q is what the system remembers. Similar materials, mu = 0.55; held pin with a centre load (as in
-figures 11 to 13).
+Two pins see the same cycles of +-Q under the same P. One is first pushed to +Q, the other to -Q. In a half-plane
+contact their states agree from the first reversal on. Here their states at the same load stay different. The difference
+of the steady states at +Q is the memory. Similar materials, mu = 0.55, held pin with a centre load (as in figures 11
+to 13).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ CYCLES = 3
 
 
 def cycles(problem: Problem, amplitude: float, nodes: int) -> Result:
-    """P, then cycles of +Q and -Q, on a grid that is its own mirror image."""
+    """Solve P, then cycles of +Q and -Q, on a grid that is its own mirror image."""
     history = LoadHistory.cycles({"P": 1.0}, {"Q": amplitude}, CYCLES)
     coarse = solve(problem, history[:3], nodes=LEAST_NODES)
     half = 1.05 * max(abs(end - BOTTOM) for state in coarse for part in state.contact for end in part) + 0.02
@@ -40,16 +40,16 @@ def cycles(problem: Problem, amplitude: float, nodes: int) -> Result:
 
 
 def size(values: np.ndarray, state: State) -> float:
-    """Integral of the absolute value over the angle."""
+    """Return the integral of |values| over the angle."""
     return float(state.grid.weights @ np.abs(values))
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Memory and transients against L_p, one curve for each amplitude Q/(mu P).
 
-    The history that begins with -Q is the mirror image of the one that begins with +Q (tested), so its state at +Q is
-    the mirror image of the state at -Q. Differences are integrals of absolute values, of the shear over int mu N, of
-    the pressure over int N.
+    Only the history that begins with +Q is solved. Its mirror image begins with -Q (tested), so the state at -Q of the
+    first is the mirror image of the state at +Q of the other. Differences are integrals of absolute values: of the
+    shear over int mu N, of the pressure over int N.
     """
     found: dict[float, list[list[float]]] = {}
     for ratio, load_parameter in steps([(a, b) for a in AMPLITUDES for b in LOAD_PARAMETERS], progress):
@@ -61,7 +61,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
         found.setdefault(ratio, []).append(
             [
                 load_parameter,
-                size(steady.shear + back.shear[::-1], steady) / rubbing,  # the other one is mirrored
+                size(steady.shear + back.shear[::-1], steady) / rubbing,  # mirrored: -T(-theta)
                 size(steady.pressure - back.pressure[::-1], steady) / normal,
                 size(states[1].shear - steady.shear, steady) / rubbing,
                 size(states[2].shear - back.shear, steady) / rubbing,
@@ -76,7 +76,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """The memory on the left; on the right how far the first half cycles are from the steady ones."""
+    """Draw the memory on the left, and the distance of the first half cycles from the steady ones on the right."""
     figure, axes = panels(1, 2, height=3.0)
     memory, transient = axes[0]
     for index, curve in enumerate(curves):

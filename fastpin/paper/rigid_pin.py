@@ -1,9 +1,9 @@
-"""The limit of a rigid pin: centre load and body load become one, and elastic pins tend to it.
+"""The limit of a rigid pin: centre load and body load become equal, and elastic pins tend to it.
 
-Pins of steel, of ten times the plate's modulus and rigid in an aluminium plate, mu = 0.4, L_p = 0.1, free to rotate,
-pushed down. As the modulus grows beta* falls and the clearance with it: L_p stays. A rigid pin has 1/G_I = 0, and with
-that both loads are one and the same problem; the tractions are equal in every bit. Right: int |difference| over int N
-of an elastic pin's tractions (Poisson's ratio 0.3), between its two loads and to the rigid pin.
+Left: three pins in an aluminium plate, of steel, of ten times the plate's modulus, and rigid. They are free to rotate
+and pushed down, mu = 0.4, L_p = 0.1. As the modulus grows, beta* falls and the clearance with it; L_p stays. A rigid
+pin has 1/G_I = 0, so both loads are the same problem, and their tractions are equal in every bit. Right: int
+|difference| over int N of an elastic pin's tractions (Poisson's ratio 0.3), between its two loads and to the rigid pin.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ FRICTION = 0.4
 PLATE = MATERIALS["aluminium"]
 PINS = {"steel": MATERIALS["steel"], "10 E": Material(10.0 * PLATE.E, 0.3), "rigid": Material.rigid()}
 RATIOS = tuple(10.0 ** (k / 2) for k in range(13))
-"""E_pin / E_plate."""
+"""E_pin / E_plate"""
 ARC = (BOTTOM - 1.35, BOTTOM + 1.35)
 LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 PAIRS = ("centre to body", "centre to rigid", "body to rigid")
-"""What is compared on the right."""
+"""Pairs of states that the right panel compares."""
 
 
 def pushed_pin(pin: Material, pin_load: PinLoad, nodes: int) -> State:
-    """The pin pushed down by P = F, on the same nodes for all pins."""
+    """Solve a pin pushed down by P = F, on the same nodes for all pins."""
     problem = Problem.from_load_parameter(MaterialPair(pin, PLATE), LOAD_PARAMETER, FRICTION, pin_load)
     return solve(problem, [{"P": 1.0}], nodes=nodes, arc=ARC)[-1]
 
 
 def difference(one: State, two: State, quantity: str) -> float:
-    """int |difference| of a traction ("pressure" or "shear") over int N."""
+    """Return int |difference| over int N for a traction of two states, "pressure" or "shear"."""
     weights = one.grid.weights
     change = np.abs(getattr(one, quantity) - getattr(two, quantity))
     return float(weights @ change / (weights @ two.pressure))
@@ -60,14 +60,14 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
             curves.append(traction_curve(body, pin=name, pin_load="body"))
         else:
             pairs = ((centre, body), (centre, rigid), (body, rigid))
-            rows.append([name, *(difference(*pair, what) for what in ("pressure", "shear") for pair in pairs)])
-    names = [f"{what}, {pair}" for what in "NT" for pair in PAIRS]
+            rows.append([name, *(difference(*pair, traction) for traction in ("pressure", "shear") for pair in pairs)])
+    names = [f"{traction}, {pair}" for traction in "NT" for pair in PAIRS]
     columns = dict(zip(["E_pin/E_plate", *names], np.array(rows).T, strict=True))
     return [*curves, Curve({}, columns)]
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Tractions on the left, differences on the right."""
+    """Draw tractions on the left, differences on the right."""
     figure, axes = panels(1, 2, height=3.1)
     tractions, convergence = axes[0]
     colours = {name: index for index, name in enumerate(PINS)}

@@ -1,8 +1,8 @@
-"""The onset of sliding, which the paper only names: Q/(mu P) at which no node sticks any more.
+"""The onset of sliding: Q/(mu P) at which no node sticks any more. The paper only names it.
 
 Similar materials, centre load, rotation held; P first, then Q. Solid: the first +Q. Dashed: -Q after +Q, for the
-smallest amplitude Q with which the whole contact slides at -Q. Where a curve ends something sticks up to
-Q = 1.5 P and beyond: the contact follows the load round the hole instead, and as it grows it sticks again.
+smallest amplitude Q with which the whole contact slides at -Q. Beyond the end of a curve some nodes stick up to
+Q = 1.5 P and more. The contact then follows the load round the hole, and as it grows it sticks again.
 """
 
 from __future__ import annotations
@@ -23,26 +23,28 @@ from fastpin.states.state import State
 TITLE = "Onset of full sliding against load parameter and friction, on the first way and on the way back"
 LEAST_NODES = 61
 LARGEST = 1.5
-"""Q/P up to which sliding is looked for."""
+"""Largest Q/P at which sliding is searched for."""
 
 LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 16) for k in range(17))
 SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
 FRICTION = tuple(0.05 + 0.95 * k / 8 for k in range(9))
 SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
 SCAN, ROUNDS = 32, 3
+"""Search of the first onset: states inside the range of Q, and how often the range is narrowed to a part of it."""
 AMPLITUDES, HALVINGS = 8, 5
+"""Search of the onset on the way back: amplitudes that are tried, and halvings of the last interval."""
 
 
 def stick_width(state: State) -> float:
-    """Angle that sticks, rad; 0 where the whole contact slips."""
+    """Return the sum of the widths of all stick zones, rad; 0 if the whole contact slips."""
     return sum(stop - start for start, stop in state.stick)
 
 
 def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
-    """Q at which the contact first slides all over on the way from 0 to `largest`; NaN if something always sticks.
+    """Return the Q at which the whole contact first slides, from 0 to `largest`; NaN if some node always sticks.
 
-    The last sticking zone shrinks, and it may grow again before it is gone: the search closes in on the first state
-    without it, or else on the one with the least of it.
+    The last stick zone shrinks, and it may grow again before it is gone. The search closes in on the first state
+    without a stick zone, or else on the state with the smallest one.
     """
     begin, end = 0.0, largest
     grid, width = None, np.ones(1)
@@ -61,9 +63,9 @@ def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
 
 
 def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
-    """Smallest amplitude Q with which the contact slides at -Q, after +Q; NaN if none up to `largest` does.
+    """Return the smallest amplitude Q with which the whole contact slides at -Q, after +Q; NaN if above `largest`.
 
-    Nothing slides below Q = mu P, so the search begins there.
+    The contact can't slide below Q = mu P, so the search begins there.
     """
 
     def slides_back(amplitude: float) -> bool:
@@ -82,19 +84,19 @@ def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
-    """Onsets in Q/(mu P), against L_p for some coefficients of friction and the other way round."""
+    """Onsets in Q/(mu P), against L_p for some coefficients of friction, and against mu for some L_p."""
     lines: list[tuple[str, float, Sequence[float]]] = [("mu", mu, LOAD_PARAMETERS) for mu in SHOWN_FRICTION]
     lines += [("L_p", load_parameter, FRICTION) for load_parameter in SHOWN_LOAD_PARAMETERS]
     cases = [(name, fixed, value) for name, fixed, values in lines for value in values]
-    found: dict[tuple[str, float], list[tuple[float, float, float]]] = {}
+    onsets: dict[tuple[str, float], list[tuple[float, float, float]]] = {}
     for name, fixed, value in steps(cases, progress):
         load_parameter, friction = (value, fixed) if name == "mu" else (fixed, value)
         problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, friction, "centre", "fixed")
         forward = forward_onset(problem, LARGEST, nodes)
         back = reverse_onset(problem, LARGEST if math.isnan(forward) else forward, nodes)
-        found.setdefault((name, fixed), []).append((value, forward / friction, back / friction))
+        onsets.setdefault((name, fixed), []).append((value, forward / friction, back / friction))
     curves = []
-    for (name, fixed), rows in found.items():
+    for (name, fixed), rows in onsets.items():
         value, forward_ratio, back_ratio = np.array(rows).T
         other = "L_p" if name == "mu" else "mu"
         curves.append(Curve({name: fixed}, {other: value, "eta_s_forward": forward_ratio, "eta_s_back": back_ratio}))
@@ -102,7 +104,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Against L_p on the left, against mu on the right."""
+    """Draw the onsets against L_p on the left, against mu on the right."""
     figure, axes = panels(1, 2, height=3.0)
     rows = []
     for panel, name, symbol, other in ((axes[0, 0], "mu", "μ", "L_p"), (axes[0, 1], "L_p", "$L_p$", "mu")):

@@ -1,8 +1,8 @@
 """Contact, stick zone and peak pressure of a body-loaded pin over the load parameter.
 
-With a fixed clearance, a growing load passes through all load parameters: at the load P the state is that of
-L_p = clearance / (P beta*), with tractions in P/R. Each grid serves a quarter of a decade only, so that the smallest
-contact still fills two thirds of it.
+With a fixed clearance, a growing load passes through all load parameters. The state at the load P belongs to
+L_p = clearance / (P beta*), with tractions in P/R. Each grid serves a quarter of a decade only. The smallest contact
+then still fills two thirds of the grid.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
 LIMITS = np.geomspace(2.2, 0.005, 12)
-"""Load parameters at which one history ends and the next one takes over."""
+"""Load parameters at which one history ends and the next one begins, decreasing."""
 POINTS = 8
 """States of each history."""
 LEAST_STICKING = 9
-"""A stick zone of fewer nodes is not measured."""
+"""Fewest nodes of a stick zone whose width is measured."""
 
 
 def swept(cases: Sequence[tuple[str, float]], nodes: int, progress: Report | None) -> list[Curve]:
-    """One curve for each pair and coefficient of friction: half-angles and peak pressure over L_p."""
+    """Return half-angles and peak pressure over L_p, one curve for each pair and coefficient of friction."""
     curves = []
     for pair, friction in steps(cases, progress):
         rows: list[tuple[float, ...]] = []
@@ -44,7 +44,10 @@ def swept(cases: Sequence[tuple[str, float]], nodes: int, progress: Report | Non
 
 
 def _measured(state: State) -> tuple[float, float, float, float]:
-    """L_p, half-angles of the contact and of the stick zone at the bottom in degrees, peak pressure in F/R."""
+    """Return L_p, the half-angles of the contact and of the stick zone at the bottom in degrees, peak pressure in F/R.
+
+    The half-angle of the stick zone is NaN with fewer nodes than :data:`LEAST_STICKING`.
+    """
     ((start, stop),) = state.contact
     rho = math.nan
     for left, right in state.stick:
@@ -57,7 +60,7 @@ def _measured(state: State) -> tuple[float, float, float, float]:
 
 
 def load_parameter_axis(panel: Axes) -> None:
-    """A logarithmic axis of L_p with plain numbers."""
+    """Make the x axis of a panel a logarithmic axis of L_p with plain numbers."""
     panel.set_xscale("log")
     panel.set_xticks([0.01, 0.1, 1.0], labels=["0.01", "0.1", "1"])
     panel.set_xlabel("$L_p$")

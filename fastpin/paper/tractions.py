@@ -1,4 +1,4 @@
-"""What the figures of tractions share: the paper's pairs, one monotonic load, and panels of N and T."""
+"""Common parts of the figures of tractions: the paper's pairs, one monotonic load, and panels of N and T."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ PAIRS = {
     "Ti/Ti": MaterialPair(TITANIUM, TITANIUM),
     "Al/Ti": MaterialPair(ALUMINIUM, TITANIUM),
 }
-"""Pin and plate: Ti-6Al-4V and aluminium in plane strain have the Dundurs parameters that the paper gives."""
+"""Pin and plate. Ti-6Al-4V and aluminium in plane strain have the Dundurs parameters of the paper."""
 
 
 @dataclass
 class Panel:
-    """One panel: N or T of some curves."""
+    """One panel: a quantity, "N" or "T", of some curves."""
 
     quantity: str
     curves: Sequence[Curve]
@@ -37,13 +37,13 @@ class Panel:
 def pushed(
     pair: str, load_parameter: float, friction: float, nodes: int, pin_load: PinLoad = "body", **remote: float
 ) -> State:
-    """The pin pushed down by P = F, together with `remote` stresses in F/R, all growing in proportion."""
+    """Solve a pin pushed down by P = F, together with `remote` stresses in F/R that grow in proportion."""
     problem = Problem.from_load_parameter(PAIRS[pair], load_parameter, friction, pin_load)
     return solve(problem, [{"P": 1.0, **remote}], nodes=nodes)[-1]
 
 
 def pushed_curves(pair: str, cases: Sequence[tuple[float, float]], nodes: int, progress: Report | None) -> list[Curve]:
-    """Tractions of a body-loaded pin at P = F, one curve for each load parameter and coefficient of friction."""
+    """Return the tractions of a body-loaded pin at P = F, a curve for each case: load parameter and friction."""
     return [
         traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
         for load_parameter, friction in steps(cases, progress)
@@ -51,14 +51,23 @@ def pushed_curves(pair: str, cases: Sequence[tuple[float, float]], nodes: int, p
 
 
 def chosen(curves: Sequence[Curve], **parameters: float | str) -> list[Curve]:
-    """The curves with these parameters."""
+    """Return the curves with these parameters."""
     return [curve for curve in curves if all(curve.parameters[name] == value for name, value in parameters.items())]
 
 
 def traction_figure(
     layout: Sequence[Sequence[Panel]], style: Callable[[Curve], Line], *legend: Sequence[tuple[str, Line]]
 ) -> Figure:
-    """Panels of tractions over the angle: a column shares its angles, the panels of one quantity in a row share it."""
+    """Draw panels of tractions over the angle.
+
+    Parameters
+    ----------
+    layout : sequence of rows of Panel
+        The panels of a column share the angle axis. Panels of the same quantity in a row share its axis.
+    style : callable
+        ``style(curve)`` returns the line of a curve.
+    legend : rows of (label, line)
+    """
     figure, axes = panels(len(layout), len(layout[0]))
     for column in axes.T:
         for panel in column[1:]:

@@ -1,3 +1,4 @@
+from . import checks as checks
 from . import convergence as convergence
 from . import summary as summary
 from . import sweep as sweep

@@ -1,4 +1,4 @@
-"""A case as text."""
+"""A case as text: what fastpin has understood of a case file."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import acting_loads, scaled, units, with_unit
 from fastpin.report.table import table, visible_rows
 
-# -- text ----------------------------------------------------------------------------------------------------
-
 
 def describe(case: Case) -> str:
-    """What a case says, as text: pair, contact, loads with their load parameter, solver."""
+    """Describe a case as text: pair, contact, solver, and a table of the loads with their load parameters."""
     problem, options = case.problem, case.options
     pair = problem.pair
     alpha, beta = pair.dundurs()
@@ -41,7 +39,7 @@ def describe(case: Case) -> str:
         )
     if options.arc is None:
         where = "arc chosen by the solver"
-    elif options.arc[1] - options.arc[0] >= 2.0 * math.pi:
+    elif options.is_full_turn:
         where = "on the whole circle"
     else:
         where = f"arc from {options.arc[0]:g} to {options.arc[1]:g} rad"
@@ -63,16 +61,16 @@ def describe(case: Case) -> str:
 
 
 def _load_table(problem: Problem, history: LoadHistory) -> str:
-    """The corners of every block for the first time through."""
+    """Return the table of the loads. Of a repeated block it shows the first cycle, and the number of cycles."""
     numbers, counts, loads = [], [], []
     last = np.zeros(len(LOADS))
     begin = 1
     for block in history.blocks:
-        shown = visible_rows(len(block.given))
+        visible = visible_rows(len(block.given))
         values = LoadHistory.from_array(block.given).values(initial=last)
-        numbers += [f"{begin + k}" for k in shown]
-        counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in shown]
-        loads += [named_load(values[k]) for k in shown]
+        numbers += [f"{begin + k}" for k in visible]
+        counts += [f"x {block.count:,}" if block.count > 1 else "" for _ in visible]
+        loads += [named_load(values[k]) for k in visible]
         last, begin = values[-1], begin + block.corners
     columns = [("corner", "", numbers)]
     if any(counts):
@@ -84,13 +82,16 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
 
 
 def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
+    """Return the columns of all loads that are not zero throughout: name, unit and one number a row, for :func:`table`.
+
+    Loads of one kind share a unit and its SI prefix.
+    """
     unit = units(problem)
     columns = []
     acting = acting_loads(loads)
     for name in acting:
-        # Loads of one kind share their unit.
-        alike = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
-        factor, label = scaled(alike, unit[LOAD_KIND[name]])
+        same_kind = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
+        factor, label = scaled(same_kind, unit[LOAD_KIND[name]])
         columns.append((name, label, [f"{load[name] * factor:.5g}" for load in loads]))
     return columns
 

@@ -1,4 +1,4 @@
-"""The checks of an installation as a table."""
+"""The checks of an installation as a table, for ``fastpin verify``."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from itertools import groupby
 from fastpin.verification.checks import Check
 
 UNITS = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
+"""The first line of the table."""
 
 
 def table(checks: Sequence[Check]) -> str:
-    """Lines of text, grouped by topic."""
+    """Return the checks as a table, grouped by topic. Of several checks of one case, the first one names the case."""
     head = ("", "", "reference", "ours", "difference", "tolerance", "", "")
     rows = [_cells(check) for check in checks]
     widths = [
@@ -20,10 +21,10 @@ def table(checks: Sequence[Check]) -> str:
     lines = [UNITS, "", _line(head, widths)]
     for topic, group in groupby(zip(checks, rows, strict=True), lambda pair: pair[0].topic):
         lines += ["", topic]
-        before = ""
+        previous_case = ""
         for check, row in group:
-            lines.append(_line(("" if check.case == before else row[0], *row[1:]), widths))
-            before = check.case
+            lines.append(_line(("" if check.case == previous_case else row[0], *row[1:]), widths))
+            previous_case = check.case
     return "\n".join(lines)
 
 
@@ -42,7 +43,7 @@ def _number(value: float | None, form: str) -> str:
 
 
 def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
-    """Words to the left, numbers to the right."""
+    """Pad cells to the widths of their columns: words to the left, numbers to the right."""
     sides = (str.ljust, str.ljust, str.rjust, str.rjust, str.rjust, str.rjust, str.ljust, str.ljust)
     padded = [side(cell, width) for side, cell, width in zip(sides, cells, widths, strict=False)]
     return "  " + "  ".join(padded).rstrip()

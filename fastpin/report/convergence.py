@@ -1,7 +1,7 @@
-"""What a convergence study found, for people and other programs: tables, CSV, JSON.
+"""A convergence study as text tables, CSV and JSON.
 
-Angles are in degrees from the bottom of the hole, widths in degrees; all else is in SI or in the units of a
-dimensionless problem, in the text with a prefix.
+Angles are in degrees from the bottom of the hole, widths in degrees. All other values are in SI units, or in the units
+of a dimensionless problem. Only the text tables use SI prefixes.
 """
 
 from __future__ import annotations
@@ -26,13 +26,35 @@ from fastpin.version import __version__
 COLUMNS = (
     "corner", "solver", "nodes", "increments", "quantity", "unit", "value", "verdict", "order", "limit", "bar", "path",
 )  # fmt: skip
-"""Columns of the CSV file, a line for each value. Order, limit and error bar are those of the whole sequence; ``path``
-is what the path solver gives on the grid of the increment solver."""
+"""Columns of the CSV file. Each value has a line.
+
+Verdict, order, limit and error bar belong to the whole sequence of values. ``path`` is the value of the path solver on
+the grid of the increment solver.
+"""
 
 
 @dataclass(frozen=True)
 class ReportedSeries:
-    """A series in the units in which it is reported; see :class:`fastpin.convergence.Series`."""
+    """One quantity at one corner, on all grids or for all numbers of increments, in the units of reports.
+
+    Attributes
+    ----------
+    corner : int
+        From 1.
+    name, label : str
+        The quantity's name, see :data:`fastpin.states.quantities.QUANTITIES`, and its heading in tables.
+    unit : str
+        "deg" for angles and widths.
+    values : tuple of float
+        One for each grid or number of increments. NaN where a value can't be compared with the last one. Angles are
+        next to the last one, so they may lie outside of -180 to 180.
+    verdict, order, limit, bar
+        Of the sequence, see :class:`fastpin.studies.extrapolate.Estimate`.
+    path : float
+        The value of the path solver on the same grid, for a study of increments; else NaN.
+    negligible : float
+        Differences up to this size are rounding.
+    """
 
     corner: int
     name: str
@@ -48,28 +70,28 @@ class ReportedSeries:
 
     @classmethod
     def of(cls, series: QuantitySeries, problem: Problem) -> ReportedSeries:
-        """A series of a problem."""
+        """Convert a series of a study of `problem`, which is in SI units and rad."""
         kind, estimate, last = quantity(series.name).kind, series.estimate, series.values[-1]
-        reported_series = in_degrees(series.name, last)
+        reported_last = in_degrees(series.name, last)
 
-        def shown(value: float) -> float:  # next to the last value, also across 180 degrees
-            return reported_series + bar_in_degrees(series.name, value - last)
+        def in_report_units(value: float) -> float:  # an angle stays next to the last one, also across 180 degrees
+            return reported_last + bar_in_degrees(series.name, value - last)
 
         return cls(
             series.corner, series.name, quantity(series.name).label, units(problem).get(kind, "deg"),
-            tuple(map(shown, series.values)), estimate.verdict, estimate.order, shown(estimate.limit),
-            bar_in_degrees(series.name, estimate.bar), shown(series.path),
+            tuple(map(in_report_units, series.values)), estimate.verdict, estimate.order,
+            in_report_units(estimate.limit), bar_in_degrees(series.name, estimate.bar), in_report_units(series.path),
             bar_in_degrees(series.name, ROUNDING * series.size),
         )  # fmt: skip
 
 
 def reported_series(study: Study, problem: Problem, corner: int) -> list[ReportedSeries]:
-    """The series of a study at one corner."""
+    """Return the series of a study at one corner, in the units of reports. Corners count from 1."""
     return [ReportedSeries.of(series, problem) for series in study.series if series.corner == corner]
 
 
 def text(convergence: Convergence) -> str:
-    """For each corner a table of the path solver, and one of the increment solver."""
+    """Return the text tables of a study. Each corner has one for the path solver, and one for the increment solver."""
     parts = []
     for corner, load in convergence.loads.items():
         parts.append(f"corner {corner}: {named_loads(convergence.problem, load)}")
@@ -98,7 +120,7 @@ def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
     names = ["quantity", "unit", *map(str, study.counts), "order", "limit", "bar", "path", "within"]
     columns = [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
     lines = table(columns).splitlines()
-    return "\n".join([lines[0], *lines[2:]])  # units have a column
+    return "\n".join([lines[0], *lines[2:]])  # without the line of units: they have a column
 
 
 def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
@@ -127,14 +149,20 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
 
 
 def _within(row: ReportedSeries) -> str:
-    """Whether the path's value lies within the error bar of the increments' last."""
+    """Whether the error bar of the last value in increments reaches the value of the path solver."""
     if math.isnan(row.path) or math.isnan(row.bar):
         return "-"
     return "yes" if abs(row.path - row.values[-1]) <= row.bar + row.negligible else "no"
 
 
 def write_csv(convergence: Convergence, path: Path) -> None:
-    """Write all values as CSV, one a line; what is not known is empty."""
+    """Write all values as CSV, one a line. Unknown values are empty cells.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -153,7 +181,7 @@ def _missing(value: object) -> bool:
 
 
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
-    """The study as a dict that goes to JSON as it is; what is not known becomes None."""
+    """Return a study as a JSON-ready dict. Unknown values are None."""
     grid = convergence.grid
     return plain(
         {

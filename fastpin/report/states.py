@@ -1,4 +1,4 @@
-"""What a person or another program wants to read of a case and its states: tables and a summary.
+"""States and load cycles as text.
 
 Angles are in degrees from the bottom of the hole, counter-clockwise positive (towards +x, where Q points).
 """
@@ -16,21 +16,30 @@ from fastpin.report.table import MAX_ROWS, table
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
+from fastpin.states.zones import is_all_round
 
 _DEGREE = math.degrees(1.0)
 
 
 def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
-    """The states as a table with one line each; `hidden` is how many have been left out of their middle.
+    """Return a table of states, one line each.
 
-    Error bars, where there are any, stand behind +-; that of an interval is the larger one of its ends, ? means none.
+    Error bars stand behind +-, if the states have any. The bar of an interval is the larger one of its two ends. A ?
+    stands for a bar that is infinite: nothing is known of the error.
+
+    Parameters
+    ----------
+    problem : Problem
+    states : sequence of State
+    hidden : int
+        Number of states that are left out of the middle of `states`; the table says so.
     """
     unit = units(problem)
 
     def column(name: str, digits: int = 5, natural: float = 0.0) -> tuple[str, str, list[str]]:
         each = QUANTITIES[name]
         values = [each.of(state) for state in states]
-        # What is zero but for rounding, against the column and a natural size, is shown as zero.
+        # Values below 1e-9 of the column's largest, or of the natural size, are printed as 0: they are rounding.
         noise = 1e-9 * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
         cleaned = [0.0 if abs(value) <= noise else value for value in values]
         factor, label = scaled(cleaned, unit[each.kind])
@@ -63,21 +72,21 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
 
 
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
-    """What the cycles of each block have changed, a line each."""
-    lines = [_series_line(problem, one) for one in consecutive_cycles(cycles)]
+    """Return one line of text for each block of cycles: how the cycles changed tractions, energy and rotation."""
+    lines = [_block_line(problem, block) for block in consecutive_cycles(cycles)]
     if len(lines) > MAX_ROWS // 2:
         lines[MAX_ROWS // 4 : -MAX_ROWS // 4] = [f"... {len(lines) - MAX_ROWS // 2} more blocks of cycles ..."]
     return lines
 
 
 def _first_and_last(values: list[float], unit: str, digits: int) -> list[str]:
-    """What is zero but for rounding, against the largest, is shown as zero."""
+    """Return the first and the last value as text. Values below 1e-9 of the largest become 0: they are rounding."""
     noise = 1e-9 * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
-    shown = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
-    return ["not known" if math.isnan(value) else with_unit(value, unit, digits) for value in shown]
+    cleaned = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
+    return ["not known" if math.isnan(value) else with_unit(value, unit, digits) for value in cleaned]
 
 
-def _series_line(problem: Problem, cycles: list[Cycle]) -> str:
+def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
     first, last = cycles[0], cycles[-1]
     steady = periodic_from(cycles)
     kind = units(problem)
@@ -106,7 +115,7 @@ def _angle(angle: float | None) -> str:
 
 
 def _bar(state: State, factor: float, *names: str) -> str:
-    """The error bar, the larger one of several quantities, to be written after them; nothing where there is none."""
+    """Return " +- BAR" with the largest bar of several quantities; " +-?" if it is infinite, "" if there is none."""
     bars = [(state.error_bars or {}).get(name, math.nan) for name in names]
     if any(math.isnan(bar) for bar in bars):
         return ""
@@ -118,5 +127,5 @@ def _intervals(state: State, zone: str) -> str:
     for number, (start, stop) in enumerate(getattr(state, zone), start=1):
         first, last = interval_from_bottom(start, stop)
         bar = _bar(state, _DEGREE, f"{zone}_{number}_start", f"{zone}_{number}_stop")
-        parts.append("all round" if stop - start >= 2.0 * math.pi - 1e-9 else f"{first:z.2f} to {last:z.2f}{bar}")
+        parts.append("all round" if is_all_round(stop - start) else f"{first:z.2f} to {last:z.2f}{bar}")
     return ", ".join(parts) or "none"

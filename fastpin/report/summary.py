@@ -19,18 +19,24 @@ from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, lo
 from fastpin.states.state import State
 from fastpin.version import __version__
 
-# -- machine-readable ----------------------------------------------------------------------------------------
-
 
 def document(
     case: Case,
     result: Result | None,
     error: str | None = None,
 ) -> dict[str, Any]:
-    """The case and its states as a dict that goes to JSON as it is; what is not finite becomes None.
+    """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
-    `result` is None where not even a first state was reached, `error` says why it is incomplete. ``units``
-    names the unit of every kind of quantity; angles are in degrees from the bottom of the hole.
+    The entry ``units`` names the unit of every kind of quantity. Angles are in degrees from the bottom of the hole,
+    widths in degrees.
+
+    Parameters
+    ----------
+    case : Case
+    result : Result or None
+        None if the run did not reach its first state.
+    error : str, optional
+        The reason why `result` is incomplete.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = pair.dundurs()
@@ -64,7 +70,7 @@ def document(
 
 
 def _block_summary(block: Block) -> dict[str, Any]:
-    """A block of the history; what a corner does not give is None."""
+    """Return a block of the history. Loads that a corner does not give become None."""
     return {"repeat": block.count, "corners": block.given.tolist()}
 
 
@@ -93,7 +99,7 @@ def _state_summary(state: State) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """`value` with numpy's numbers as Python's, tuples as lists and None for what JSON can't say."""
+    """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

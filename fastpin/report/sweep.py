@@ -1,4 +1,4 @@
-"""What a sweep found, as a table, a CSV file, or the numbers of a figure."""
+"""The results of a sweep as a text table, a CSV file, or the numbers of a figure."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from fastpin.studies.plan import Plan
 from fastpin.version import __version__
 
 Row = dict[str, Any]
+"""One point of a plan with its key figures, see :func:`fastpin.studies.sweep.rows`."""
 
 MOST_PANELS = 12
 """Most maps in one figure."""
@@ -33,7 +34,7 @@ MOST_CURVES = 20
 """Most curves in one figure."""
 
 _KIND = {"hole_radius": "length", "clearance": "length", "hub_radius": "length", "E": "traction"} | LOAD_KIND
-"""Kinds of the keys of a case that have a unit."""
+"""The kind of every key of a case that has a unit."""
 
 _SHOWN = {
     "peak_pressure": "peak N",
@@ -47,13 +48,13 @@ _SHOWN = {
     "max_pressure": "max N",
     "max_shear": "max |T|",
 }
-"""Columns of the printed table and their names in it; a CSV file has all."""
+"""Key figures of the text table and their headings. The CSV file has all key figures."""
 
 
 def text(plan: Plan, rows: Sequence[Row]) -> str:
-    """The table to be read: varied fields, the most important key figures of the last state, reasons of failures.
+    """Return a text table: varied fields, the most important key figures of the last state, status.
 
-    `rows` are those of :func:`fastpin.sweep.rows`. The middle of a long table is left out.
+    `rows` come from :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
     """
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
@@ -66,7 +67,15 @@ def text(plan: Plan, rows: Sequence[Row]) -> str:
 
 
 def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
-    """All fields and key figures in a CSV file, in SI units or those of the paper, which a comment line names."""
+    """Write all varied fields and key figures as CSV, with a comment line that names the units.
+
+    Units are SI, or the paper's for dimensionless problems.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
     check_writable(path)
     unit = _units(plan, rows)
     named = [(name, _unit(name, unit)) for name in KEY_FIGURES]
@@ -85,7 +94,17 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis of a figure: its sorted values, what it is called, and whether they are spaced by a factor."""
+    """An axis of a figure.
+
+    Attributes
+    ----------
+    label : str
+        Name of the field, with its unit.
+    values : ndarray
+        Values of the field, increasing, in the label's unit.
+    log : bool
+        Whether the plan spaces the values by a factor; the axis is then logarithmic.
+    """
 
     label: str
     values: np.ndarray
@@ -98,14 +117,16 @@ class Chart:
 
     Attributes
     ----------
-    title, label : str
-        Of the figure, and of the value with its unit.
+    title : str
+        Title of the figure.
+    label : str
+        Name of the key figure, with its unit.
     x : Axis
     y : Axis or None
         None for curves.
     parts : list of (str, ndarray, ndarray of bool)
-        For each map or curve: its name, one field a line; the values, shape (len(y), len(x)) or (len(x),), nan where
-        there is none; and where a run has failed.
+        One entry for each map or curve: its name, with a line for each field; its values; True where a run failed. Both
+        arrays have the shape (len(y), len(x)) for a map, (len(x),) for a curve. Missing values are NaN.
     missing : int
         Number of points without a value.
     """
@@ -119,14 +140,16 @@ class Chart:
 
 
 def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[str, str | None, list[str]]:
-    """The fields of a figure's x and y axis (None for curves), and those that tell its maps or curves apart.
+    """Return the field of the x axis, the field of the y axis, and the fields that distinguish the maps or curves.
 
-    Fields that are not given are chosen: the first two that are numbers and vary, or the one.
+    Without `x`, the axes are the first two fields that vary and have only numbers, or the only one. A figure with an x
+    axis alone has curves, and None for the y axis.
 
     Raises
     ------
     InputError
-        Naming "value", "x", "y" or "plot", if there is nothing of that name or the figure would have too many parts.
+        The field is "value", "x", "y" or "plot". The key figure or a field is unknown, an axis has values that are no
+        numbers, both axes have the same field, no field is left for the x axis, or there are too many maps or curves.
     """
     if value not in (*KEY_FIGURES, "seconds"):
         hint = closest(value, tuple(KEY_FIGURES)) or f"; there are {', '.join(KEY_FIGURES)}, seconds"
@@ -156,17 +179,24 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
 
 
 def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: str | None = None) -> Chart:
-    """The numbers of a figure of one key figure over one or two fields; other fields make several maps or curves.
+    """Return the numbers of a figure of one key figure over one or two fields.
+
+    Other fields that vary make several maps or curves.
 
     Parameters
     ----------
     plan : Plan
     rows : sequence of dict
-        Those of :func:`fastpin.sweep.rows`.
+        From :func:`fastpin.studies.sweep.rows`.
     value : str
-        A key figure.
+        A key figure, or "seconds".
     x, y : str, optional
-        Fields of the axes, see :func:`check_axes`. With `x` alone: curves.
+        Fields of the axes, see :func:`check_axes`. `x` alone gives curves.
+
+    Raises
+    ------
+    InputError
+        See :func:`check_axes`.
     """
     x, y, others = check_axes(plan, value, x, y)
     unit = _units(plan, rows)
@@ -193,7 +223,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 
 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
-    """An axis, and the place of each value on it."""
+    """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
     factor, label = _scaled(values, unit.get(_KIND.get(_key(name), ""), ""))
     axis = Axis(
@@ -203,7 +233,7 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
 
 
 def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list[str]]:
-    """A column of the printed table: numbers with the prefix that suits them, all else as it was written."""
+    """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
     if not all(value is None or _is_number(value) for value in values):
         return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]
     factor, label = _scaled([value for value in values if value is not None], unit)
@@ -211,14 +241,14 @@ def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list
 
 
 def _units(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
-    """The unit of every kind of quantity; no units where some runs are dimensionless and others are not."""
+    """Return the unit of every kind of quantity; none if only some of the runs are dimensionless."""
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         return {}
     return {**units(plan.case(plan.points[0]).problem), "angle": "deg"}
 
 
 def _scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
-    """A factor and a unit that suits the values; numbers and degrees stay as they are."""
+    """Return a factor and a unit with an SI prefix. Numbers without a unit and degrees keep the factor 1."""
     return with_prefix(values, unit) if unit not in ("", "deg") else (1.0, unit)
 
 
@@ -231,7 +261,7 @@ def _key(field: str) -> str:
 
 
 def _brief(value: Any) -> str:
-    """A value as text, numbers with six digits."""
+    """Return a value as text, numbers with six significant digits."""
     if isinstance(value, list):
         return f"[{', '.join(map(_brief, value))}]"
     return f"{value:.6g}" if _is_number(value) else as_toml(value)

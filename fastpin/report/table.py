@@ -5,16 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 MAX_ROWS = 40
+"""Most rows of a printed table."""
 
 
 def visible_rows(count: int) -> list[int]:
-    """The rows of a table of `count` that are printed: all of a short one, of a long one its beginning and its end."""
+    """Return the indices of the rows to print of `count`: all, or of a long table the first and the last ones."""
     half = MAX_ROWS // 2
     return list(range(count)) if count <= MAX_ROWS else [*range(half), *range(count - half, count)]
 
 
 def table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
-    """Lines of text, no more than so many; `hidden` rows in the middle are not even in the columns."""
+    """Return a table as text, with at most :data:`MAX_ROWS` rows.
+
+    Parameters
+    ----------
+    columns : sequence of (str, str, list of str)
+        Name, unit and cells of each column.
+    hidden : int
+        Number of rows that `columns` lack in their middle. The table counts them among the rows it leaves out.
+    """
     count = len(columns[0][2])
     middle = min(count, MAX_ROWS) // 2
     hidden += max(count - MAX_ROWS, 0)

@@ -1,4 +1,4 @@
-"""From a problem and a load history to a result.
+"""The solvers: they follow the load history of a problem and return a result.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -1,4 +1,7 @@
-"""The choice of the arc of nodes: from Hertz's estimate, over a coarse run, to the places that are ever in contact."""
+"""The choice of the arc of nodes.
+
+Hertz's contact gives a first estimate. Coarse runs then find all places of the hole that are ever in contact.
+"""
 
 from __future__ import annotations
 
@@ -11,26 +14,48 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.run import Progress, Run
 
 COARSE_NODES = 121
-WHOLE = 5.6  # an arc wider than this, rad, becomes the whole circle
+"""Nodes of a coarse run."""
+
+WHOLE = 5.6
+"""Length of an arc, rad. A wider arc becomes the whole circle."""
+
 MOST_CORNERS = 200
-"""Corners that the coarse run follows; of more it takes the extreme ones."""
+"""Corners that a coarse run follows. Of a longer history it follows the extreme corners only."""
 
 DIRECTIONS = 16
+"""Directions in the plane of two loads. The outermost corner in each direction is an extreme corner."""
 
 
 def candidate_grids(
     problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
 ) -> Iterator[Grid]:
-    """Grids of `nodes` nodes, each wider than the one before; the last one is the whole circle.
+    """Yield grids of `nodes` nodes, each wider than the grid before. The last grid is the whole circle.
 
-    The first one spans the nodes that a coarse run had in contact, and a margin. All have a node where the first force
-    points, so that a symmetric contact is symmetric to the last digits.
+    The first grid spans the nodes that were in contact in a coarse run, and a margin. All grids have a node where the
+    first force points, so that a symmetric contact is symmetric to the last digits.
+
+    Parameters
+    ----------
+    problem : Problem
+    values : ndarray, shape (corners, loads)
+        Loads at the corners, SI.
+    force : float
+        The reference force, N/m.
+    nodes : int
+    progress : callable, optional
+        Called during the coarse runs, which come before the first grid.
+
+    Raises
+    ------
+    InputError
+        If the number of nodes is out of range.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
     arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force, progress)
@@ -47,7 +72,7 @@ def _touched_arc(
 ) -> tuple[float, float] | None:
     """The arc of all places that are ever in contact, with a margin; None for the whole circle.
 
-    `progress` sees every coarse run as a run of its own, before the one that counts.
+    `progress` sees each coarse run as a separate run before the fine run.
     """
     arc, history = _estimated_arc(problem, values), LoadHistory.from_array(_outline(values))
     for _ in range(12):
@@ -63,31 +88,35 @@ def _touched_arc(
             arc = _widened(arc, 1.5)
             continue
         except SolveError:
-            margin = 12  # the fine run says what is wrong, or gets further
+            margin = 12  # the fine run reports the error, or gets further
         touched = np.flatnonzero(run.touched)
         if touched.size == 0:
             return arc
         if grid.closed:
             return _arc_of_circle(grid, touched, margin)
         first, last = max(touched[0] - margin, 0), min(touched[-1] + margin, grid.size - 1)
-        found = float(grid.theta[first]), float(grid.theta[last])
+        span = float(grid.theta[first]), float(grid.theta[last])
         if last - first > 0.4 * grid.size:
-            return found
-        arc = _widened(found, 1.1)  # too coarse to tell: look closer
+            return span
+        arc = _widened(span, 1.1)  # few of the nodes are in contact: look closer
     return arc
 
 
 def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] | None:
-    """Directions of the pin's force at all corners and the half-angle of Hertz's contact at the largest one."""
-    pin = np.hypot(values[:, 0], values[:, 1])
+    """A first arc, from the directions of the pin's force at all corners and Hertz's contact.
+
+    The half-angle of Hertz's contact is taken at the largest force. None if no force acts on the pin, or if the remote
+    stress makes the hole too oval for this estimate.
+    """
+    pin = np.hypot(values[:, P], values[:, Q])
     remote = 0.5 * problem.pair.plate_compliance * (problem.pair.plate_kolosov + 1.0)
-    ovality = problem.hole_radius * remote * float(np.abs(values[:, 3:5]).max())
+    ovality = problem.hole_radius * remote * float(np.abs(values[:, REMOTE]).max())
     if not pin.any() or ovality > 0.2 * problem.clearance:
         return None
     loaded = pin > 0.0
-    angles = np.unwrap(np.arctan2(-values[loaded, 0], values[loaded, 1]))
-    # A moment is carried where the pin has climbed the hole by the angle of friction that it takes.
-    climbed = angles + np.arcsin(np.clip(-values[loaded, 2] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
+    angles = np.unwrap(np.arctan2(-values[loaded, P], values[loaded, Q]))
+    # Under a moment the pin climbs the hole, by the angle of friction that carries the moment.
+    climbed = angles + np.arcsin(np.clip(-values[loaded, M] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
     angles = np.r_[angles, climbed]
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
@@ -95,7 +124,7 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
 
 
 def _outline(values: np.ndarray) -> np.ndarray:
-    """The corners of a long history that lie outermost, in their order: between them is everything that acts."""
+    """The outermost corners of a long history, in their order. All loads of the history lie between them."""
     if len(values) <= MOST_CORNERS:
         return values
     largest = np.abs(values).max(axis=0)
@@ -104,21 +133,27 @@ def _outline(values: np.ndarray) -> np.ndarray:
     for turn in np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False):
         for first, second in itertools.combinations_with_replacement(range(scaled.shape[1]), 2):
             chosen.add(int(np.argmax(math.cos(turn) * scaled[:, first] + math.sin(turn) * scaled[:, second])))
-    pushed = np.flatnonzero(values[:, :2].any(axis=1))
+    pushed = np.flatnonzero(values[:, [P, Q]].any(axis=1))
     if pushed.size:
-        directions = np.unwrap(np.arctan2(-values[pushed, 0], values[pushed, 1]))
+        directions = np.unwrap(np.arctan2(-values[pushed, P], values[pushed, Q]))
         chosen |= {int(pushed[np.argmin(directions)]), int(pushed[np.argmax(directions)])}
     return values[sorted(chosen)]
 
 
 def first_direction(values: np.ndarray) -> float | None:
-    """Where on the hole the first force of a history points, rad; None without a force."""
-    loaded = np.flatnonzero(np.hypot(values[:, 0], values[:, 1]))
-    return math.atan2(-values[loaded[0], 0], values[loaded[0], 1]) if loaded.size else None
+    """The angle, rad, at which the first force of a history meets the hole; None without a force.
+
+    `values` are the loads at the corners, SI, shape (corners, loads).
+    """
+    loaded = np.flatnonzero(np.hypot(values[:, P], values[:, Q]))
+    return math.atan2(-values[loaded[0], P], values[loaded[0], Q]) if loaded.size else None
 
 
 def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:
-    """How far to shift nodes from `start` on, at most half a spacing, for one to lie where the first force points."""
+    """The shift, rad, that brings a node to the angle of the first force; at most half a `spacing`.
+
+    The first node is at `start`. Without a force the shift is 0.
+    """
     direction = first_direction(values)
     if direction is None:
         return 0.0
@@ -127,7 +162,10 @@ def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:
 
 
 def _arc_of_circle(grid: Grid, touched: np.ndarray, margin: int) -> tuple[float, float] | None:
-    """The complement of the widest untouched part of the circle; None if that part is small."""
+    """The circle without its widest untouched part; None if the untouched part is small.
+
+    At both ends the arc has `margin` more nodes than were touched.
+    """
     gaps = np.diff(np.r_[touched, touched[0] + grid.size])
     widest = int(np.argmax(gaps))
     if gaps[widest] < 0.15 * grid.size + 2 * margin:

@@ -1,4 +1,4 @@
-"""The evolving contact in dimensionless form, its residuals and energies."""
+"""The evolving contact in dimensionless form: the solve of given statuses, energies and residuals."""
 
 from __future__ import annotations
 
@@ -13,17 +13,36 @@ from fastpin.model.loads import P, Q
 from fastpin.solver.unknowns import DenseUnknowns
 
 MAX_RESIDUAL = 1e-9
-"""Largest relative violation of the contact conditions in a state that is returned."""
+"""Largest relative violation of the contact conditions in a returned state."""
 
 
 @dataclass(eq=False)
 class Configuration:
-    """Everything that evolves: tractions, gap, slip, motion and status at one load (dimensionless).
+    """The contact at one load: everything that evolves along a history, dimensionless.
 
-    ``rest`` (2,) is the position of the pin's centre, from the concentric one, where it came to rest on the hole, and
-    ``rest_gap`` (n,) the gap there, both without the remote stress. ``motion`` and ``slip`` count from there;
-    ``origin`` is the first such position (NaN before there was one).
-    ``rest_slip`` is what the remote stress had made of the slip by then, and is taken off before users see it.
+    Attributes
+    ----------
+    pressure, shear : ndarray, shape (n,)
+        Pressure N >= 0, and shear traction T on the pin, positive along +theta.
+    gap, slip : ndarray, shape (n,)
+        Gap h >= 0, and slip s of the pin over the plate, positive along +theta. The slip counts from ``rest``.
+    status : ndarray of int8, shape (n,)
+        Status of each node, see :mod:`fastpin.kernels.status`.
+    motion : ndarray, shape (3,)
+        Motion of the pin, (c_x, c_y, omega). It counts from ``rest``.
+    load : ndarray, shape (6,)
+        Loads in the order of :data:`fastpin.model.loads.LOADS`.
+    origin : ndarray, shape (2,)
+        The first ``rest`` of the history; NaN before the pin has come to rest.
+    rest : ndarray, shape (2,)
+        Position of the pin's centre where the pin came to rest on the hole. It counts from the concentric position,
+        without the remote stress.
+    rest_gap : ndarray, shape (n,)
+        Gap in the position ``rest``, without the remote stress.
+    rest_slip : ndarray, shape (n,)
+        Slip that the remote stress had caused when the pin came to rest. It is subtracted before users see the slip.
+    dissipation, work : float
+        Energy dissipated by friction, and work of the loads.
     """
 
     pressure: np.ndarray
@@ -46,12 +65,13 @@ class Configuration:
 
     @property
     def closed(self) -> np.ndarray:
+        """Whether each node is in contact, bool, shape (n,)."""
         return self.status != OPEN
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Tractions, gap, slip and motion of one solve (or their rates)."""
+    """The outcome of one solve: tractions, gap and slip (n,) and motion (3,), or the rates of all these."""
 
     pressure: np.ndarray
     shear: np.ndarray
@@ -61,22 +81,36 @@ class Solution:
 
 
 def reaches_end(system: System, configuration: Configuration) -> bool:
-    """Whether the contact reaches an end node of an arc, where it is cut off."""
+    """Whether the contact reaches an end node of an arc. There it is cut off."""
     return not system.grid.closed and bool(configuration.closed[[0, -1]].any())
 
 
 def resting_status(system: System) -> int:
-    """Status of a closed node that does not move: sticking, or slipping where there is no friction."""
+    """Status of a closed node that does not move: sticking, or slipping in a system without friction."""
     return STICK if system.friction > 0.0 else SLIP_POSITIVE
 
 
 def solve_statuses(
     system: System, status: np.ndarray, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
 ) -> Solution | None:
-    """Tractions and motion for given statuses; None if the closed nodes can't hold the pin (a mechanism).
+    """Solve for tractions and motion under given statuses.
 
-    `stuck_slip` (n,) is the slip held at sticking nodes. With ``rest_gap = 0``, zero `stuck_slip` and a load rate
-    this gives rates.
+    With ``rest_gap = 0``, zero `stuck_slip` and a load rate the solution holds rates.
+
+    Parameters
+    ----------
+    system : System
+    status : ndarray, shape (n,)
+    stuck_slip : ndarray, shape (n,)
+        Slip that sticking nodes hold.
+    load : ndarray, shape (6,)
+        Dimensionless.
+    rest_gap : ndarray, shape (n,), or float
+
+    Returns
+    -------
+    Solution or None
+        None if the closed nodes can't hold the pin: a mechanism.
     """
     active = DenseUnknowns(system, status)
     if active.singular:
@@ -93,7 +127,7 @@ def solve_statuses(
 
 
 def work_between(system: System, before: Configuration, after: Configuration) -> float:
-    """Work of the loads between two configurations, with the mean load (dimensionless)."""
+    """Work of the loads between two configurations, computed with the mean load (dimensionless)."""
     n = system.grid.size
     load = 0.5 * (before.load + after.load)
     moved = after.motion - before.motion
@@ -105,7 +139,7 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
 
 
 def dissipation_between(system: System, before: Configuration, after: Configuration) -> float:
-    """Energy that friction dissipates between two configurations, with the mean shear (dimensionless)."""
+    """Energy dissipated between two configurations, computed with the mean shear (dimensionless)."""
     slid = np.where(after.closed, after.slip - before.slip, 0.0)
     return -0.5 * float((system.weights * slid) @ (before.shear + after.shear))
 
@@ -118,12 +152,19 @@ def elastic_energy(system: System, configuration: Configuration) -> float:
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:
-    """Largest of all residuals."""
+    """The largest of the residuals of :func:`contact_residuals`."""
     return float(np.max(list(contact_residuals(system, configuration).values())))
 
 
 def contact_residuals(system: System, configuration: Configuration) -> dict[str, float]:
-    """Largest relative violation of the contact conditions, recomputed from the matrices."""
+    """Largest relative violation of each contact condition, recomputed from the matrices.
+
+    Returns
+    -------
+    dict of str to float
+        "gap" and "slip", relative to the largest displacement; "cone" (Coulomb's law and N >= 0), relative to the
+        largest pressure; "equilibrium", relative to the sum of the resultants of the absolute tractions.
+    """
     n, mu = system.grid.size, system.friction
     pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
     tractions = np.r_[pressure, shear]

@@ -1,4 +1,4 @@
-"""Errors of a solution: the loads could not be followed to their end."""
+"""The errors of a solution, and its interruption: the history was not followed to its end."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 
 CUT_OFF = "the contact reaches an end of the arc; give a wider one, or none"
+"""Message of an :class:`ArcError`."""
 
 
 class SolveError(FastpinError):
-    """A history that could not be followed to its end.
+    """The load history could not be followed to its end.
 
     Attributes
     ----------
@@ -20,7 +21,7 @@ class SolveError(FastpinError):
     load : dict of str to float
         The load at which the solution was lost, in the units of the history.
     result : Result or None
-        Everything that was solved before.
+        The result up to there, with all states that were solved.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class SolveError(FastpinError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a solution, which stopped where it can be gone on from; ``result`` is what was solved before."""
+    """Ctrl-C during a solution. ``result`` holds the states before; the solution can continue from it."""
 
     def __init__(self, result: Result | None = None) -> None:
         super().__init__("interrupted")
@@ -51,8 +52,8 @@ class NoEquilibriumError(SolveError):
 
 
 class ConvergenceError(SolveError):
-    """The solver could not find a state that meets the contact conditions; none is returned."""
+    """The solver found no state that meets the contact conditions, and returns none."""
 
 
 class ArcError(SolveError):
-    """The contact reaches an end of the arc of nodes that was given."""
+    """The contact reaches an end of the given arc of nodes."""

@@ -1,4 +1,4 @@
-"""Where a contact begins: the resting position of the pin, the first contact, interference fits."""
+"""The beginning of a contact: the pin comes to rest on the hole, then a few nodes touch."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from fastpin.elasticity.system import System
-from fastpin.model.loads import ROTATION, SYY, M, P, Q
+from fastpin.model.loads import ROTATION, M, P, Q
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -23,26 +23,40 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import hole_gap, put_at_rest, release
 from fastpin.states.zones import runs
 
-FIRST_NODES = (2, 4)  # closed nodes wanted in the first contact
-FIRST_BESIDE = 2  # nodes on either side of the nearest one with which its iteration begins
-LEAST_PART = 1e-12  # of a step, at which a first contact is looked for
+FIRST_NODES = (2, 4)
+"""Least and largest number of closed nodes that the first contact aims at, in each of its patches."""
+
+FIRST_BESIDE = 2
+"""Nodes on either side of the nearest node. The iteration for the first contact begins with all these closed."""
+
+LEAST_PART = 1e-12
+"""Smallest part of a step at which a first contact is tried."""
 
 
 def at_rest(
     system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float] | None:
-    """The pin resting on the hole, about to be pushed, on the way from load `before` to load `after`.
+    """Put the pin at rest on the hole, about to be pushed, on the way from load `before` to load `after`.
+
+    Parameters
+    ----------
+    system : System
+    floating : Configuration
+        The pin without contact. It is not changed.
+    before, after : ndarray, shape (6,)
+        Dimensionless loads at the start and the end of the step.
 
     Returns
     -------
     (Configuration, float) or None
-        The configuration from whose slip the contact's slip counts, with a first guess of the closed nodes, and the
-        fraction of the step at which the contact begins; None if it does not begin in this step.
+        The pin at rest, with a first guess of the closed nodes; and the fraction of the step at which the contact
+        begins. The slip of the contact counts from this configuration. None if no contact begins in this step.
 
     Raises
     ------
     NoEquilibriumError
-        If a moment acts on a pin that nothing holds, or is more than friction at a point can carry.
+        If a moment acts on a pin that nothing holds. If the moment is more than friction at a point can carry. If the
+        remote stress closes the hole on the pin before the pin is loaded.
     ArcError
         If the pin touches the hole outside the arc.
     """
@@ -72,25 +86,25 @@ def at_rest(
         resting.origin = rest.copy()
     put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
     nearness = resting.gap
-    if np.ptp(nearness) == 0.0:  # a neat fit: where the load will close it
+    if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
         nearness = system.loads[: system.grid.size] @ (after - before)
         if size > 0.0:
             nearness = nearness - np.cos(system.grid.theta - angle)
     lowest = _lowest_places(system, nearness)
     if not system.grid.closed and not 0 < lowest[0] < system.grid.size - 1:
         raise ArcError("the pin rests on the hole outside the arc; give a wider one, or none")
-    beside = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
-    first = (lowest[:, None] + beside).ravel()
-    resting.status[first % system.grid.size if system.grid.closed else first.clip(1, system.grid.size - 2)] = (
+    offsets = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
+    nodes = (lowest[:, None] + offsets).ravel()
+    resting.status[nodes % system.grid.size if system.grid.closed else nodes.clip(1, system.grid.size - 2)] = (
         resting_status(system)
     )
     return resting, begins
 
 
 def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
-    """Nodes where the pin at rest touches the hole, the nearest one first: one, or two in an oval hole."""
+    """Nodes where the pin at rest touches the hole, the nearest first: one node, two in an oval hole, or all nodes."""
     n = system.grid.size
-    if np.ptp(gap) <= 1e-12 * np.abs(gap).max():  # all round at once
+    if np.ptp(gap) <= 1e-12 * np.abs(gap).max():  # the pin touches all round at once
         return np.arange(n)
     before, after = np.roll(gap, 1), np.roll(gap, -1)
     if not system.grid.closed:
@@ -98,20 +112,28 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
     lowest = np.flatnonzero((gap <= before) & (gap < after))
     lowest = lowest[np.argsort(gap[lowest], kind="stable")]
     first = lowest[0]
-    near = np.maximum(gap[(first + FIRST_BESIDE) % n], gap[first - FIRST_BESIDE])  # a gap between neighbours
-    return lowest[gap[lowest] <= near]
+    threshold = np.maximum(gap[(first + FIRST_BESIDE) % n], gap[first - FIRST_BESIDE])  # the gap two nodes away
+    return lowest[gap[lowest] <= threshold]
 
 
 def first_contact(
     system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float]:
-    """The first contact on the way from load `before` to load `after`: one implicit increment from rest.
+    """Find the first contact on the way from load `before` to load `after`: one implicit increment from rest.
+
+    Parameters
+    ----------
+    system : System
+    floating : Configuration
+        The pin without contact. It is not changed.
+    before, after : ndarray, shape (6,)
+        Dimensionless loads at the start and the end of the step.
 
     Returns
     -------
     (Configuration, float)
-        A configuration with a contact of a few nodes and the fraction of the step at which it holds; or the pin
-        still without contact, and 1.
+        A contact of a few nodes, and the fraction of the step at which it holds; or the pin still without contact,
+        and 1.
 
     Raises
     ------
@@ -129,31 +151,48 @@ def first_contact(
 
 
 def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """Where the rigid pin rests when pushed so that the contact normal is at `angle`, and the gap there (n,).
+    """The position of the rigid pin at rest on the hole, pushed so that the contact normal is at `angle`.
 
-    The gap is without the remote stress, and keeps its digits beside the contact however wide the clearance is.
+    Parameters
+    ----------
+    system : System
+    load : ndarray, shape (6,)
+        Dimensionless. Its remote stress deforms the hole.
+    angle : float
+        rad.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        The position of the pin's centre, shape (2,), from the concentric position; and the gap there, shape (n,).
+        The gap is without the remote stress. It keeps its digits beside the contact for any clearance.
+
+    Raises
+    ------
+    NoEquilibriumError
+        If the remote stress closes the hole on the pin.
     """
     cos, sin = math.cos(angle), math.sin(angle)
     gap, slope, _ = hole_gap(system, load, angle)
     fine = np.linspace(-math.pi, math.pi, 1441)
     values, _, curvature = hole_gap(system, load, fine)
-    if np.all(values + curvature >= 0.0):  # the pin touches at one point, where the normal is
+    if np.all(values + curvature >= 0.0):  # the pin touches at one point, with its normal at `angle`
         widened = gap - system.rest_clearance
         shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
         half = 0.5 * (system.grid.theta - angle)
         rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.motion[: system.grid.size, :2] @ shift
         return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
-    # an oval hole tighter than the pin: it touches at two points
-    found = scipy.optimize.linprog(
+    # The oval hole is tighter than the pin: the pin touches at two points.
+    optimum = scipy.optimize.linprog(
         [-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None)
     )
-    if not found.success:
+    if not optimum.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return found.x, system.rest_clearance + system.motion[: system.grid.size, :2] @ found.x
+    return optimum.x, system.rest_clearance + system.motion[: system.grid.size, :2] @ optimum.x
 
 
 def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
-    """Fraction of the step at which the shrinking hole touches the concentric pin; 1 if it never does."""
+    """Fraction of the step at which the shrinking hole touches the concentric pin; 1 if they do not touch."""
     fine = np.linspace(-math.pi, math.pi, 1441)
     first, last = hole_gap(system, before, fine)[0], hole_gap(system, after, fine)[0]
     touching = last < 0.0
@@ -166,16 +205,21 @@ def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
 def _first_patch(
     system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float]:
-    """One implicit increment from rest to a load whose contact spans a few nodes.
+    """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
-    In one increment friction would leave a shear in these nodes that has nothing to do with the path there; they begin
-    without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds; and a
-    neat fit, where all grows in proportion to the load and the increment is exact.
+    Friction in one increment would leave a shear in these nodes that does not follow from the load path. So the nodes
+    begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
+    and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
+
+    `begins` is the fraction of the step at which the contact begins. Returned are the configuration and the fraction
+    of the step at which it holds.
     """
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
-    self_similar = system.rest_clearance == 0.0 and not before[: SYY + 1].any()  # everything grows in proportion
+    self_similar = (
+        system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
+    )  # everything grows in proportion
     part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
@@ -207,12 +251,12 @@ def _first_patch(
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
-    """The implicit increment without friction, after which the closed nodes stick where they are."""
-    smooth, start, held = system.without_friction(), resting.copy(), load.copy()
+    """The implicit increment without friction. After it the closed nodes stick where they are."""
+    smooth, start, held_load = system.without_friction(), resting.copy(), load.copy()
     start.status[start.closed] = resting_status(smooth)
     if system.problem.rotation == "free":
-        held[ROTATION] = resting.motion[2]
-    found = implicit_step(smooth, start, held)
+        held_load[ROTATION] = resting.motion[2]
+    found = implicit_step(smooth, start, held_load)
     if found is not None:
         found.status[found.closed] = resting_status(system)
         found.load = load
@@ -222,8 +266,8 @@ def _shearless_step(system: System, resting: Configuration, load: np.ndarray) ->
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
     """A first guess: the part of the step's load at which a contact spans about five nodes.
 
-    A force presses a Hertz contact; a hole that shrinks on the pin overlaps it by half the curvature times the square
-    of the contact's half-width.
+    A force presses a Hertz contact. A hole that shrinks on the pin overlaps the pin by half the curvature times the
+    square of the contact's half-width.
     """
     force = float(np.hypot(change[Q], change[P]))
     theta = system.grid.theta[np.argmin(resting.gap)]

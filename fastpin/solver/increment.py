@@ -1,9 +1,12 @@
-"""The increment solver: the paper's way. Implicit load increments, each a fixed-point iteration for the slip zones.
+"""The increment solver: implicit load increments, the way of the paper.
 
-Within an increment all statuses are found together: a node is closed where N > 0 is needed to keep h >= 0, it sticks
-where |T| <= mu N keeps its slip at the value before the increment (48), and slips with the sign of its slip increment
-(49) elsewhere. Each iteration is one dense solve. An iteration that comes back to statuses it has seen is cycling;
-the caller then halves the increment.
+Each increment is a fixed-point iteration for the statuses of all nodes together. A node is closed where N > 0 is
+needed to keep h >= 0. A closed node sticks where |T| <= mu N keeps its slip at the value before the increment (48).
+Elsewhere it slips with the sign of its slip increment (49). Each iteration is one dense solve. An iteration that
+returns to earlier statuses is cycling. It is tried again from sticking, then with one change of status at a time; then
+the stepper halves the increment.
+
+:func:`implicit_step` makes one increment. :class:`IncrementStepper` follows a step of the history in increments.
 """
 
 from __future__ import annotations
@@ -29,26 +32,31 @@ from fastpin.solver.rest import release
 from fastpin.solver.step import Piece, Position, Report, is_pushed
 
 MOST_ITERATIONS = 200
+"""Iterations of one increment, at most."""
+
 TOLERANCE = 1e-11
+"""Part of the largest pressure or displacement below which an overstepped limit changes no status."""
 
 MOST_HALVINGS = 12
-"""Times that an increment whose iteration cycles is halved."""
+"""Times that an increment is halved, at most, while its iteration cycles."""
 
 
 def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
-    """The configuration at `load` reached from `start` in one implicit increment.
+    """Go from the configuration `start` to `load` in one implicit increment.
 
     Parameters
     ----------
+    system : System
     start : Configuration
-        Its slip is the slip before the increment, at every node, open ones too.
+        Its slip is the slip before the increment, at all nodes, open nodes too. It is not changed.
     load : ndarray, shape (6,)
         Dimensionless load at the end of the increment.
 
     Returns
     -------
     Configuration or None
-        None if the iteration cycles, meets a mechanism or does not end. Work and dissipation are left as they were.
+        The configuration at `load`, with the work and dissipation of `start`. None if the iteration cycles, meets a
+        mechanism or does not end.
     """
     attempts = [start.status, np.where(start.closed, resting_status(system), OPEN).astype(np.int8)]
     for one_at_a_time in (False, True):
@@ -86,7 +94,7 @@ def _iterate(
 
 
 def _wanted_status(system: System, start: Configuration, solution: Solution, status: np.ndarray) -> np.ndarray:
-    """Statuses that the solution of the present ones asks for."""
+    """The statuses for the next iteration: the present statuses, changed where the solution breaks a condition."""
     traction_tol = TOLERANCE * max(float(np.abs(solution.pressure).max()), 1e-300)
     slid = solution.slip - start.slip
     length_tol = TOLERANCE * max(float(np.abs(solution.gap - start.rest_gap).max()), float(np.abs(slid).max()), 1e-300)
@@ -106,10 +114,10 @@ def _wanted_status(system: System, start: Configuration, solution: Solution, sta
 
 
 def _hold_one(wanted: np.ndarray, status: np.ndarray, solution: Solution, friction: float, slid: np.ndarray) -> None:
-    """Let one of the closed nodes stick in `wanted`, where all of them slip and nothing would hold the pin.
+    """Let one closed node stick in `wanted`. All closed nodes slip there, and nothing else would hold the pin.
 
-    Of several nodes that let go it is the one nearest to sticking; if the last one lets go, the pin turns until the
-    first of those stick that slip the other way.
+    If several nodes let go, the node nearest to sticking holds. If the last sticking node lets go, the pin turns until
+    the first of the nodes that slip the other way sticks.
     """
     letting_go = np.flatnonzero((status == STICK) & (wanted != OPEN))
     if letting_go.size > 1:
@@ -137,15 +145,15 @@ def _accept(start: Configuration, solution: Solution, status: np.ndarray, load: 
 
 
 class IncrementStepper:
-    """The increment solver as a stepper: implicit increments, first order in their size.
+    """The increment solver as a stepper: it follows a step in implicit increments, first order in their size.
 
     Parameters
     ----------
     system : System
     increments : int
-        Increments a step: of equal size, or growing linearly after the first contact.
+        Increments a step. They have equal size, or grow linearly after the first contact.
     statistics : dict of str to float
-        To which "increments" are added.
+        Statistics of the run. The stepper counts "increments" in it.
     """
 
     def __init__(self, system: System, increments: int, statistics: dict[str, float]) -> None:
@@ -154,13 +162,21 @@ class IncrementStepper:
         self._statistics = statistics
 
     def begin_piece(self) -> None:
-        """Nothing is kept from one piece to the next."""
+        """Do nothing: a piece needs nothing from the piece before."""
 
     def leave(self, position: Position) -> None:
-        """Everything is in the position already."""
+        """Do nothing: the position already holds everything."""
 
     def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
-        """Go to the fraction `stop` of the step in implicit increments."""
+        """Go to the fraction `stop` of the step in implicit increments.
+
+        Raises
+        ------
+        ConvergenceError
+            If no state that meets the contact conditions was found in an increment halved :data:`MOST_HALVINGS` times.
+        ArcError
+            If the contact reaches an end of the arc.
+        """
         load, before, begin = piece.load_at(stop), position.now.load, position.reached
         for part in self._parts(position, stop):
             target = load if part == 1.0 else before + part * (load - before)
@@ -169,8 +185,8 @@ class IncrementStepper:
             report(position.reached)
 
     def _parts(self, position: Position, stop: float) -> np.ndarray:
-        """Ends of the increments up to the fraction `stop` of the step, in parts of the way there."""
-        if position.fresh > 0.0:  # growing linearly from the first contact
+        """Ends of the increments on the way to the fraction `stop` of the step, in parts of this way."""
+        if position.fresh > 0.0:  # increments grow linearly from the first contact
             ends = np.arange(1, self._increments + 1) * np.arange(2, self._increments + 2)
             ends = ends / ends[-1]
             parts = (ends[ends > position.fresh] - position.fresh) / (1.0 - position.fresh)
@@ -180,7 +196,10 @@ class IncrementStepper:
         return np.arange(1, count + 1) / count
 
     def _increment(self, position: Position, start: Configuration, load: np.ndarray, halvings: int) -> None:
-        """One implicit increment from `start` to `load`, halved where its iteration cycles."""
+        """Make one implicit increment from `start` to `load`, or two halves if its iteration cycles.
+
+        A complete unloading that has no solution releases the pin.
+        """
         system = self._system
         found = implicit_step(system, start, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:

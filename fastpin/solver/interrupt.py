@@ -1,4 +1,4 @@
-"""Ctrl-C, held back until a run stands where it can be left and gone on from."""
+"""Ctrl-C is held back until the run can stop at a place from which it can continue."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from contextlib import contextmanager
 from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Signals that are held back."""
 
 
 class StopRequest:
-    """Whether somebody asked to stop."""
+    """A request to stop. ``stop`` becomes True at the first Ctrl-C."""
 
     def __init__(self) -> None:
         self.stop = False
@@ -20,10 +21,10 @@ class StopRequest:
 
 @contextmanager
 def deferred_interrupts() -> Iterator[StopRequest]:
-    """Note a first Ctrl-C instead of raising; a second one raises KeyboardInterrupt as ever.
+    """Note a first Ctrl-C in the request instead of raising. A second Ctrl-C raises KeyboardInterrupt as usual.
 
-    So does a first one where this is not possible: outside the main thread, or where the program has its own handlers.
-    SIGTERM is treated in the same way where the program has asked for it, by Python's handler of SIGINT.
+    Outside the main thread, and where the program has its own handlers, the first Ctrl-C is not held back. SIGTERM is
+    treated like Ctrl-C if the program has given it Python's handler of SIGINT.
     """
     request = StopRequest()
 

@@ -1,8 +1,11 @@
-"""The path solver: exact in load. Between two changes of status everything is linear, so no increment is ever cut.
+"""The path solver: exact in load. Between two changes of status everything is linear, so it needs no increments.
 
-A step of the history is followed from event to event by :func:`fastpin.tableau.follow`. At its end, and wherever a
-state is asked for, the tractions are corrected until statuses, slip history and load hold to the last digits, so that
-rounding does not grow along a history; and a step depends on nothing but the configuration at its start.
+:func:`fastpin.kernels.exchange.follow` follows the load from event to event. An event is a change of status. At every
+stop, the end of the step included, the tractions are corrected until statuses, slip history and load hold to the last
+digits. So rounding does not grow along a history, and a step depends only on the configuration at its start.
+
+:class:`PathStep` follows one straight piece of a step. :class:`PathStepper` is the solver that a run calls: it makes a
+:class:`PathStep` for each piece, and releases a contact that is lost.
 """
 
 from __future__ import annotations
@@ -23,36 +26,46 @@ from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
 
 MOST_REBUILDS = 400
+"""Rebuilds of the tableau in one piece of a step; with more, the statuses are cycling."""
+
 MOST_DRIFT = 1e-10
-"""Relative error of gap and slip, checked after every chunk of updates, above which the tableau is built anew."""
+"""Largest relative error of gap and slip, checked after every chunk of updates. Above it the tableau is rebuilt."""
 
 ROUNDING = 5e-15
-"""Relative error of gap, slip and equilibrium below which nothing is left to correct."""
+"""Relative error of gap, slip and equilibrium that is rounding. Corrections end below it."""
 
 MOST_ERROR = 1e-12
-"""Relative error that corrections may leave; with more, a factorisation computes the state anew."""
+"""Relative error that corrections may leave. Above it a factorisation computes the state anew."""
 
 MOST_SETTLINGS = 3
-"""Times that statuses are settled anew at a stop, where the corrected state oversteps them."""
+"""Times that statuses are settled anew at a stop, where the corrected state oversteps their limits."""
 
 SAMPLED_NODES = 16
 """Nodes at which gap and slip are compared with the matrices after every chunk."""
 
 FEW_NODES = 8
-"""A contact of at most this many nodes that is lost during a complete unloading has just opened."""
+"""A contact of at most this many nodes, lost during a complete unloading, has just opened."""
 
 NEGLIGIBLE = 1e-3
-"""Part of a step's force below which a contact narrower than the grid is given up and looked for again."""
+"""Part of a step's force. Below it a contact narrower than the grid is released, and a first contact follows."""
 
 MOST_RELEASES = 20
-"""Times that this may happen in one piece of a step."""
+"""Such releases in one piece of a step, at most."""
 
 ALMOST_UNLOADED = 1.0 - 1e-8
-"""Beyond this part of a complete unloading everything falls to zero together; the order of events is rounding."""
+"""Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
 
 
 class StepLostError(Exception):
-    """Internal: the step could not be followed; `code` is one of tableau.py."""
+    """Internal: the step could not be followed to its end.
+
+    Attributes
+    ----------
+    code : int
+        A code of :mod:`fastpin.kernels.exchange`: NO_SUPPORT, CYCLING or ARC_END.
+    fraction : float
+        Fraction of the step that was followed.
+    """
 
     def __init__(self, code: int, fraction: float) -> None:
         super().__init__(code, fraction)
@@ -61,17 +74,27 @@ class StepLostError(Exception):
 
 
 class PathStep:
-    """One straight step of the load history, followed exactly.
+    """A straight change of the load, followed exactly: a step of the history, or a piece of one.
 
     Parameters
     ----------
     system : System
     configuration : Configuration
-        Where the step starts; it is not changed. It must be in contact.
+        The configuration at the start of the step, in contact. It is not changed.
     after : ndarray, shape (6,)
         Dimensionless load at the end of the step.
-    memory : Memory, optional
-        For the tableau; of a step that has been followed.
+    memory : TableauMemory, optional
+        Memory for the tableau, for example from an earlier step.
+
+    Attributes
+    ----------
+    now : Configuration
+        The present configuration.
+    before, rate : ndarray, shape (6,)
+        The load at the start, and its change along the step.
+    rebuilds : int
+        Tableaus built from the matrices, and states computed by a factorisation. The first tableau counts too, unless
+        all closed nodes stick after a reversal.
     """
 
     def __init__(
@@ -116,12 +139,12 @@ class PathStep:
         self._sampled = system.operator[self._sample]
         self.rebuilds = 0
         self._columns: Columns
-        basis = self._sticking_after_reversal()
-        if basis is None:
+        unknowns = self._sticking_after_reversal()
+        if unknowns is None:
             self._rebuild()
         else:
-            now.status[basis.normal] = STICK
-            self._begin(basis)
+            now.status[unknowns.normal] = STICK
+            self._begin(unknowns)
 
     @property
     def fraction(self) -> float:
@@ -130,21 +153,23 @@ class PathStep:
 
     @property
     def events(self) -> int:
+        """Changes of status that the load has reached."""
         return int(self._queue.counts[exchange.EVENTS])
 
     @property
     def exchanges(self) -> int:
+        """Exchanges that the tableau has made."""
         return int(self._queue.counts[exchange.EXCHANGES])
 
     @property
     def touched(self) -> np.ndarray:
-        """Nodes that were ever closed during the step."""
+        """Whether each node was ever closed during the step, bool, shape (n,)."""
         return self._contact.touched
 
     def follow(self, stop: float, report: Callable[[float], None] | None = None) -> Configuration:
         """Follow the step up to the fraction `stop` and return the configuration there.
 
-        `report` is called with the fraction reached now and then.
+        `report` is called now and then, with the fraction that was reached.
 
         Raises
         ------
@@ -183,7 +208,7 @@ class PathStep:
                     return settled
                 if settlings == MOST_SETTLINGS:
                     raise StepLostError(exchange.CYCLING, self.fraction)
-                # Rounding, when a load is almost gone, has kept a status too long: from its limit it changes at once.
+                # When a load is almost gone, rounding can keep a status too long. At its limit it changes at once.
                 self._take(settled)
                 settlings += 1
 
@@ -194,45 +219,49 @@ class PathStep:
         self.now.work = float(self._queue.sums[exchange.WORK])
 
     def _sticking_after_reversal(self) -> StickingRun | None:
-        """The set in which all closed nodes stick, if the load has turned so that most of the slipping ones do.
+        """The system with all closed nodes sticking, if the load has turned. Then most slipping nodes stick at once.
 
-        None if it has not, or if that set can't be had fast.
+        None if the load has not turned, or if the closed nodes are no :class:`StickingRun`.
         """
         status = self.now.status
-        basis = StickingRun.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
-        if basis is None:
+        unknowns = StickingRun.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
+        if unknowns is None:
             return None
-        rates = basis.rates(self.rate)
-        normal, shear = rates[: basis.normal.size], rates[basis.normal.size : -3]
-        slipping = np.abs(status[basis.normal]) == 1
-        growth = -status[basis.normal] * shear - self.system.friction * normal
+        rates = unknowns.rates(self.rate)
+        normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : -3]
+        slipping = np.abs(status[unknowns.normal]) == 1
+        growth = -status[unknowns.normal] * shear - self.system.friction * normal
         if np.count_nonzero(growth[slipping] > 0.0) > np.count_nonzero(slipping) // 2:
             return None
-        return basis
+        return unknowns
 
-    def _begin(self, basis: StickingRun | DenseUnknowns) -> None:
+    def _begin(self, unknowns: StickingRun | DenseUnknowns) -> None:
+        """Begin a new tableau from the solvable system of the present statuses."""
         self._queue.counts[exchange.UPDATES] = 0
-        self._columns = Columns(self.system, basis, self._contact, self.rate, self._memory)
+        self._columns = Columns(self.system, unknowns, self._contact, self.rate, self._memory)
 
     def _rebuild(self, all_at_once: bool = False) -> None:
-        """Tableau of the present statuses from the matrices; after a `wholesale` change that can be taken back."""
+        """Build the tableau of the present statuses from the matrices.
+
+        After a change `all_at_once` that leaves the pin without support, the change is first taken back.
+        """
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS:
             raise StepLostError(exchange.CYCLING, self.fraction)
-        basis, queue = solvable_unknowns(self.system, self.now.status), self._queue
-        if basis is None and all_at_once:
-            # Changing all at once left nothing that holds the pin: change one by one instead.
+        unknowns, queue = solvable_unknowns(self.system, self.now.status), self._queue
+        if unknowns is None and all_at_once:
+            # After the change all at once nothing holds the pin: change one by one instead.
             changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
             self._all_at_once = 2 * self.now.status.size
             queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
-            basis = solvable_unknowns(self.system, self.now.status)
-        if basis is None:
+            unknowns = solvable_unknowns(self.system, self.now.status)
+        if unknowns is None:
             raise StepLostError(exchange.NO_SUPPORT, self.fraction)
-        self._begin(basis)
+        self._begin(unknowns)
 
     def _has_drifted(self) -> bool:
-        """Whether gap and slip at a sample of the nodes have lost touch with the matrices."""
+        """Whether gap and slip at a sample of the nodes differ from the matrices by more than MOST_DRIFT."""
         system, now = self.system, self.now
         rows, load = self._sample, self.before + self.fraction * self.rate
         elastic = self._sampled @ np.r_[now.pressure, now.shear]
@@ -242,18 +271,21 @@ class PathStep:
         return not np.abs(true - np.r_[now.gap, now.slip][rows]).max() <= MOST_DRIFT * length
 
     def _mend(self) -> None:
-        """Compute the present configuration anew, by a factorisation, and the tableau."""
+        """Compute the present configuration anew, by a factorisation, and rebuild the tableau."""
         self._book()
         self._take(recompute(self.system, self.now))
         self._rebuild()
 
     def _take(self, better: Configuration) -> None:
-        """Go on from better values of the present configuration."""
+        """Continue from better values of the present configuration."""
         for name in ("pressure", "shear", "gap", "slip", "motion"):
             getattr(self.now, name)[:] = getattr(better, name)
 
     def _correct(self) -> Solution:
-        """The present tractions and motion, corrected until statuses, held slip and load hold to rounding."""
+        """Correct the present tractions and motion until statuses, held slip and load hold to rounding.
+
+        If the corrections leave more than MOST_ERROR, a factorisation computes the solution.
+        """
         system, now, n = self.system, self.now, self.system.grid.size
         pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
         closed, stick = now.closed, now.status == STICK
@@ -266,7 +298,7 @@ class PathStep:
             true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
             balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
-            # of the elastic part and of the force at work, however little is left of them in an unloading
+            # The scales are the present elastic part and force, even where an unloading has left little of them.
             length = max(float(np.abs(elastic).max()), 1e-300)
             force = max(float((np.abs(system.equilibrium) @ np.abs(tractions)).max()), 1e-300)
             error = max(float(np.abs(missing[: 2 * n]).max()) / length, float(np.abs(balance).max()) / force)
@@ -288,7 +320,10 @@ class PathStep:
 
 
 def recompute(system: System, configuration: Configuration) -> Configuration:
-    """The same configuration with its tractions, gap and slip computed anew from statuses, held slip and load."""
+    """Compute tractions, gap and slip anew from the statuses, held slip and load of a configuration.
+
+    Returns a new configuration. It is a plain copy if the closed nodes can't hold the pin.
+    """
     solution = solve_statuses(
         system, configuration.status, configuration.slip, configuration.load, configuration.rest_gap
     )
@@ -296,15 +331,18 @@ def recompute(system: System, configuration: Configuration) -> Configuration:
 
 
 def _snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:
-    """The configuration with the solution of its statuses; what is beyond a bound, or almost at it, is put there."""
+    """The configuration with the solution of its statuses, each value kept within the bounds of its status.
+
+    A pressure, shear or gap beyond its bound, or almost at it, is put exactly on the bound.
+    """
     new = configuration.copy()
     closed, stick = new.status != OPEN, new.status == STICK
     tiny = 1e-12 * max(float(np.abs(solution.pressure).max()), 1e-300)
     new.pressure = np.where(closed & (solution.pressure > tiny), solution.pressure, 0.0)
     bound = system.friction * new.pressure
     new.shear = np.where(closed, solution.shear, 0.0)
-    near = stick & (np.abs(new.shear) > bound - tiny)
-    new.shear = np.where(near, np.copysign(bound, new.shear), new.shear)
+    at_bound = stick & (np.abs(new.shear) > bound - tiny)
+    new.shear = np.where(at_bound, np.copysign(bound, new.shear), new.shear)
     new.shear = np.where(closed & (new.pressure == 0.0), 0.0, new.shear)
     shortest = 1e-12 * max(float(np.abs(solution.gap).max()), 1e-300)
     new.gap = np.where(closed | (solution.gap <= shortest), 0.0, solution.gap)
@@ -314,7 +352,10 @@ def _snap_to_bounds(system: System, configuration: Configuration, solution: Solu
 
 
 def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
-    """Whether a solution was beyond the bounds of its statuses by more than rounding."""
+    """Whether a solution exceeds the bounds of its statuses by more than rounding.
+
+    `settled` is the configuration from :func:`_snap_to_bounds`.
+    """
     stick, gaping = settled.status == STICK, ~settled.closed
     traction, length = MOST_DRIFT * settled.pressure.max(), MOST_DRIFT * settled.gap.max()
     return bool(
@@ -325,13 +366,13 @@ def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
 
 
 class PathStepper:
-    """The path solver as a stepper: exact in load, from event to event.
+    """The path solver as a stepper: it follows a step from event to event, exactly.
 
     Parameters
     ----------
     system : System
     statistics : dict of str to float
-        To which "events", "exchanges" and "rebuilds" are added.
+        Statistics of the run. The stepper counts "events", "exchanges" and "rebuilds" in it.
     """
 
     def __init__(self, system: System, statistics: dict[str, float]) -> None:
@@ -339,15 +380,27 @@ class PathStepper:
         self._statistics = statistics
         self._memory = TableauMemory(system.grid.size)
         self._step: PathStep | None = None
-        self._begin = 0.0  # fraction of the history's step at which it starts
+        self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = 0
 
     def begin_piece(self) -> None:
-        """Get ready for another straight piece."""
+        """Prepare for the next straight piece."""
         self._releases = 0
 
     def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
-        """Follow a piece exactly, up to the fraction `stop` of the step or to where the contact is lost."""
+        """Follow a piece exactly, up to the fraction `stop` of the step or until the contact is lost.
+
+        A contact that has become too small for the grid, or carries nothing, is released without an error.
+
+        Raises
+        ------
+        NoEquilibriumError
+            If nothing holds the pin any more.
+        ConvergenceError
+            If the statuses do not settle, or the contact shrinks to a few nodes and is lost between them.
+        ArcError
+            If the contact reaches an end of the arc.
+        """
         try:
             if self._step is None:
                 self._begin = position.reached
@@ -366,7 +419,7 @@ class PathStepper:
             position.now = release(self._system, position.now, position.now.load)
 
     def leave(self, position: Position) -> None:
-        """Forget the path that is being followed, note the nodes it touched, and count its events."""
+        """End the present path: note the nodes that it touched, count its events, and forget it."""
         if self._step is None:
             return
         position.touched |= self._step.touched
@@ -376,7 +429,7 @@ class PathStepper:
         self._step = None
 
     def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:
-        """Whether a contact that lost its support has only become too small for the grid, or carried nothing."""
+        """Whether a lost contact had only become too small for the grid, or carried nothing."""
         if lost.code == exchange.ARC_END:
             return False
         unloading = not is_pushed(piece.after) and piece.after[M] == 0.0
@@ -389,7 +442,7 @@ class PathStepper:
 
 
 def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
-    """The error of a path that is lost at the configuration `lost`; `held` if the pin can't rotate freely."""
+    """The error of a path that was lost at the configuration `lost`. `held`: the pin can't rotate freely."""
     closed = int(lost.closed.sum())
     if code == exchange.ARC_END:
         return ArcError(CUT_OFF)

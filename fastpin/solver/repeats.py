@@ -1,10 +1,10 @@
-"""Periodic contact: recognise it at a corner, and take what follows from the log of corners.
+"""Periodic contact: recognise it at a corner, and take the corners that follow from the log.
 
-A step depends on nothing but its load and the configuration at its start, to the last bit. Under constant amplitude a
-contact settles, after one cycle or several, into configurations that repeat up to rounding. :class:`Repeats` replaces
-the configuration at a corner by an earlier one under the same load that differs by rounding only. From there on
-everything repeats exactly, whether it is solved again or not. :class:`CornerLog` keeps the energies, states and cycles
-of the latest corners, and says how often a period comes again.
+A step depends only on its load and the configuration at its start, to the last bit. Under constant amplitude a contact
+settles, after one cycle or several, into configurations that repeat up to rounding. :class:`Repeats` recalls the
+earlier configuration under the same load that differs from the present one by rounding only; the run then takes the
+earlier one. From there on everything repeats exactly, whether it is solved again or not. :class:`CornerLog` logs the
+energies, states and cycles of the latest corners, and finds how often a period repeats.
 """
 
 from __future__ import annotations
@@ -23,12 +23,24 @@ from fastpin.solver.configuration import Configuration
 from fastpin.states.cycles import Cycle
 
 MOST_LOGGED = 1024
-"""Corners that are looked back on, or those of the longest cycle."""
+"""Latest corners in the log. The log is longer if the longest cycle has more corners."""
 
 
 @dataclass(eq=False)
 class CycleEnd:
-    """The end of a cycle, or the corner with which the first one begins, and the energy dissipated since."""
+    """The latest end of a cycle, or the beginning of the first one, and the energy dissipated since.
+
+    Attributes
+    ----------
+    corner : int
+        Index of the corner; -1 for the start of the history.
+    number : int
+        Number of the cycle that ends there; 0 at the beginning of the first one.
+    configuration : Configuration
+        The configuration at the corner.
+    dissipation : float
+        Energy dissipated since that corner (dimensionless).
+    """
 
     corner: int
     number: int
@@ -38,7 +50,17 @@ class CycleEnd:
 
 @dataclass(eq=False)
 class CornerEntry:
-    """A corner: energies on the way to it, those at the states that were kept on that way, cycles that ended there."""
+    """The entry of one corner in the log.
+
+    Attributes
+    ----------
+    dissipation, work : float
+        Energies of the step to the corner (dimensionless).
+    kept : list of (float, float)
+        Dissipation and work at each kept state of that step, counted from the corner before.
+    cycles : list of (CycleKey, Cycle)
+        The cycles that end at the corner.
+    """
 
     dissipation: float = 0.0
     work: float = 0.0
@@ -48,7 +70,17 @@ class CornerEntry:
 
 @dataclass(frozen=True, eq=False)
 class Period:
-    """Corners that come again so many times, and by how much the number of each of their cycles grows each time."""
+    """A period of corners that repeats.
+
+    Attributes
+    ----------
+    logged : list of CornerEntry
+        The corners of one period.
+    times : int
+        How many times the period repeats.
+    counts : dict of CycleKey to int
+        Growth of the number of each cycle from one period to the next.
+    """
 
     logged: list[CornerEntry]
     times: int
@@ -56,24 +88,24 @@ class Period:
 
 
 def copies(marks: dict[CycleKey, CycleEnd]) -> dict[CycleKey, CycleEnd]:
-    """Marks that can go on changing by themselves."""
+    """Copies of cycle ends. They change independently of the originals."""
     return {key: replace(mark) for key, mark in marks.items()}
 
 
 class CornerLog:
-    """What a run remembers of the corners before.
+    """The log of the latest corners of a run, and the latest end of each cycle.
 
     Parameters
     ----------
     history : LoadHistory
-    marks : dict
-        Of an earlier part of the same history; they are copied.
+    marks : dict of CycleKey to CycleEnd
+        Cycle ends of an earlier part of the same history. They are copied.
 
     Attributes
     ----------
-    marks : dict
+    marks : dict of CycleKey to CycleEnd
         The latest end of each cycle, or its beginning.
-    log : deque of Logged
+    log : deque of CornerEntry
         The latest corners.
     """
 
@@ -84,7 +116,7 @@ class CornerLog:
 
     @property
     def latest(self) -> CornerEntry:
-        """The entry of the step that is being followed, or of the last corner."""
+        """The entry of the present step, or of the last corner."""
         return self.log[-1]
 
     def begin_step(self) -> None:
@@ -92,13 +124,13 @@ class CornerLog:
         self.log.append(CornerEntry())
 
     def close_step(self, dissipation: float, work: float) -> None:
-        """Book the energies of the step that has come to its corner."""
+        """Log the energies (dimensionless) of the step that has reached its corner."""
         self.log[-1].dissipation, self.log[-1].work = dissipation, work
         for mark in self.marks.values():
             mark.dissipation += dissipation
 
     def begin_cycles(self, corner: int, now: Configuration) -> None:
-        """Mark a corner as the beginning of the cycles that begin after it."""
+        """Note the beginning of the cycles that begin after a corner; -1 for the start of the history."""
         for key in self.history.cycles_after(corner):
             if key not in self.marks or self.marks[key].corner != corner:
                 self.marks[key] = CycleEnd(corner, 0, now)
@@ -106,27 +138,36 @@ class CornerLog:
     def end_cycles(
         self, ended: list[CycleKey], corner: int, now: Configuration, scales: Scales
     ) -> list[tuple[int, int]]:
-        """Log what the cycles that end at a corner have changed.
+        """Log the changes of the cycles that end at a corner.
+
+        Parameters
+        ----------
+        ended : list of CycleKey
+            The cycles that end there.
+        corner : int
+        now : Configuration
+            The configuration at the corner.
+        scales : Scales
 
         Returns
         -------
         list of (int, int)
-            Length and beginning of those that led back to the very configuration with which they began.
+            Length and first corner of each cycle that ends in exactly the configuration with which it began.
         """
         periods = []
         for key in ended:
             mark, length = self.marks.get(key), self.history.cycle_length(key)
             number, changes = 1, (math.nan, math.nan, math.nan, math.nan)
             if mark is not None and mark.corner == corner - length:
-                number, then = mark.number + 1, mark.configuration
-                peak = max(float(now.pressure.max()), float(then.pressure.max()), 1e-300)
+                number, earlier = mark.number + 1, mark.configuration
+                peak = max(float(now.pressure.max()), float(earlier.pressure.max()), 1e-300)
                 changes = (
-                    float(np.abs(now.pressure - then.pressure).max()) / peak,
-                    float(np.abs(now.shear - then.shear).max()) / peak,
+                    float(np.abs(now.pressure - earlier.pressure).max()) / peak,
+                    float(np.abs(now.shear - earlier.shear).max()) / peak,
                     mark.dissipation * scales.energy,
-                    float(now.motion[2] - then.motion[2]) * scales.rotation,
+                    float(now.motion[2] - earlier.motion[2]) * scales.rotation,
                 )
-                if now.slip is then.slip:
+                if now.slip is earlier.slip:
                     periods.append((length, mark.corner))
             self.marks[key] = CycleEnd(corner, number, now)
             self.log[-1].cycles.append((key, Cycle(corner, length, number, *changes, True)))
@@ -135,15 +176,30 @@ class CornerLog:
         return periods
 
     def period(self, now: int, length: int, since: int, keep: KeepRule, stops: Collection[int]) -> Period | None:
-        """What comes again after the corner `now`.
+        """Find the period that repeats after the corner `now`.
 
-        Its configuration is that of every `length` corners before, back to the corner `since`. None if the loads ahead
-        are others, or not all is known of the period. What comes again keeps clear of corners that are kept if none of
-        them has been before, and of `stops`, numbers of corners.
+        Parameters
+        ----------
+        now : int
+            Index of the present corner.
+        length : int
+            Corners of the period.
+        since : int
+            First corner of the periodic contact. The configuration at `now` returns every `length` corners from there.
+        keep : KeepRule
+            The rule for kept states. Until the contact has been periodic for a common multiple of `length` and
+            ``keep.every`` corners, only corners before the next kept corner repeat.
+        stops : collection of int
+            Numbers of corners at which the recorder wants to see the run. The period repeats to the next stop at most.
+
+        Returns
+        -------
+        Period or None
+            None if the loads ahead differ, or if the log lacks a part of the period.
         """
         history, following = self.history, now + 1
         with_kept = math.lcm(length, keep.every)  # so that the same corners are kept
-        unkept = now - since < with_kept  # as far as nothing is kept, then
+        unkept = now - since < with_kept  # then only corners without a kept state repeat
         length = length if unkept else with_kept
         if length == 0 or len(self.log) < length or now - since < length:
             return None
@@ -156,15 +212,18 @@ class CornerLog:
         logged = [self.log[k - length] for k in range(length)]
         begin = now - length
         if any(cycle.corner - cycle.length < begin for entry in logged for _, cycle in entry.cycles):
-            return None  # a cycle that began before: what it changed will not be repeated
+            return None  # a cycle began before the period: its changes will not repeat
         if any(mark.number == 0 and mark.corner > begin for mark in self.marks.values()):
-            return None  # one that has begun and not ended
+            return None  # a cycle has begun in the period and not ended
         if unkept:
             logged = [replace(entry, kept=[]) for entry in logged]
         return Period(logged, ahead // length, _counts(logged, begin))
 
     def again(self, period: Period, time: int, corner: int) -> list[CornerEntry]:
-        """The corners of a period for the `time`-th time again, the first of them the corner `corner`; logged too."""
+        """Log the corners of a period once more, and return their entries.
+
+        `time` counts the repetitions from 1. `corner` is the first corner of this repetition.
+        """
         length = len(period.logged)
         later = [
             replace(
@@ -188,9 +247,9 @@ class CornerLog:
 
 
 def _counts(logged: list[CornerEntry], begin: int) -> dict[CycleKey, int]:
-    """By how much the numbers of the cycles grow in a period that begins at the corner `begin`.
+    """Growth of the number of each cycle in a period that begins at the corner `begin`.
 
-    Those of cycles that begin anew in every period do not.
+    The growth is 0 for a cycle that begins anew in every period.
     """
     cycles = [pair for entry in logged for pair in entry.cycles]
     ended = {key for key, _ in logged[-1].cycles}
@@ -202,16 +261,16 @@ def _counts(logged: list[CornerEntry], begin: int) -> dict[CycleKey, int]:
 
 
 SAME = 5e-14
-"""Differences below this part of the largest gap, or of the largest slip or motion, are rounding: ten times what is
-left between the cycles of a contact that has settled."""
+"""Relative difference of two configurations that is rounding: ten times the difference left between the cycles of a
+settled contact. Gaps are relative to the largest gap, slip and motion to the largest of both."""
 
 MOST_KEPT = 32
-"""Configurations that are remembered: so many of the latest corners, and so many of the latest ends of cycles."""
+"""Remembered configurations: at most this many of the latest corners, and this many of the latest ends of cycles."""
 
 
 @dataclass(eq=False)
 class KnownConfiguration:
-    """A configuration that was known at a corner.
+    """A remembered configuration at a corner.
 
     Attributes
     ----------
@@ -219,9 +278,13 @@ class KnownConfiguration:
     ends_cycle : bool
         Whether a cycle ended at that corner. Such corners are remembered for longer.
     last : int
-        The latest corner of the present history at which it was met; -1 in a history before.
-    period, since : int
-        Corners after which it was known again, and the corner from which on that was so; a period of 0 before.
+        Latest corner of the present history with this configuration; -1 if only an earlier history has reached it.
+    period : int
+        Corners from one return of the configuration to the next; 0 before it has returned.
+    since : int
+        First corner from which on it has returned after `period` corners each time.
+    load : bytes
+        The bits of its load.
     """
 
     configuration: Configuration
@@ -235,7 +298,7 @@ class KnownConfiguration:
 
 
 class Repeats:
-    """The configurations that are remembered, the latest at the end."""
+    """The remembered configurations, with the latest one at the end."""
 
     def __init__(self, known: list[KnownConfiguration] | None = None) -> None:
         self._known = [] if known is None else known
@@ -244,13 +307,22 @@ class Repeats:
         return iter(self._known)
 
     def copy(self, same_history: bool = False) -> Repeats:
-        """For a history that goes on from here, and may not be the only one."""
+        """A copy for one of the histories that continue from here.
+
+        The copy remembers the corners of the configurations only with `same_history`.
+        """
         return Repeats([replace(known) if same_history else replace(known, last=-1, period=0) for known in self._known])
 
     def recall(self, now: Configuration, ends_cycle: bool, corner: int) -> KnownConfiguration | None:
-        """The remembered configuration that `now`, reached at a corner, is but for rounding.
+        """Return the remembered configuration equal to `now` up to rounding, or remember `now` and return None.
 
-        If there is none, `now` is remembered and None returned.
+        Parameters
+        ----------
+        now : Configuration
+            The configuration at the corner.
+        ends_cycle : bool
+            Whether a cycle ends there.
+        corner : int
         """
         load = now.load.tobytes()
         for known in reversed(self._known):
@@ -268,18 +340,19 @@ class Repeats:
 
     def _add(self, known: KnownConfiguration) -> None:
         self._known.append(known)
-        alike = [k for k, other in enumerate(self._known) if other.ends_cycle == known.ends_cycle]
+        alike = [k for k, entry in enumerate(self._known) if entry.ends_cycle == known.ends_cycle]
         if len(alike) > MOST_KEPT:
             del self._known[alike[0]]
 
 
-def _same(one: Configuration, two: Configuration) -> bool:
+def _same(known: Configuration, now: Configuration) -> bool:
     """Whether two configurations under the same load differ by rounding only."""
-    if not np.array_equal(one.status, two.status):
+    if not np.array_equal(known.status, now.status):
         return False
-    moved = max(float(np.abs(two.motion).max()), float(np.abs(two.slip).max()))
-    apart = float(np.abs(two.gap).max())
-    scales = {"motion": moved, "slip": moved, "rest_slip": moved, "gap": apart, "rest_gap": apart, "rest": apart}
+    motion = max(float(np.abs(now.motion).max()), float(np.abs(now.slip).max()))
+    gap = float(np.abs(now.gap).max())
+    scales = {"motion": motion, "slip": motion, "rest_slip": motion, "gap": gap, "rest_gap": gap, "rest": gap}
     return all(
-        bool(np.all(np.abs(getattr(one, name) - getattr(two, name)) <= SAME * scale)) for name, scale in scales.items()
-    ) and np.array_equal(one.origin, two.origin, equal_nan=True)
+        bool(np.all(np.abs(getattr(known, name) - getattr(now, name)) <= SAME * scale))
+        for name, scale in scales.items()
+    ) and np.array_equal(known.origin, now.origin, equal_nan=True)

@@ -1,4 +1,7 @@
-"""The pin without contact: before any load, at rest on the hole, after contact was lost."""
+"""The pin between contacts: before any load, at rest on the hole, and after contact was lost.
+
+An interference fit is the exception: it is in contact before any load.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,15 @@ from fastpin.solver.errors import ConvergenceError
 
 
 def unloaded_configuration(system: System) -> Configuration:
-    """The configuration before any load: concentric without contact, or an interference fit's uniform pressure."""
+    """The configuration before any load: concentric without contact, or the uniform pressure of an interference fit.
+
+    Its work is 0, or the elastic energy of the assembly.
+
+    Raises
+    ------
+    ConvergenceError
+        If the uniform pressure of an interference fit was not found on this grid.
+    """
     n = system.grid.size
     zeros = np.zeros(n)
     configuration = Configuration(
@@ -37,18 +48,26 @@ def unloaded_configuration(system: System) -> Configuration:
     configuration.origin = np.zeros(2)
     configuration.pressure = solution.pressure
     configuration.gap = zeros.copy()
-    configuration.work = elastic_energy(system, configuration)  # of the assembly
+    configuration.work = elastic_energy(system, configuration)  # the work of the assembly
     return configuration
 
 
 def release(system: System, last: Configuration, load: np.ndarray) -> Configuration:
-    """The configuration after contact was lost: no tractions, the slip history forgotten, the pin where it was.
+    """Release the pin after contact was lost: no tractions, no slip history, the pin where it was.
 
-    What indentation is left from the last nodes is taken back towards the concentric position.
+    If the pin still indents the hole at the last nodes, it is moved back towards the concentric position.
+
+    Parameters
+    ----------
+    system : System
+    last : Configuration
+        The configuration before. It is not changed.
+    load : ndarray, shape (6,)
+        Dimensionless.
     """
     n = system.grid.size
     new = last.copy()
-    new.work -= elastic_energy(system, last)  # what elastic energy is left goes back to the loads
+    new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
     position = new.rest + new.motion[:2]
@@ -64,7 +83,10 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
 def put_at_rest(
     system: System, configuration: Configuration, load: np.ndarray, rest: np.ndarray, rest_gap: np.ndarray
 ) -> None:
-    """Let motion and slip count from the position `rest`, in which nothing is in contact, under the load `load`."""
+    """Let motion and slip of `configuration` count from the position `rest`, without contact, under `load`.
+
+    `rest` (2,) is the position of the pin's centre, and `rest_gap` (n,) the gap there. `configuration` is changed.
+    """
     n = system.grid.size
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.rotation == "fixed"
@@ -76,7 +98,10 @@ def put_at_rest(
 
 
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
-    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and its two derivatives."""
+    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and two derivatives.
+
+    Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
+    """
     _, _, _, sxx, syy, _ = load
     mean, oval = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy)
     double = 2.0 * np.asarray(theta)

@@ -21,29 +21,30 @@ from fastpin.states.state import State
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
 class Restart:
-    """What is needed to go on from a corner, to the same bits.
+    """Everything from which a run continues at a corner, to the same bits.
 
     Attributes
     ----------
     corner : int
-        Corners of the history that were followed.
+        Number of corners of the history that were followed.
     load : ndarray, shape (loads,)
-        The load there, SI.
+        The load at the corner, SI.
     force : float
         The reference force, N/m.
     configuration : Configuration
-        Its dissipation and work are 0.
+        The configuration at the corner. Its dissipation and work are 0.
     dissipation, work : float
-        Until there (dimensionless).
+        Energies from the start to the corner (dimensionless).
     repeats : Repeats
-    marks : dict
+        The remembered configurations.
+    marks : dict of CycleKey to CycleEnd
         The latest end of each cycle.
     statistics : dict of str to float
+        Statistics of the run up to the corner.
     """
 
     corner: int
@@ -57,7 +58,7 @@ class Restart:
     statistics: dict[str, float]
 
     def elsewhere(self) -> Restart:
-        """The same for another history, which begins here."""
+        """The restart for another history that begins here."""
         return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={})
 
 
@@ -74,16 +75,17 @@ class Result(Sequence[State]):
     method : str
         "path" or "increment".
     statistics : dict of str to float
-        "events" (changes of status met), "exchanges" (changes made), "rebuilds" (tableaus built anew, and states that a
-        factorisation computed), "increments", "repeated" (steps that were known from before) and "seconds".
+        "events" (changes of status that the load reached), "exchanges" (changes made in the tableau), "rebuilds"
+        (tableaus built anew, and states computed by a factorisation), "increments", "repeated" (steps taken from the
+        period before, not solved) and "seconds".
     complete : bool
         Whether the whole history was followed; False in the result that an error carries.
     restart : Restart or None
-        For ``solve(..., start=result)``.
+        The restart for ``solve(..., start=result)``; None if the result's file holds states only.
     cycles : tuple of Cycle
         The changes of each cycle of the history, in order; empty where the history has no repeated blocks.
     coarse : Result or None
-        The same history on a grid with half the intervals, with ``solve(..., error_bars=True)``.
+        The result of the same history on a grid with half the intervals, with ``solve(..., error_bars=True)``.
     """
 
     states: list[State]
@@ -100,13 +102,16 @@ class Result(Sequence[State]):
     def with_coarse(self, coarse: Result) -> Result:
         """This result with error bars, from the states of the same history on a coarser grid."""
         states = []
-        for state, other in zip(self, coarse, strict=True):
-            assert (state.step, state.fraction) == (other.step, other.fraction)
-            states.append(replace(state, error_bars=ErrorBars(state, other)))
+        for state, coarse_state in zip(self, coarse, strict=True):
+            assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
+            states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
         return replace(self, states=states, coarse=coarse)
 
-    def plot(self, path: str | Path | None = None, **options: Any) -> Figure:
-        """Draw the tractions of all states; see :func:`fastpin.plot_tractions`, whose options these are."""
+    def plot(self, path: str | Path | None = None, **options: Any) -> Any:
+        """Draw the tractions of all states, and return the matplotlib figure.
+
+        See :func:`fastpin.plot_tractions`, which takes the same options.
+        """
         import fastpin
 
         return fastpin.plot_tractions(self, path, **options)
@@ -124,7 +129,7 @@ class Result(Sequence[State]):
         return fastpin.storage.to_xarray(self)
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """The reported quantities, a row a state; see :func:`fastpin.storage.to_dataframe`."""
+        """The reported quantities, with a row for each state; see :func:`fastpin.storage.to_dataframe`."""
         import fastpin
 
         return fastpin.storage.to_dataframe(self)

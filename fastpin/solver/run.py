@@ -1,4 +1,4 @@
-"""The loop over the corners of a history on one grid, for every solver."""
+"""The loop over the corners of a history on one grid. It is the same for both solvers."""
 
 from __future__ import annotations
 
@@ -29,12 +29,13 @@ from fastpin.states.state import State
 log = logging.getLogger(__name__)
 
 Progress = Callable[[float, int], None]
+"""Called with the number of steps that are done, parts included, and the number of all steps."""
 
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated")
-"""Entries of the statistics of a run."""
+"""Counts in the statistics of a run."""
 
 UNLOADED_PRESSURE = 1e-9
-"""Largest pressure, in parts of the force before, of a pin that has been unloaded completely."""
+"""Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
 
 
 class Recorder(Protocol):
@@ -50,14 +51,22 @@ class Recorder(Protocol):
         """Keep the changes of one cycle."""
 
     def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
-        """Keep the latest states once more, as states of other steps with other energies, shape (states,)."""
+        """Keep the latest states once more, as states of other steps with other energies.
+
+        Parameters
+        ----------
+        steps : ndarray of int, shape (states,)
+            Index of the corner of each new state.
+        dissipation, work : ndarray, shape (states,)
+            Energies of each new state, J/m.
+        """
 
     def corner_reached(self) -> None:
-        """The run stands at a corner, from which it can continue later."""
+        """Note that the run has reached a corner. It can continue from there later."""
 
 
 class Run:
-    """One history on one grid.
+    """One history, followed on one grid.
 
     Parameters
     ----------
@@ -68,16 +77,26 @@ class Run:
     recorder : Recorder, optional
     progress : callable, optional
     start : Restart, optional
-        Where to start from; without load if not given.
+        The restart from which the run continues. Without it the run starts from no load.
     stops : collection of int
         Numbers of corners at which the recorder wants to see the run.
 
     Attributes
     ----------
     position : Position
-        Where the run stands. Dissipation and work of its configuration count from the last corner.
+        The position of the run. Dissipation and work of its configuration count from the last corner.
     corner : int
-        Corners that were reached.
+        Number of corners that were reached.
+    load : ndarray, shape (loads,)
+        The load at the last corner, SI.
+    last_corner : Configuration
+        The configuration at the last corner.
+    dissipation, work : float
+        Energies from the start to the last corner (dimensionless).
+    complete : bool
+        Whether the whole history was followed.
+    statistics : dict of str to float
+        The counts of :data:`COUNTED`.
     """
 
     def __init__(
@@ -101,7 +120,7 @@ class Run:
         start = _without_load(system) if start is None else start
         self.load = start.load
         self.dissipation, self.work = start.dissipation, start.work
-        self.repeats, self.log = start.repeats, CornerLog(history, start.marks)
+        self.repeats, self.corner_log = start.repeats, CornerLog(history, start.marks)
         self.corner = start.corner
         self.last_corner = start.configuration
         self.position = Position(start.configuration, start.configuration.closed.copy())
@@ -111,30 +130,36 @@ class Run:
 
     @property
     def now(self) -> Configuration:
-        """The configuration that was reached."""
+        """The present configuration."""
         return self.position.now
 
     @property
     def touched(self) -> np.ndarray:
-        """Nodes that have ever been in contact, bool, shape (n,)."""
+        """Whether each node was ever in contact, bool, shape (n,)."""
         return self.position.touched
 
     def follow(self) -> None:
-        """Follow the history from the corner where the run stands to its end."""
+        """Follow the history from the last corner that was reached to its end.
+
+        Raises
+        ------
+        SolveError
+            If a load can't be followed. It names the step, the fraction of the step and the load.
+        """
         corners = len(self.history)
-        self.log.begin_cycles(self.corner - 1, self.now)
+        self.corner_log.begin_cycles(self.corner - 1, self.now)
         while self.corner < corners:
             given, ended = self.history.corner(self.corner)
             load = complete_load(given, self.load)
             known = self._step(load, bool(ended))
             self._close_step(load)
-            periods = self.log.end_cycles(ended, self.corner, self.now, self.system.scales)
-            self._record_cycles(self.log.latest)
+            periods = self.corner_log.end_cycles(ended, self.corner, self.now, self.system.scales)
+            self._record_cycles(self.corner_log.latest)
             self.corner += 1
             if known is not None and self.options.shortcut:
                 for length, since in [*periods, (known.period, known.since)]:
                     self._repeat(length, since)
-            self.log.begin_cycles(self.corner - 1, self.now)
+            self.corner_log.begin_cycles(self.corner - 1, self.now)
             self._show_corner()
         self.complete = True
 
@@ -142,20 +167,18 @@ class Run:
         """The restart from the last corner that was reached."""
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            self.repeats.copy(same_history=True), copies(self.log.marks), dict(self.statistics),
+            self.repeats.copy(same_history=True), copies(self.corner_log.marks), dict(self.statistics),
         )  # fmt: skip
-
-    # -- one step ------------------------------------------------------------------------------------------------
 
     def _step(self, load: np.ndarray, ends_cycle: bool) -> KnownConfiguration | None:
         """Follow the step to the corner with the load `load` (SI), and keep its states.
 
-        Returns the earlier configuration that equals the one at the corner, if there is one.
+        Returns the earlier configuration that equals the configuration at the corner, or None.
         """
         step, corners, scales, position = self.corner, len(self.history), self.system.scales, self.position
         target, before = load / scales.loads, self.now.load
         position.reached = 0.0
-        self.log.begin_step()
+        self.corner_log.begin_step()
         try:
             for piece in pieces(before, target):
                 self._follow_piece(piece, step)
@@ -199,7 +222,7 @@ class Run:
         self._release_if_unloaded(piece, load)
 
     def _touch_down(self, load: np.ndarray, stop: float) -> None:
-        """Bring the floating pin into contact on the way to `load`; it may also get there without contact."""
+        """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
         position = self.position
         self.stepper.leave(position)
         position.now, part = first_contact(self.system, self.now, self.now.load, load)
@@ -210,7 +233,7 @@ class Run:
         position.fresh = part if part < 1.0 else 0.0
 
     def _release_if_unloaded(self, piece: Piece, load: np.ndarray) -> None:
-        """Forget a contact that carries nothing any more: the pin has been unloaded completely."""
+        """Release the pin after a complete unloading, when the contact carries nothing any more."""
         if is_pushed(load) or not self.now.closed.any():
             return
         if float(self.now.pressure.max()) <= UNLOADED_PRESSURE * force_of(piece.before):
@@ -223,54 +246,52 @@ class Run:
             raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
 
     def _close_step(self, load: np.ndarray) -> None:
-        """Book the energies of the step that has come to its corner, under `load`."""
-        self.log.close_step(self.now.dissipation, self.now.work)
+        """Log the energies of the step that has reached its corner, under `load` (SI)."""
+        self.corner_log.close_step(self.now.dissipation, self.now.work)
         self.dissipation += self.now.dissipation
         self.work += self.now.work
         self.position.now = self.last_corner = replace(self.now, dissipation=0.0, work=0.0)
         self.load = load
 
     def _show_corner(self) -> None:
-        """Tell the recorder and the progress that a corner has been reached."""
+        """Tell the recorder and the progress that the run has reached a corner."""
         if self.recorder is not None:
             self.recorder.corner_reached()
         if self.progress is not None:
             self.progress(float(self.corner), len(self.history))
 
     def _report(self, step: int, reached: float) -> None:
-        """Report a fraction of a step as progress of the history."""
+        """Report the fraction `reached` of a step as progress of the history."""
         if self.progress is not None:
             self.progress(step + reached, len(self.history))
 
-    # -- corners that are known ----------------------------------------------------------------------------------
-
     def _repeat(self, length: int, since: int) -> None:
-        """Where the loads ahead are those of the period that ends here, take its corners from the log.
+        """Take the next corners from the log while their loads repeat the period that ends here.
 
-        The present configuration is that of every `length` corners before, back to the corner `since`.
+        The present configuration has returned every `length` corners since the corner `since`.
         """
-        now = self.corner - 1
-        period = self.log.period(now, length, since, self.keep, self.stops)
+        last = self.corner - 1
+        period = self.corner_log.period(last, length, since, self.keep, self.stops)
         if period is None:
             return
         length = len(period.logged)
         log.info(
-            "corner %d: the last %d corners repeat %d times and are not solved again", now + 1, length, period.times
+            "corner %d: the last %d corners repeat %d times and are not solved again", last + 1, length, period.times
         )
-        latest = [other for other in self.repeats if other.last > now - length]
+        in_period = [known for known in self.repeats if known.last > last - length]
         for time in range(1, period.times + 1):
-            entries = self.log.again(period, time, self.corner)
+            entries = self.corner_log.again(period, time, self.corner)
             self._book_again(entries)
-            for other in latest:
-                other.last += length
+            for known in in_period:
+                known.last += length
             self.corner += length
             self.statistics["repeated"] += length
             if self.corner == len(self.history) and self.recorder is not None and not entries[-1].kept:
-                self._keep(self.corner - 1, 1.0)  # the last one is kept in any case
+                self._keep(self.corner - 1, 1.0)  # the last state of a history is always kept
             self._show_corner()
 
     def _book_again(self, entries: list[CornerEntry]) -> None:
-        """Book the energies, states and cycles of the next corners, which are known."""
+        """Add the energies, states and cycles of the next corners, which are known."""
         energy, rows = self.system.scales.energy, []
         for step, entry in enumerate(entries, start=self.corner):
             for dissipation, work in entry.kept:
@@ -281,8 +302,6 @@ class Run:
         if self.recorder is not None and rows:
             steps, dissipations, works = zip(*rows, strict=True)
             self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works))
-
-    # -- the recorder --------------------------------------------------------------------------------------------
 
     def _record_cycles(self, entry: CornerEntry, solved: bool = True) -> None:
         if self.recorder is not None:
@@ -297,12 +316,12 @@ class Run:
             raise ConvergenceError(
                 f"the state violates the contact conditions ({worst} by {residuals[worst]:.2g}) and is not returned"
             )
-        self.log.latest.kept.append((self.now.dissipation, self.now.work))
+        self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
         assert self.recorder is not None
         self.recorder.add(self._state(step, fraction, residuals))
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
-        """The present configuration in the units of the problem. Its arrays can't be written to: steps share them."""
+        """The present configuration as a state, SI. Its arrays can't be written to: steps that repeat share them."""
         system, now, scales = self.system, self.now, self.system.scales
         moved = np.nan_to_num(now.rest - now.origin) + now.motion[:2]
         status = now.status.copy()
@@ -334,7 +353,7 @@ class Run:
 
 
 def _stepper(system: System, options: SolveOptions, statistics: dict[str, float]) -> Stepper:
-    """The solver that the options choose."""
+    """The solver of the method that the options name."""
     if options.method == "increment":
         assert options.increments is not None
         return IncrementStepper(system, options.increments, statistics)
@@ -342,7 +361,7 @@ def _stepper(system: System, options: SolveOptions, statistics: dict[str, float]
 
 
 def _without_load(system: System) -> Restart:
-    """The start of a history: no load, or an interference fit under its own pressure."""
+    """The start of a history: no load. An interference fit is under its own pressure."""
     first, load = unloaded_configuration(system), np.zeros(system.loads.shape[1])
     now = replace(first, dissipation=0.0, work=0.0)
     return Restart(0, load, system.scales.force, now, first.dissipation, first.work, Repeats(), {}, {})

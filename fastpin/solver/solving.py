@@ -1,4 +1,7 @@
-"""solve(): follow a load history on one grid and return the states at its corners."""
+"""The function :func:`solve` follows a load history and returns the states at its corners.
+
+:class:`MemoryRecorder` keeps these states in memory.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +26,7 @@ from fastpin.states.error_bars import LEAST_COARSE
 from fastpin.states.state import State
 
 DEFAULTS = SolveOptions()
+"""The default options of :func:`solve`."""
 
 
 def solve(
@@ -47,15 +51,15 @@ def solve(
     ----------
     problem : Problem
     history : LoadHistory or sequence of dicts
-        Corners of the loads; between corners loads are linear. It starts from no load, or where `start` ended.
+        Corners of the loads. Between corners the loads are linear. It starts from no load, or where `start` ended.
     nodes, method, increments, arc, between, keep, shortcut, error_bars
         See :class:`fastpin.SolveOptions`.
     grid : Grid, optional
-        The nodes themselves, for example graded ones; `nodes` is then not used, and `arc` is not allowed.
+        A ready grid, for example a graded one. `nodes` is then not used, and `arc` is not allowed.
     start : Result, optional
-        Continue from the last state of this result, on its grid. The states are those of an unsplit history on that
-        grid, bit for bit. If the contact will reach further than before, give the first part a wider `arc`. With
-        `error_bars`, `start` must have them too.
+        Continue from the last state of this result, on its grid. The states equal the states of the unsplit history
+        on that grid, bit for bit. If the contact will reach further than before, give the first part a wider `arc`.
+        With `error_bars`, `start` must have error bars too.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
 
@@ -67,15 +71,17 @@ def solve(
     Raises
     ------
     InputError
-        Naming the field that can't be used.
+        If an input can't be used. The error names the field.
     NoEquilibriumError
-        If no state carries the load; it says where the load was lost and holds the result so far.
+        If no state carries the load. The error says where the load was lost.
     ConvergenceError
-        If no state that meets the conditions was found; it holds the result so far.
+        If no state that meets the contact conditions was found.
     ArcError
         If the contact reaches an end of a given arc.
+    Interrupted
+        After Ctrl-C. It is a KeyboardInterrupt.
 
-    A KeyboardInterrupt leaves with the result so far in its ``result``, as these errors do.
+    The ``result`` of the last four is the result so far; None if the grid was not yet chosen.
     """
     options = SolveOptions(
         nodes=nodes, method=method, increments=increments, arc=arc, between=between, keep=keep, shortcut=shortcut,
@@ -101,14 +107,14 @@ def _follow_task(task: Task, start: Result | None) -> Result:
         else:
             task.follow(kept)
     except (SolveError, Interrupted) as ended:
-        if kept.run is not None:  # else it ended before a grid was found
+        if kept.run is not None:  # None if it ended before a grid was found
             ended.result = kept.result(task, time.perf_counter() - began)
         raise
     return kept.result(task, time.perf_counter() - began)
 
 
 def _check_halves(task: Task, start: Result | None) -> None:
-    """Raise :class:`InputError` if there can be no error bars."""
+    """Raise :class:`InputError` if the task can't have error bars."""
     if start is not None and (start.coarse is None or start.coarse.restart is None):
         raise InputError("error_bars", "the result to go on from was solved without them: it has no coarse grid")
     if start is None:
@@ -119,7 +125,10 @@ def _check_halves(task: Task, start: Result | None) -> None:
 
 
 def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
-    """The result with error bars; where the coarse grid has none to give, what is raised holds it without."""
+    """Follow the history on the coarse grid too, and return the result with error bars.
+
+    If the history can't be followed there, the error holds the result without error bars.
+    """
     if start is None:
         grid, begin = halved(result.grid, first_direction(task.history.distinct())), None
     else:
@@ -136,7 +145,15 @@ def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
 
 
 class MemoryRecorder:
-    """The states and cycles of a run, kept in memory."""
+    """A recorder that keeps the states and cycles of a run in memory.
+
+    Attributes
+    ----------
+    run : Run or None
+        The run that is recorded; None before it begins.
+    states : list of State
+    cycles : list of Cycle
+    """
 
     def __init__(self) -> None:
         self.run: Run | None = None
@@ -144,25 +161,29 @@ class MemoryRecorder:
         self.cycles: list[Cycle] = []
 
     def begin(self, run: Run) -> None:
+        """Forget everything. From here on all states come from `run`."""
         self.run, self.states, self.cycles = run, [], []
 
     def add(self, state: State) -> None:
+        """Keep a state."""
         self.states.append(state)
 
     def add_cycle(self, cycle: Cycle) -> None:
+        """Keep the changes of one cycle."""
         self.cycles.append(cycle)
 
     def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        """Keep the latest states once more, as states of other steps with other energies (J/m), shape (states,)."""
         latest = self.states[len(self.states) - len(steps) :]
         for state, step, lost, done in zip(latest, steps.tolist(), dissipation.tolist(), work.tolist(), strict=True):
             load, residuals = dict(state.load), dict(state.residuals)
             self.states.append(replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals))
 
     def corner_reached(self) -> None:
-        pass
+        """Do nothing: the run itself remembers its last corner."""
 
     def result(self, task: Task, seconds: float) -> Result:
-        """What was solved."""
+        """The result of the run so far, solved in this many seconds."""
         assert self.run is not None
         run, statistics = self.run, {**self.run.statistics, "seconds": seconds}
         return Result(

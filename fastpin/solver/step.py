@@ -1,4 +1,8 @@
-"""One step of a load history, from corner to corner, cut into straight pieces; and where a run stands inside it."""
+"""One step of a load history, from one corner to the next.
+
+A step consists of one straight :class:`Piece` or two. A :class:`Position` says how far a run has followed the step. A
+:class:`Stepper` is the interface of a solver: it moves the position along a piece.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +21,14 @@ Report = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Piece:
-    """A straight piece of a step, from fraction `begin` to fraction `end` of it.
+    """A straight piece of a step.
 
     Attributes
     ----------
     begin, end : float
+        Fractions of the step at the ends of the piece.
     before, after : ndarray, shape (loads,)
-        Dimensionless loads at its ends.
+        Dimensionless loads at the ends of the piece.
     """
 
     begin: float
@@ -32,14 +37,17 @@ class Piece:
     after: np.ndarray
 
     def load_at(self, fraction: float) -> np.ndarray:
-        """The load at a fraction of the step."""
+        """The dimensionless load at a fraction of the step."""
         if fraction == self.end:
             return self.after.copy()
         return self.before + (fraction - self.begin) / (self.end - self.begin) * (self.after - self.before)
 
 
 def pieces(before: np.ndarray, after: np.ndarray) -> list[Piece]:
-    """The pieces of a step. It is cut where the pin's force passes through zero: contact is lost there."""
+    """The pieces of a step between two loads. It is cut where the pin's force passes through zero.
+
+    Contact is lost there.
+    """
     first, last = before[[P, Q]], after[[P, Q]]
     if first @ last < 0.0 and abs(first[0] * last[1] - first[1] * last[0]) <= 1e-12 * abs(first @ last):
         cut = float(np.linalg.norm(first) / (np.linalg.norm(first) + np.linalg.norm(last)))
@@ -55,23 +63,24 @@ def is_pushed(load: np.ndarray) -> bool:
 
 
 def force_of(load: np.ndarray) -> float:
-    """Size of the force on the pin."""
+    """Size of the force on the pin, in the units of `load`."""
     return float(np.hypot(load[P], load[Q]))
 
 
 @dataclass(eq=False)
 class Position:
-    """Where a run stands inside a step.
+    """The position of a run inside a step.
 
     Attributes
     ----------
     now : Configuration
+        The present configuration.
     touched : ndarray of bool, shape (n,)
-        Nodes that have ever been in contact.
+        Whether each node was ever in contact.
     reached : float
-        Fraction of the step.
+        Fraction of the step that was followed.
     fresh : float
-        Fraction of the way to the next stop at which the contact was just found; 0 otherwise.
+        Just after a first contact, the fraction of the way to the next stop at which it was found; otherwise 0.
     """
 
     now: Configuration
@@ -81,19 +90,19 @@ class Position:
 
 
 class Stepper(Protocol):
-    """A solver: it brings a contact from one load to the next. Each solver is one file."""
+    """The interface of a solver: it brings a contact from one load to the next. Each solver has its own file."""
 
     def begin_piece(self) -> None:
-        """Get ready for another straight piece."""
+        """Prepare for the next straight piece."""
 
     def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
-        """Bring the contact along a piece, to the fraction `stop` of the step or to where the contact is lost.
+        """Follow a piece up to the fraction `stop` of the step, or until the contact is lost; change `position`.
 
         Raises
         ------
         SolveError
-            If the load can't be followed; `position` is where it was lost.
+            If the load can't be followed. `position` is then the position at which it was lost.
         """
 
     def leave(self, position: Position) -> None:
-        """Finish with the present piece: note the nodes it touched, and what it took."""
+        """End the present piece: note the nodes that it touched, and update the statistics."""

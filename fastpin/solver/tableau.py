@@ -1,4 +1,7 @@
-"""The tableau's columns, computed when they are asked for and brought up to date by matrix products."""
+"""The columns of the tableau: computed when the exchange loop needs them, updated by matrix products.
+
+:mod:`fastpin.kernels.exchange` holds the loop and explains the tableau and its updates.
+"""
 
 from __future__ import annotations
 
@@ -12,32 +15,42 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 ROOM = 2
-"""Updates a node for which there is room; with more, the tableau is built anew."""
+"""Updates per node for which there is room. With more updates the tableau is rebuilt."""
 
 
 class TableauMemory:
-    """Where tableaus are kept, one at a time, step after step. Fresh memory comes page by page, which takes time."""
+    """Memory for one tableau, used again step after step. Fresh memory comes page by page, which takes time.
+
+    Parameters
+    ----------
+    nodes : int
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (2 nodes + 3, 2 nodes)
+    left : ndarray, shape (2 nodes + 3, updates)
+    """
 
     def __init__(self, nodes: int) -> None:
         updates = ROOM * nodes + CHUNK
-        self.matrix = np.empty((2 * nodes + 3, 2 * nodes), order="F")  # what is never asked for takes no memory
+        self.matrix = np.empty((2 * nodes + 3, 2 * nodes), order="F")  # columns that are never needed take no memory
         self.left = np.empty((2 * nodes + 3, updates), order="F")
 
 
 class Columns:
-    """The tableau of :mod:`fastpin.tableau` for given statuses and what becomes of it by updates.
+    """The tableau that :func:`fastpin.kernels.exchange.follow` works on, begun from given statuses.
 
     Parameters
     ----------
     system : System
-    basis : StuckSet or FactoredSet
+    basis : StickingRun or DenseUnknowns
         The solvable system of the statuses.
     contact : Contact
-        The configuration. Its ties are set.
+        The configuration. The ties in it are set.
     load_rate : ndarray, shape (6,)
         Dimensionless, per unit of the step.
-    memory : Memory
-        For the tableau. What was there is overwritten.
+    memory : TableauMemory
+        Memory for the tableau. It is overwritten.
 
     Attributes
     ----------
@@ -54,7 +67,8 @@ class Columns:
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._system, self._basis = system, basis
-        # of the unknowns and, below them, the others: where they stand among (N or h), (T or s) and the motion
+        # Stacked vectors hold the unknowns and, below them, the others. `_order` has the places of (N or h), (T or s)
+        # and the motion in them.
         self._order = np.argsort(np.r_[basis.rows, 2 * n + np.arange(3), basis.others])
         self._position = np.full(2 * n, -1)
         self._position[basis.rows] = np.arange(basis.count)
@@ -71,13 +85,14 @@ class Columns:
         self._tie(contact)
 
     def _rates(self, load_rate: np.ndarray) -> np.ndarray:
+        """Rates (2n+3,) of the dependent variables."""
         system, basis = self._system, self._basis
         unknowns = basis.rates(load_rate)
         displaced = system.loads @ load_rate + basis.displacement(unknowns)
         return np.r_[unknowns, displaced[basis.others]][self._order]
 
     def _tie(self, contact: Contact) -> None:
-        """Tie the shear of every node as it will be when it slips; where that turns out wrong it costs an update."""
+        """Tie the shear of each node to the pressure for the expected sense of slip. A wrong tie costs one update."""
         n, rates = contact.status.size, self.tableau.rates
         contact.tie[:] = contact.status
         stuck, open_ = np.flatnonzero(contact.status == STICK), np.flatnonzero(contact.status == OPEN)
@@ -85,12 +100,15 @@ class Columns:
         contact.tie[open_] = np.where(rates[n + open_] < 0.0, -1, 1)
         coupling = self._system.friction * contact.tie
         self._tied, self._drag = np.zeros(n), np.zeros(2 * n)
-        self._tied[stuck] = coupling[stuck]  # tau = T + tied N where it sticks
-        self._drag[open_] = -coupling[open_]  # a unit of N comes with so much T where it is open
+        self._tied[stuck] = coupling[stuck]  # tau = T + tied N at sticking nodes
+        self._drag[open_] = -coupling[open_]  # a unit of N comes with this T at open nodes
         rates[n : 2 * n] += self._tied * rates[:n]
 
     def refresh(self, asked: int, updates: int) -> None:
-        """Bring the block of the column `asked` up to the last whole chunk of the updates."""
+        """Compute the block of the column `asked`, or bring it up to the last whole chunk of the updates.
+
+        `updates` is the number of all updates so far.
+        """
         tableau = self.tableau
         block = asked // WIDTH
         slots = np.arange(block * WIDTH, min((block + 1) * WIDTH, tableau.matrix.shape[1]))
@@ -103,7 +121,11 @@ class Columns:
         tableau.fresh[block] = end
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
-        """The product (2n+3,) of the tableau and `given` (2n+3,), zero-rate variables and forces out of balance."""
+        """The product (2n+3,) of the tableau and the vector `given` (2n+3,).
+
+        `given` holds the zero-rate variables, then the three forces out of balance. `updates` is the number of all
+        updates so far.
+        """
         system, basis, n = self._system, self._basis, self._system.grid.size
         tractions = np.zeros(2 * n)
         tractions[basis.others] = given[basis.others]
@@ -118,7 +140,7 @@ class Columns:
         return values[:, 0]
 
     def _compute(self, slots: np.ndarray, values: np.ndarray) -> None:
-        """Columns `slots` before any update."""
+        """Fill `values` with the columns `slots` before any update."""
         basis, position = self._basis, self._position[slots]
         held, given = np.flatnonzero(position >= 0), np.flatnonzero(position < 0)
         stacked, count = np.empty((self._order.size, slots.size), order="F"), basis.count + 3
@@ -129,7 +151,10 @@ class Columns:
         self._spread(stacked, values)
 
     def _spread(self, stacked: np.ndarray, values: np.ndarray) -> None:
-        """All dependent variables, into `values`, from the unknowns and, below them, the displacement of the others."""
+        """Fill `values` with all dependent variables.
+
+        `stacked` holds the unknowns and, below them, the displacement of the others.
+        """
         n = self._system.grid.size
         np.take(stacked.T, self._order, axis=1, out=values.T, mode="clip")  # by rows of the transposed: contiguous
         values[n : 2 * n] += self._tied[:, None] * values[:n]
@@ -137,22 +162,26 @@ class Columns:
     def _update(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> None:
         """Apply the updates from `begin`, a multiple of CHUNK, to `end` to the columns `values`.
 
-        `units` (end-begin, k) are the zero-rate variables that they are the responses to, in the slots of the updates.
-        First the factors of the updates, from the rows that they take, then all updates in one product.
+        The columns are responses to zero-rate variables. `units` (end-begin, k) holds these variables in the slots of
+        the updates. First come the factors of the updates, from the rows that the updates take. Then one product
+        applies all updates.
         """
         tableau = self.tableau
         factors = np.where(tableau.source[begin:end, None] >= 0, values[tableau.source[begin:end]], 0.0)
         factors = np.asfortranarray(factors + tableau.delta[begin:end, None] * units)
         for first in range(begin, end, CHUNK):
             chunk = slice(first, min(first + CHUNK, end))
-            taken, now = self._taken(chunk), slice(first - begin, chunk.stop - begin)
-            add_product(factors[now], taken[:, begin:first], factors[: first - begin])
-            # what the updates of the chunk itself make of the rows that later ones of them take
-            factors[now] = blas.dtrsm(1.0, -taken[:, first:], factors[now], lower=1, diag=1)
+            taken, rows = self._taken(chunk), slice(first - begin, chunk.stop - begin)
+            add_product(factors[rows], taken[:, begin:first], factors[: first - begin])
+            # Updates of the chunk change the rows that later updates of the same chunk take.
+            factors[rows] = blas.dtrsm(1.0, -taken[:, first:], factors[rows], lower=1, diag=1)
         add_product(values, tableau.left[:, begin:end], factors)
 
     def _taken(self, chunk: slice) -> np.ndarray:
-        """The rows of ``left`` that the updates of a chunk take, up to themselves; kept for whole chunks."""
+        """The rows of ``left`` that the updates of a chunk take, up to the end of the chunk.
+
+        The rows of whole chunks are stored for later.
+        """
         number, tableau = chunk.start // CHUNK, self.tableau
         if number < len(self._rows):
             return self._rows[number]

@@ -1,4 +1,4 @@
-"""One history to follow: start it, continue it, branch from it."""
+"""A task is one history to follow: from no load, from a corner, or from the end of another history."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A history to follow, and how. Problem, history, options and grid are checked together.
+    """A history to follow, with its options. Problem, history, options and grid are checked together.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Task:
     history : LoadHistory or sequence of dicts
     options : SolveOptions
     grid : Grid, optional
-        The nodes themselves; ``options.nodes`` is then not used.
+        A ready grid. ``options.nodes`` is then not used.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)`` now and then.
     stops : frozenset of int
@@ -49,7 +49,7 @@ class Task:
     Raises
     ------
     InputError
-        Naming the field that can't be used.
+        If a field can't be used. The error names the field.
     """
 
     problem: Problem
@@ -75,7 +75,14 @@ class Task:
     def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
         """Follow the history from no load, on the first grid that is wide enough.
 
-        With `beyond`, a grid that proved too narrow, only the candidates after that one are tried.
+        `beyond` is a grid that was too narrow in an earlier run. With it only the candidates after this grid are tried.
+
+        Raises
+        ------
+        SolveError
+            If the history can't be followed to its end.
+        Interrupted
+            After Ctrl-C.
         """
         with deferred_interrupts() as request, _one_blas_thread():
             progress = self._stoppable_progress(request)
@@ -93,16 +100,16 @@ class Task:
                     if self.options.arc is not None or given is not None:
                         raise
                     log.info("the contact reaches an end of the arc: once more on a wider one")
-        raise ArcError(CUT_OFF)  # the grid `beyond` is none of the candidates here and now
+        raise ArcError(CUT_OFF)  # the grid `beyond` is none of the present candidates
 
     def grids(self, progress: Progress | None = None) -> Iterator[Grid]:
-        """The given grid, or candidates to try until the contact stays clear of the ends."""
+        """Yield the given grid, or candidates to try until the contact keeps clear of the ends of the arc."""
         nodes, arc = self.options.nodes, self.options.arc
         if self.grid is not None:
             yield self.grid
         elif arc is None:
             yield from candidate_grids(self.problem, self.history.distinct(), self.force, nodes, progress)
-        elif arc[1] - arc[0] >= 2.0 * np.pi:
+        elif self.options.is_full_turn:
             yield Grid.circle(nodes, arc[0])
         else:
             yield Grid.arc(arc[0], arc[1], nodes)
@@ -113,12 +120,24 @@ class Task:
         return reference_force(self.problem, self.history.distinct())
 
     def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
-        """Continue the history from a corner where another run stood, on its grid."""
+        """Continue the history from a corner that another run reached, on the grid of that run.
+
+        Raises
+        ------
+        SolveError, Interrupted
+            See :meth:`follow`.
+        """
         with deferred_interrupts() as request, _one_blas_thread():
             self._follow_on(grid, start.force, recorder, start, self._stoppable_progress(request))
 
     def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
-        """Follow the history from the end of another one, on its grid."""
+        """Follow the history from the end of another history, on the grid of that history.
+
+        Raises
+        ------
+        SolveError, Interrupted
+            See :meth:`follow`.
+        """
         try:
             self.go_on(recorder, start.elsewhere(), grid)
         except ArcError as error:
@@ -126,14 +145,20 @@ class Task:
             raise
 
     def reach(self, start: Restart, grid: Grid) -> Restart:
-        """Follow the history from a corner to its end, keep no states, and return the restart there."""
+        """Follow the history from a corner to its end, keep no states, and return the restart at the end.
+
+        Raises
+        ------
+        SolveError, Interrupted
+            See :meth:`follow`.
+        """
         with deferred_interrupts() as request, _one_blas_thread():
             return self._follow_on(grid, start.force, None, start, self._stoppable_progress(request)).restart()
 
     def _follow_on(
         self, grid: Grid, force: float, recorder: Recorder | None, start: Restart | None, progress: Progress
     ) -> Run:
-        """Follow the history on one grid."""
+        """Follow the history on one grid, from `start` or from no load."""
         system = System.build(self.problem, grid, force)
         run = Run(self.history, system, self.options, recorder, progress, start, self.stops)
         if recorder is not None:
@@ -142,7 +167,7 @@ class Task:
         return run
 
     def _stoppable_progress(self, request: StopRequest) -> Progress:
-        """The progress callable of a run. It stops the run after Ctrl-C."""
+        """The progress callable of a run. After Ctrl-C it raises Interrupted, which stops the run."""
 
         def progress(done: float, total: int) -> None:
             if request.stop:
@@ -185,9 +210,11 @@ def check_start(problem: Problem, start: Result) -> None:
 
 
 def reference_force(problem: Problem, values: np.ndarray) -> float:
-    """The force F, N/m, in which a history is made dimensionless: its largest load, rounded up.
+    """The reference force F of a history, N/m: its largest load, rounded up.
 
-    It is R/beta* times a power of two, so that no bit of a result depends on it.
+    It is R/beta* times a power of two, so that no bit of a result depends on it. A moment M counts as M/R. Remote
+    stresses times R count only where no force and no moment acts. `values` are the loads at the corners, SI, shape
+    (corners, loads).
     """
     radius = problem.hole_radius
     pin = float(np.hypot(values[:, P], values[:, Q]).max())
@@ -199,7 +226,10 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
 
 
 def _one_blas_thread() -> AbstractContextManager[Any]:
-    """One thread for BLAS: results don't depend on the number of cores. Large products have two (products.py)."""
+    """A context with one thread for BLAS, so that results don't depend on the number of cores.
+
+    Large products have two threads all the same (kernels/products.py).
+    """
     return _blas_libraries().limit(limits=1, user_api="blas")
 
 

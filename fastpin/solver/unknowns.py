@@ -1,7 +1,7 @@
-"""The linear systems of given statuses: the unknown tractions and the pin's motion, ready to be solved.
+"""The linear systems of given statuses, ready to be solved for the unknown tractions and the pin's motion.
 
-Unknown are N where the contact is closed and T where it sticks; where it slips T = -sigma mu N is eliminated. The rows
-are those of the gap and of the slip at the same nodes, and three of equilibrium.
+N is unknown at closed nodes, and T at sticking nodes. At slipping nodes T = -sigma mu N is eliminated. The equations
+are the gaps at the nodes with an unknown N, the slips at the nodes with an unknown T, and three of equilibrium.
 """
 
 from __future__ import annotations
@@ -17,26 +17,28 @@ from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
 
 SINGULAR = 1e-13
-"""A system whose reciprocal condition number is below this is a mechanism."""
+"""Smallest reciprocal condition number. A system below it is a mechanism."""
 
 MOST_RESIDUAL = 1e-10
-"""Of a fast inverse; with more, a factorisation takes its place."""
+"""Largest residual of a fast inverse. Above it a factorisation takes its place."""
 
 LEAST_NEIGHBOURS = 128
-"""Sets of fewer nodes are factored, which is as fast."""
+"""Smallest number of nodes for a fast inverse. With fewer nodes a factorisation is as fast."""
 
 
 class Unknowns:
-    """The unknown tractions of given statuses, and what they do at the other rows.
+    """The unknown tractions of given statuses, and the displacement that they cause in all rows.
 
     Attributes
     ----------
     rows : ndarray of int, shape (count,)
-        The unknowns among (N, T), and as well their equations among (h, s).
-    others : ndarray of int
+        Rows of the unknowns among (N, T). The same rows among (h, s) are their equations.
+    others : ndarray of int, shape (2n-count,)
         All other rows.
     normal, tangential : ndarray of int
-        Nodes with an unknown N, and with an unknown T.
+        Nodes with an unknown N, and nodes with an unknown T.
+    count : int
+        Number of unknown tractions.
     """
 
     def __init__(self, system: System, status: np.ndarray) -> None:
@@ -47,10 +49,10 @@ class Unknowns:
         self.rows = np.r_[self.normal, n + self.tangential]
         self.others = np.setdiff1d(np.arange(2 * n), self.rows)
         self.count = self.rows.size
-        self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where slipping
+        self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where it slips
 
     def columns(self, matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Columns of `matrix` (given `rows`) for the unknown tractions, friction eliminated."""
+        """The `rows` of `matrix`, with one column for each unknown traction, friction eliminated."""
         result = matrix[np.ix_(rows, self.rows)]
         slipping = np.flatnonzero(self._coupling[self.normal])
         nodes = self.normal[slipping]
@@ -58,7 +60,7 @@ class Unknowns:
         return result
 
     def expand(self, unknowns: np.ndarray) -> np.ndarray:
-        """All tractions (2n,) from the unknown ones."""
+        """All tractions (2n,) from the unknowns (count+3,)."""
         tractions = np.zeros(2 * self._coupling.size)
         tractions[self.rows] = unknowns[: self.count]
         slipping = np.flatnonzero(self._coupling)
@@ -70,16 +72,19 @@ class Unknowns:
         raise NotImplementedError
 
     def rates(self, load_rate: np.ndarray) -> np.ndarray:
-        """Rates (count+3,) of the unknowns while the load changes and the statuses do not."""
+        """Rates (count+3,) of the unknowns while the load changes and the statuses stay."""
         system = self._system
         return self.solve(np.r_[-(system.loads @ load_rate)[self.rows], system.forces @ load_rate])
 
     def displacement(self, unknowns: np.ndarray) -> np.ndarray:
-        """Gap and slip (2n,) that the unknowns (count+3,) make."""
+        """Gap and slip (2n,) that the unknowns (count+3,) cause."""
         return self._system.operator @ self.expand(unknowns) + self._system.motion @ unknowns[-3:]
 
     def at_others(self, unknowns: np.ndarray, acting: np.ndarray) -> np.ndarray:
-        """Displacement of the others from the unknowns (count+3, k), added to `acting` (2n-count, k)."""
+        """Displacement of the others from the unknowns (count+3, k), added to `acting` (2n-count, k).
+
+        `acting` may be overwritten.
+        """
         others = np.asfortranarray(acting)
         add_product(others, self._tied, unknowns)
         return others
@@ -94,9 +99,9 @@ class Unknowns:
         return result
 
     def unit_responses(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement (2n, k) and resultants (3, k) of tractions of size one among the others.
+        """Displacement (2n, k) and resultants (3, k) of unit tractions in the rows `slots` among the others.
 
-        With a `coupling` other than zero the slot is a pressure N that comes with a shear coupling N.
+        Where `coupling` (k,) is not zero, the slot is a pressure N, and a shear coupling N comes with it.
         """
         system, pairs = self._system, np.flatnonzero(coupling)
         shears = self._coupling.size + slots[pairs]
@@ -107,7 +112,7 @@ class Unknowns:
 
 
 class DenseUnknowns(Unknowns):
-    """Any statuses, by a factorisation. ``singular`` if the closed nodes can't hold the pin."""
+    """The unknowns of any statuses, by a factorisation. ``singular`` if the closed nodes can't hold the pin."""
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
@@ -116,7 +121,7 @@ class DenseUnknowns(Unknowns):
         matrix[:-3, -3:] = system.motion[self.rows]
         matrix[-3:, :-3] = self.columns(system.equilibrium, np.arange(3))
         matrix[-3:, -3:] = system.motion_rows
-        # Unknown forces instead of tractions: entries are then of order one, and the condition number means something.
+        # The unknowns are forces, not tractions: entries are then of order one, and the condition number has a meaning.
         self._width = float(system.weights.mean())
         matrix[:, :-3] /= self._width
         norm = float(np.abs(matrix).sum(axis=0).max())
@@ -133,30 +138,32 @@ class DenseUnknowns(Unknowns):
         return unknowns
 
     def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for units of the gap or slip at rows[positions]."""
+        """Unknowns (count+3, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
         right = np.zeros((self.count + 3, positions.size), order="F")
         right[positions, np.arange(positions.size)] = 1.0
         unknowns = self.solve(right)
         return unknowns, self.at_others(unknowns, np.zeros((self.others.size, positions.size)))
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
+        """Unknowns (count+3, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
         acting, balance = self.unit_responses(slots, coupling)
         unknowns = self.solve(-np.concatenate([acting[self.rows], balance]))
         return unknowns, self.at_others(unknowns, acting[self.others])
 
 
 class StickingRun(Unknowns):
-    """Neighbours on equally spaced nodes that all stick: a block Toeplitz matrix, inverted in O(n^2).
+    """The unknowns of neighbouring, equally spaced nodes that all stick, by a fast inverse.
 
-    The three motions and conditions of equilibrium are added by the complement that they leave.
+    Their matrix is block Toeplitz. Its inverse takes O(n^2) operations. The three motions and the three conditions of
+    equilibrium are added by their Schur complement. ``singular`` if the nodes can't hold the pin, or if the inverse
+    has lost its digits.
     """
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
         n, m = system.grid.size, self.normal.size
         operator, end = system.operator, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
-        self._entries = np.zeros((3, n))  # by distance; that of the two ends of an arc is not needed
+        self._entries = np.zeros((3, n))  # by distance; the largest one of an arc is not needed
         self._entries[:, : n - end] = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
         self._core = toeplitz.inverse(*self._entries[:, :m])
         motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
@@ -171,7 +178,11 @@ class StickingRun(Unknowns):
 
     @classmethod
     def of(cls, system: System, status: np.ndarray) -> StickingRun | None:
-        """The set of given statuses; None if they or the grid are not of this kind."""
+        """The unknowns of given statuses; None if statuses or grid do not allow the fast inverse.
+
+        It takes friction, a uniform grid, and at least :data:`LEAST_NEIGHBOURS` closed nodes. They must lie side by
+        side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open.
+        """
         closed, n = np.flatnonzero(status != OPEN), system.grid.size
         if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
             return None
@@ -180,8 +191,8 @@ class StickingRun(Unknowns):
         low, last = closed[0], closed[-1]
         if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):
             return None
-        found = cls(system, status)
-        return None if found.singular else found
+        unknowns = cls(system, status)
+        return None if unknowns.singular else unknowns
 
     @cached_property
     def _beside(self) -> toeplitz.NeighbourResponses:
@@ -189,20 +200,20 @@ class StickingRun(Unknowns):
 
     @cached_property
     def _responses(self) -> np.ndarray:
-        """The core times the columns of the others, shape (count, 2n-count).
+        """The inverse ``_core`` times the columns of the others, shape (count, 2n-count).
 
-        Those of half hats at the ends of an arc stand for whole ones: these nodes never close.
+        At the ends of an arc the hats are halves, but the columns are computed for whole hats: these nodes never close.
         """
         return self._beside.responses()
 
     @cached_property
     def _complement(self) -> np.ndarray:
-        """Displacement of the others for units of their tractions, the set held."""
+        """Displacement of the others for unit tractions on them, while the sticking nodes are held."""
         return self._beside.complement()
 
     @cached_property
     def _tied_motion(self) -> np.ndarray:
-        """Displacement of the others when the pin moves and the tractions keep the set where it is."""
+        """Displacement of the others when the pin moves and tractions hold the sticking nodes in place."""
         motion = self._system.motion
         return motion[self.others] - self._responses.T @ motion[self.rows]
 
@@ -211,26 +222,26 @@ class StickingRun(Unknowns):
         return self._moving(self._core @ right[:-3], right[-3:])
 
     def held_columns(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns (count+3, k), and displacement of the others, for units of the gap or slip at rows[positions]."""
+        """Unknowns (count+3, k), and displacement of the others, for a unit gap or slip at each rows[positions]."""
         unknowns = self._moving(self._core[positions].T, np.zeros((3, positions.size)))  # the core is symmetric
         return unknowns, self._responses[positions].T + self._tied_motion @ unknowns[-3:]
 
     def given_columns(self, slots: np.ndarray, coupling: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Likewise for units of the tractions `slots` (see :meth:`loaded`)."""
+        """Unknowns (count+3, k), and displacement of the others, for unit tractions (see :meth:`unit_responses`)."""
         acting, balance = self.unit_responses(slots, coupling)
         places, pairs = np.searchsorted(self.others, slots), np.flatnonzero(coupling)
         shears = np.searchsorted(self.others, self._coupling.size + slots[pairs])
         free = -self._responses[:, places]
         free[:, pairs] -= coupling[pairs] * self._responses[:, shears]
         unknowns = self._moving(free, -balance)
-        if self.count < self.others.size:  # a small set: the product is the smaller effort
+        if self.count < self.others.size:  # few sticking nodes: the product takes less time
             return unknowns, self.at_others(unknowns, acting[self.others])
         others = self._complement[:, places]
         others[:, pairs] += coupling[pairs] * self._complement[:, shears]
         return unknowns, others + self._tied_motion @ unknowns[-3:]
 
     def _moving(self, free: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """Tractions and motion from the tractions `free` without motion and the forces that are wanted."""
+        """Tractions and motion (count+3, ...) for the resultants `forces`. `free` are the tractions without motion."""
         motion = self._small @ (forces - self._equilibrium @ free)
         result = np.empty((self.count + 3, *free.shape[1:]), order="F")
         result[:-3] = free
@@ -239,17 +250,17 @@ class StickingRun(Unknowns):
         return result
 
     def _probe(self) -> float:
-        """Residual of one solve, from the matrices."""
-        wanted, system = np.cos(np.arange(self.count + 3.0)), self._system
-        found = self.solve(wanted)
-        balance = system.equilibrium @ self.expand(found) + system.motion_rows @ found[-3:]
-        return float(np.abs(np.r_[self.displacement(found)[self.rows], balance] - wanted).max())
+        """Largest residual of one solve, from the matrices."""
+        right, system = np.cos(np.arange(self.count + 3.0)), self._system
+        unknowns = self.solve(right)
+        balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[-3:]
+        return float(np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max())
 
 
 def solvable_unknowns(system: System, status: np.ndarray) -> StickingRun | DenseUnknowns | None:
-    """The system of given statuses, solved in the fastest way; None if the closed nodes can't hold the pin."""
-    stuck = StickingRun.of(system, status)
-    if stuck is not None:
-        return stuck
-    factored = DenseUnknowns(system, status)
-    return None if factored.singular else factored
+    """The unknowns of given statuses, by the fastest way to solve for them; None if the nodes can't hold the pin."""
+    sticking = StickingRun.of(system, status)
+    if sticking is not None:
+        return sticking
+    dense = DenseUnknowns(system, status)
+    return None if dense.singular else dense

@@ -1,4 +1,4 @@
-"""One state of the contact, and the quantities that are read from it.
+"""States of the contact, and the quantities that are read from a state.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

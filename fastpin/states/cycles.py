@@ -1,4 +1,4 @@
-"""Changes that one load cycle leaves behind."""
+"""Changes of the contact over a load cycle."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from typing import NamedTuple
 
 
 class Cycle(NamedTuple):
-    """What a cycle of a load history has changed, from its beginning to its end.
+    """The changes of the contact over one cycle of a load history, from beginning to end.
 
     Attributes
     ----------
     corner : int
         Index of the corner at which the cycle ends.
     length : int
-        Corners of the cycle.
+        Number of corners of the cycle.
     number : int
-        How many times its block has been run through: 1 for the first cycle.
+        How many times the block of the cycle has been run through: 1 for the first cycle.
     pressure_change, shear_change : float
-        Largest difference of the tractions at a node, relative to the largest pressure; 0 where the contact is
-        periodic. NaN where it is not known, because the cycle began before the history.
+        Largest change of the traction at a node over the cycle, relative to the largest pressure. 0 means that the
+        contact is periodic. NaN means that the change is unknown, because the cycle began before the history.
     dissipation : float
-        Energy dissipated by friction in this cycle, J/m.
+        Energy dissipated by friction in this cycle, J/m; NaN as above.
     rotation_change : float
-        By how much the pin has turned (ratcheting), rad, counter-clockwise.
+        Rotation of the pin over the cycle (ratcheting), rad, counter-clockwise; NaN as above.
     solved : bool
-        False where the cycle was known from before and not solved again.
+        False if the cycle repeats an earlier one and was not solved again.
     """
 
     corner: int
@@ -39,14 +39,39 @@ class Cycle(NamedTuple):
 
 
 def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
-    """The first of the cycles from which on all left the tractions the same, to rounding; None if there is none."""
+    """The first cycle from which on no cycle changes the tractions, to rounding.
+
+    Parameters
+    ----------
+    cycles : sequence of Cycle
+        In the order of their ends.
+
+    Returns
+    -------
+    Cycle or None
+        None if the last cycle still changes a traction, or if there are no cycles.
+    """
     same = [cycle.pressure_change == 0.0 and cycle.shear_change == 0.0 for cycle in cycles]
     changing = max((k for k, steady in enumerate(same) if not steady), default=-1)
     return cycles[changing + 1] if changing + 1 < len(cycles) else None
 
 
 def consecutive_cycles(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
-    """Cycles that follow on one another, block by block."""
+    """Group the cycles into runs of consecutive cycles of one block.
+
+    Two cycles are consecutive if they have the same length, their numbers follow on each other, and the second one
+    begins at the corner where the first one ends.
+
+    Parameters
+    ----------
+    cycles : sequence of Cycle
+        In the order of their ends.
+
+    Returns
+    -------
+    list of list of Cycle
+        The runs, in the order of their first cycles.
+    """
     found: list[list[Cycle]] = []
     latest: dict[int, list[Cycle]] = {}
     for cycle in cycles:

@@ -1,8 +1,8 @@
-"""Error bars of a state from the same load on a grid with half the intervals.
+"""Error bars of a state, from the same load on a grid with half the intervals.
 
-The bar of a quantity is Roache's grid convergence index of two grids, for an assumed order of one
-(:func:`fastpin.extrapolate.pair_bar`), and a floor for what happens to be the same on both grids. The constants below
-are all there is to choose; ``scripts/error_bars.py`` counts how often the bars hold (docs/convergence.md).
+The bar of a quantity is a sum of two terms. The first is Roache's grid convergence index of two grids, for an assumed
+order of one (:func:`pair_bar`). The second is a floor, because two values may agree by chance. The constants below are
+the only free choices. ``scripts/error_bars.py`` counts how often the bars hold (docs/convergence.md).
 """
 
 from __future__ import annotations
@@ -18,14 +18,22 @@ from fastpin.states.quantities import QUANTITIES, intervals, matching_values, qu
 from fastpin.states.state import State
 
 ORDER = 1.0
-"""The order that is assumed: that of borders beside older ones. All else has 1.5 to 2, with some scatter."""
+"""Assumed order of convergence.
+
+Stick-slip borders beside older borders converge with this order. All other quantities have 1.5 to 2, with some scatter.
+"""
 
 PEAK_FLOORS = 1.0, 0.2
-"""Of a peak that is read at a node, and between nodes, in parts of what the traction falls by from there to the lower
-one of the two nodes beside it."""
+"""Floors of a peak that is read at a node, and of a peak that is read between nodes.
+
+The unit is the drop of the traction from the peak to the lower one of the two neighbouring nodes.
+"""
 
 PLACE_FLOOR, PEAK_PLACE_FLOOR = 0.2, 1.0
-"""Of each end of an interval, also in a width, and of the angle of a peak, in parts of the node distance."""
+"""Floors of each end of an interval, and of the angle of a peak, in node distances.
+
+A width has the floor of each of its ends.
+"""
 
 FLOORS = {
     "shear_magnitude": 4.0,
@@ -35,33 +43,47 @@ FLOORS = {
     "displacement": 0.1,
     "energy": 0.06,
 }
-"""Of all else, by name or kind, in parts of its size (:func:`fastpin.quantities.size`) over the square of the number of
-nodes in contact. int |T| has kinks at earlier borders and where the sign changes."""
+"""Floors of all other quantities, by name or kind.
+
+The unit is the size of the quantity (:func:`fastpin.states.quantities.size`) over the square of the number of nodes in
+contact. The floor of int |T| is large: |T| has kinks at earlier borders and where the sign of T changes.
+"""
 
 ROUNDING = 1e-11
-"""What is the same on both grids to so small a part of its size is so by symmetry or equilibrium, and has no floor."""
+"""Largest relative difference of two equal values, in parts of the size of the quantity.
+
+Values this close are equal by symmetry or equilibrium. Their bar is this rounding, without a floor.
+"""
 
 MAY_BE_EXACT = ("force", "moment", "rotation", "displacement")
-"""Kinds of which this is true. Places that are read at nodes of both grids agree without being exact."""
+"""Kinds of quantities whose values may be exact, by symmetry or equilibrium.
+
+Angles and widths are not among them: ends that are read at nodes of both grids agree without being exact.
+"""
 
 LEAST_COARSE = 51
-"""Nodes of the coarse grid."""
+"""Least number of nodes of the coarse grid."""
 
 SAME_TOP = 1.5
-"""Node distances from a peak within which a local maximum of the nodal values is the peak itself."""
+"""Reach of a peak, in node distances. A local maximum of the nodal values within this reach is the peak itself."""
 
 
 def bars(state: State, coarse: State) -> dict[str, float]:
     """Error bars of all quantities of a state, in their units, angles in rad.
 
-    The true value, that of ever finer grids, lies within a bar in some 95 of 100 cases. NaN belongs to a quantity that
-    is NaN, inf to one that the coarse grid has nothing to compare with: the ends of zones that are not as many there.
-    The angle of a peak that is as high elsewhere, within its bar, has a bar that reaches there.
+    The true value is the limit on ever finer grids. It lies within the bar in some 95 of 100 cases. If the traction is
+    as high as the peak at another place, to within the bar of the peak, the bar of the angle reaches to that place.
 
     Parameters
     ----------
     state, coarse : State
-        At the same load, `coarse` on a grid with about twice the node distance.
+        States at the same load; the grid of `coarse` has about twice the node distance.
+
+    Returns
+    -------
+    dict of str to float
+        Bars >= 0 by the names of :func:`fastpin.states.quantities.values`. NaN if the quantity is NaN. inf if the
+        coarse state has no value to compare: the ends of zones whose number differs between the two states.
     """
     mine, theirs = values(state), matching_values(state, coarse)
     found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
@@ -89,7 +111,7 @@ def _bar(name: str, value: float, other: float, state: State) -> float:
 
 
 def _floor(name: str, state: State) -> float:
-    """What a bar is at least, where the values of the two grids are no guide."""
+    """Floor of the bar of a quantity, added to the grid convergence index: the two values may agree by chance."""
     closed = max(1, int(np.count_nonzero(state.pressure)))
     kind = quantity(name).kind
     if name in ("peak_pressure", "peak_shear"):
@@ -112,12 +134,15 @@ def spacing(state: State) -> float:
 
 
 def _ends(state: State, zone: str) -> int:
-    """The number of ends that the width of a zone depends on; where there is no zone there may be one between nodes."""
+    """The number of interval ends that the width of a zone depends on.
+
+    Without any zone it is 2: there may be a zone between two nodes.
+    """
     return 2 * len(intervals(state, zone)) if getattr(state, zone) else 2
 
 
 def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
-    """Nodes with a local maximum of a traction that may be the largest one."""
+    """Indices of nodes with a local maximum of `traction` within twice the bar of the largest value."""
     before, after = np.roll(traction, 1), np.roll(traction, -1)
     if not state.grid.closed:
         before[0] = after[-1] = 0.0
@@ -126,23 +151,38 @@ def _as_high(state: State, traction: np.ndarray, bar: float) -> np.ndarray:
 
 
 SAFETY = 1.25
+"""Safety factor of Roache's grid convergence index."""
 
 
 def pair_bar(fine: float, coarse: float, order: float, ratio: float = 2.0) -> float:
-    """Roache's grid convergence index of two grids: the error bar of the fine value for an order that is assumed.
+    """Roache's grid convergence index of two grids: the error bar of the fine value for an assumed order.
 
-    `ratio` is that of the spacings, coarse to fine.
+    The bar is 1.25 |fine - coarse| / (ratio^order - 1), in the unit of the values.
+
+    Parameters
+    ----------
+    fine, coarse : float
+        Values of one quantity on the two grids.
+    order : float
+        Assumed order of convergence, positive.
+    ratio : float
+        Node distance of the coarse grid over the node distance of the fine one, above 1.
     """
     return SAFETY * abs(fine - coarse) / (ratio**order - 1.0)
 
 
 class ErrorBars(Mapping[str, float]):
-    """Error bars of one state, computed when they are first read; see :func:`bars`.
+    """The error bars of one state by name, computed when first read; see :func:`bars`.
 
     Parameters
     ----------
     state, coarse : State
-        At the same load, `coarse` on a grid with half the intervals.
+        States at the same load; the grid of `coarse` has half the intervals.
+
+    Attributes
+    ----------
+    coarse : State
+        The state on the coarse grid.
     """
 
     def __init__(self, state: State, coarse: State) -> None:

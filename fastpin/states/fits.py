@@ -1,12 +1,14 @@
-"""Where a traction falls to zero, and how high its cusps and corners are, fitted between the nodes.
+"""Least-squares fits between the nodes: zeros, cusps and corners of a traction.
 
-Beside a contact edge N = x^a (c0 + c1 x + ...), with the distance x from the edge; beside a stick-slip border the same
-holds inside the stick zone for mu N - |T|. The exponent a is 1/2, or a little off it where bodies are unlike: (T21),
-(T26). What nodes have there is off by two parts: one that changes sign from node to node and is gone after some four of
-them, and one that falls like x^(a - 2). The first is left out, the second is fitted with the rest.
+Beside a contact edge N = x^a (c0 + c1 x + ...), where x is the distance from the edge. Inside a stick zone, beside its
+border, mu N - |T| has the same form. The exponent a is 1/2 for like bodies. For unlike bodies it is a little off 1/2:
+(T21), (T26).
 
-How many nodes can be taken, and how many terms, depends on what else is near: other borders, and kinks that earlier
-ones have left. So a small set of windows and shapes is tried, and the fit with the smallest standard error is taken.
+The nodal values beside an edge have two errors. One changes sign from node to node and is gone after some four nodes:
+these nodes are left out. The other falls like x^(a - 2): it is fitted together with the power series.
+
+The best number of nodes and of terms depends on the neighbourhood: other borders, and kinks that earlier borders left.
+So each fit tries a small set of windows and shapes and takes the one with the smallest standard error.
 """
 
 from __future__ import annotations
@@ -21,61 +23,105 @@ from dataclasses import dataclass
 import numpy as np
 
 SPARE = 4
-"""Nodes of a window beyond the unknowns, at least."""
+"""Least number of nodes of a window beyond the number of unknowns."""
 
 EDGE_WINDOWS = ((2, 6), (2, 8), (2, 11), (2, 15), (2, 21), (6, 8), (6, 11), (6, 15), (6, 21), (6, 30), (6, 42), (6, 60),
                 (6, 84), (6, 120))  # fmt: skip
-"""Nodes beside an edge that are left out, and nodes of a window to try."""
+"""Windows to try beside an edge: the number of nodes left out at the edge, and the number of nodes used."""
 
 EDGE_ENDS = sorted(first + nodes for first, nodes in EDGE_WINDOWS)
-EDGE_NEAREST = (2, 6)  # the window that has to agree with the others, on a parabola
+"""Numbers of nodes from the edge to the end of each window, increasing."""
+
+EDGE_NEAREST = (2, 6)
+"""The window of the nearest nodes. Its fit is a parabola, and the other fits must agree with it."""
+
 EDGE_AGREEMENT = 0.12
-"""Largest difference from the place that the nearest nodes give, in node distances."""
+"""Largest distance of a fitted edge from the edge of the nearest window, in node distances."""
 
 EDGE_NEAREST_ERROR = 0.3
-"""Largest standard error with which that place is taken where no other fit agrees with it."""
+"""Largest standard error, in node distances, of the edge of the nearest window if no other fit agrees with it."""
 
 EDGE_INSIDE = 0.25
-"""How far inside the outermost node an edge may be found, in node distances."""
+"""Largest distance of an edge inside the outermost closed node, in node distances."""
 
 EDGE_LEAST = 10
-"""Nodes that may be used of a zone with so many or a little more; of a larger one the outer half."""
+"""Number of nodes that a fit may use in a small zone, all but one node at most.
+
+In a zone of more than twice this number of nodes, it is the outer half.
+"""
 
 EDGE_DEGREES = (1, 2, 3, 4)
+"""Degrees of the polynomial to try."""
+
 EDGE_LONG, EDGE_FAR = 15, 6
-"""Nodes from which on a straight line is not tried, nor, behind so many nodes left out, a fit without decaying part."""
+"""Limits of the simplest fits.
+
+A window of EDGE_LONG or more nodes is not fitted with a straight line. If EDGE_FAR nodes are left out as well, it is
+not fitted without the decaying part.
+"""
 
 EDGE_ERROR = 0.1
-"""Largest standard error of an edge, in node distances; with a larger one the two outermost nodes tell it."""
+"""Largest standard error of a fitted edge, in node distances. A fit with a larger one is not taken."""
 
 HALF_WIDTHS = (8, 12, 18, 27, 40, 60)
-"""Nodes on either side of a border or a corner, in the windows to try."""
+"""Windows to try about a border or a corner: the number of nodes on either side."""
 
 CUSP_WINDOWS = ((8, 2), (12, 4), (18, 4), (27, 6), (40, 6), (60, 6), (90, 6))
-"""The same of a cusp, and the nodes beside it that are left out."""
+"""Windows to try about a cusp: the number of nodes on either side, and the number left out beside the cusp."""
 
 CUSP_SHAPES = ((2, 2, False), (3, 2, False), (4, 3, True), (5, 4, True))
-"""Degree of the polynomial, terms of the cusp, and whether the part that falls like x^(a - 2) is fitted too."""
+"""Shapes to try: degree of the polynomial, terms of the cusp, and whether the part like x^(a - 2) is fitted too."""
 
-CUSP_REACH = 2.0  # node distances from the largest nodal value
+CUSP_REACH = 2.0
+"""Largest distance of a cusp from the node with the largest value, in node distances."""
+
 CUSP_PLACES = 33
-CUSP_REFINED = 8  # of all windows and shapes, those with the smallest standard errors
-CUSP_STEPS = 2  # of the Gauss-Newton method, from the best of these places
+"""Number of equally spaced places, within the reach, at which a cusp is tried first."""
+
+CUSP_REFINED = 8
+"""Number of fits that are refined: the windows and shapes with the smallest standard errors."""
+
+CUSP_STEPS = 2
+"""Steps of the Gauss-Newton method from the best place of each of these fits."""
+
 CUSP_STEP = 1e-4
-BORDER_SHAPES = ((3, 2), (4, 3))  # degree of the polynomial, terms of the cusp
+"""Shift of the place, in node distances, for the derivative by a difference quotient."""
+
+BORDER_SHAPES = ((3, 2), (4, 3))
+"""Shapes to try at a border: degree of the polynomial, terms of the cusp."""
+
 BORDER_SKIPPED = (1, 2, 4)
+"""Numbers of nodes left out on either side of a border."""
+
 BORDER_ERROR = 3e-3
-"""Largest standard error of the bound at a border, relative to its largest value."""
+"""Largest standard error of the bound mu N at a border, relative to the largest bound."""
 
 CORNER_DEGREES = (1, 2, 3, 4)
+"""Degrees of the polynomials to try at a corner."""
+
 CORNER_SKIPPED = (2, 4)
+"""Numbers of nodes left out on either side of a corner."""
+
 CORNER_BEND = 50.0
-"""Least slope on either side over a node distance, in standard errors: only a corner that is at the node has it."""
+"""Least fall from a corner over a node distance, mean of both sides, in standard errors.
+
+Only a corner at the node itself reaches it.
+"""
 
 
 @dataclass(frozen=True)
 class Peak:
-    """A fitted peak: its value, the standard error of that, and its place in node distances from a given point."""
+    """A fitted peak.
+
+    Attributes
+    ----------
+    value : float
+        Height of the peak.
+    error : float
+        Standard error of the value.
+    place : float
+        Distance of the peak from the point x = 0 of the fit, in node distances.
+    """
 
     value: float
     error: float
@@ -83,31 +129,33 @@ class Peak:
 
 
 def _standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
-    """Standard error of a fitted number, a little enlarged where few nodes are left over."""
+    """Standard error of a fitted number, a little enlarged if there are few nodes beyond the unknowns."""
     spare = residual.size - unknowns
     return math.sqrt(float(residual @ residual) / spare) * amplification * (1.0 + 10.0 / spare)
 
 
-# --- edges ----------------------------------------------------------------------------------------------------
-
-
 def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: float, alike: int) -> float:
-    """Where `quantity` falls to zero like a distance to the power `exponent`, near the outermost node theta[0].
+    """Angle at which a quantity falls to zero at the end of a zone, rad.
+
+    The quantity falls like the distance from the edge to the power `exponent`. The edge lies near the outermost node.
 
     Parameters
     ----------
     theta, quantity : ndarray, shape (n,)
-        The nodes of a zone from the outermost one inwards, in either direction, and values there, >= 0.
+        Angles (rad) of the nodes of a zone, from the outermost node inwards, in either direction; and the values at
+        these nodes, >= 0.
     exponent : float
+        Power of the distance, about 1/2: (T21), (T26).
     outside : float
-        Angle of the next node outwards, where the quantity is zero.
+        Angle of the next node outwards, where the quantity is zero, rad.
     alike : int
-        How many nodes there are to the next border inside the zone, where the quantity has a kink.
+        Number of nodes from the outermost one to the next border inside the zone, where the quantity has a kink.
 
     Returns
     -------
     float
-        An angle not beyond `outside`. Where no shape can be made out, that to which the two outermost nodes point.
+        An angle, not beyond `outside`. If no fit is good enough, the zero of the line through the two outermost nodes.
+        A zone of one node ends halfway to `outside`.
     """
     if theta.size == 1:
         return 0.5 * float(theta[0] + outside)
@@ -140,19 +188,23 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
 
 
 def _by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
-    """Where the line through two nodes points, from the first one in node distances; halfway to `low` if inwards."""
+    """Zero of the line through two nodes, in node distances from the first one.
+
+    The line goes through the values to the power 1/`exponent`. If it does not fall outwards, the result is halfway to
+    the next open node at `low`.
+    """
     outer, inner = abs(first) ** (1.0 / exponent), abs(second) ** (1.0 / exponent)
     return max(-outer / (inner - outer), low) if inner > outer else 0.5 * low
 
 
 @dataclass(frozen=True, eq=False)
 class _EdgeFit:
-    """Least squares on one window: a polynomial of the distance, and perhaps a part that falls like its inverse."""
+    """Least squares on one window: a polynomial of the distance, and perhaps a part like the inverse distance."""
 
     nodes: slice
     columns: np.ndarray
     inverse: np.ndarray
-    series: np.ndarray  # of the nodal values: the coefficients of the polynomial's powers
+    series: np.ndarray  # (degree + 1, count): times the nodal values, the coefficients of the polynomial
     amplification: float
 
     @classmethod
@@ -165,7 +217,7 @@ class _EdgeFit:
         return cls(slice(first, first + count), columns, inverse, series, float(np.linalg.norm(series[0])))
 
     def error(self, values: np.ndarray, slope: float) -> float:
-        """Standard error of the root, where the polynomial has this slope."""
+        """Standard error of the root, at which the polynomial has this slope."""
         wanted = values[self.nodes]
         residual = self.columns @ (self.inverse @ wanted) - wanted
         return _standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
@@ -173,7 +225,10 @@ class _EdgeFit:
 
 @dataclass(frozen=True, eq=False)
 class _EdgeDesigns:
-    """All fits that are tried; ``series`` (fits * terms, nodes) gives the coefficients of all their polynomials."""
+    """All fits to try at an edge.
+
+    ``series``, shape (fits * terms, nodes), times the nodal values gives the coefficients of all polynomials.
+    """
 
     fits: list[_EdgeFit]
     series: np.ndarray
@@ -181,7 +236,7 @@ class _EdgeDesigns:
 
 @functools.lru_cache(maxsize=64)
 def _edge_designs(places: bytes) -> _EdgeDesigns:
-    """The fits with the nodes at these distances from the edge; the first is that of the nearest nodes."""
+    """The fits to try for nodes at these distances from the edge. The first one uses the nearest window."""
     x = np.frombuffer(places)
     fits = [_EdgeFit.of(x, *EDGE_NEAREST, 2, False)]
     for first, count in EDGE_WINDOWS:
@@ -197,7 +252,10 @@ def _edge_designs(places: bytes) -> _EdgeDesigns:
 
 
 def _roots(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Roots near 0 of power series, shape (fits, terms), by Newton's method, and the slopes there; NaN without any."""
+    """Roots near 0 of power series, shape (fits, terms), by Newton's method, and the slopes there.
+
+    Both have shape (fits,). A series without a root near 0 has the root NaN.
+    """
     places = np.zeros(series.shape[0])
     slopes = places
     with np.errstate(all="ignore"):
@@ -210,20 +268,23 @@ def _roots(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.where(np.isfinite(places) & (slopes != 0.0), places, np.nan), slopes
 
 
-# --- peaks ----------------------------------------------------------------------------------------------------
-
-
 def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | None:
-    """Largest value on the slip side of a border, beside which the bound mu N has a cusp.
+    """Largest bound mu N on the slip side of a stick-slip border, at which the bound has a cusp.
 
     Parameters
     ----------
     x : ndarray, shape (n,)
-        Distances of the nodes from the border in node distances, increasing; positive where they slip.
+        Distances of the nodes from the border in node distances, increasing; positive on the slip side.
     bound : ndarray, shape (n,)
-        mu N at these nodes.
+        The bound mu N >= 0 at these nodes.
     exponent : float
-        Of the cusp: bound = p(x) on the stick side and p(x) + x^exponent q(x) on the slip side, p and q smooth.
+        Power of the cusp. The bound is p(x) on the stick side and p(x) + x^exponent q(x) on the slip side, where p and
+        q are smooth.
+
+    Returns
+    -------
+    Peak or None
+        None if no fit is good enough, or if the bound still rises at the end of the window.
     """
     best, shape = None, (np.zeros(0), 0, 0)
     for half, taken in _windows(x, itertools.product(HALF_WIDTHS, BORDER_SKIPPED)):
@@ -236,7 +297,7 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
                 best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
     if best is None or best.error > BORDER_ERROR * float(bound.max()):
         return None
-    t = np.linspace(0.0, 1.0, 401)  # the square roots of the distances: most of them are at the border
+    t = np.linspace(0.0, 1.0, 401)  # square roots of the distances, so that the places gather at the border
     coefficients, degree, terms = shape
     fitted = _cusp_columns(-(t**2), exponent, degree, terms) @ coefficients
     top = int(np.argmax(fitted))
@@ -244,19 +305,22 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
         return Peak(float(fitted[0]), best.error, 0.0)
     if top == t.size - 1:
         return None
-    shift, value = _vertex(*(float(each) for each in fitted[top - 1 : top + 2]))
+    shift, value = _vertex(*(float(height) for height in fitted[top - 1 : top + 2]))
     return Peak(value, best.error, best.place * float(t[top] + shift * t[1]) ** 2)
 
 
 def _windows(x: np.ndarray, sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, np.ndarray]]:
-    """Half-width and nodes of the windows about x = 0 that fit in; `sizes`: half-width, and nodes left out beside 0."""
+    """Half-width and nodes of every window about x = 0 that lies inside the range of `x`.
+
+    `sizes` are pairs: the half-width, and the number of nodes left out on either side of 0.
+    """
     for half, skipped in sizes:
         if x[0] <= 0.5 - half and x[-1] >= half - 0.5:
             yield half, (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
 
 
 def _fit_windows(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
-    """Coefficients of a least-squares fit, and the standard error of the first one."""
+    """Coefficients of a least-squares fit, and the standard error of the first coefficient."""
     inverse = np.linalg.pinv(columns)
     coefficients = inverse @ values
     residual = columns @ coefficients - values
@@ -270,26 +334,33 @@ def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np
 
 
 def _vertex(before: float, middle: float, after: float) -> tuple[float, float]:
-    """Place and value of the extreme of a parabola through equally spaced values, from the middle one."""
+    """Place and value of the extreme of the parabola through three equally spaced values.
+
+    The place counts from the middle value, in spacings.
+    """
     bend = before - 2.0 * middle + after
     shift = 0.5 * (before - after) / bend if bend != 0.0 else 0.0
     return shift, middle - 0.25 * (before - after) * shift
 
 
 def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
-    """A cusp that a border has left behind: values = p(x) beyond it and p(x) - |x - place|^exponent q(x) before it.
+    """The cusp that an earlier stick-slip border left behind, near the largest value.
+
+    The values are p(x) beyond the cusp and p(x) - |x - place|^exponent q(x) before it, where p and q are smooth.
 
     Parameters
     ----------
     x : ndarray, shape (n,)
-        Distances of the nodes from the one with the largest value, in node distances, increasing.
+        Distances of the nodes from the node with the largest value, in node distances, increasing.
     values : ndarray, shape (n,)
+        Values at these nodes.
     exponent : float
+        Power of the cusp.
 
     Returns
     -------
     Peak or None
-        None if no cusp is found within two nodes of the largest value.
+        None if no cusp is found within two node distances of the largest value.
     """
     tried: list[tuple[float, int, float, np.ndarray, np.ndarray, tuple[int, int, bool]]] = []
     for _, taken in _windows(x, CUSP_WINDOWS):
@@ -327,7 +398,10 @@ def _left_cusp(x: np.ndarray, place: float, shape: tuple[int, int, bool], expone
 def _cusp_place(
     window: np.ndarray, values: np.ndarray, shape: tuple[int, int, bool], exponent: float
 ) -> tuple[float, float]:
-    """The place that leaves the smallest misfit and about its standard error; infinite at an end of what is tried."""
+    """Approximate standard error of the value of the cusp, and the place with the smallest misfit.
+
+    The error is infinite if this place is an end of the reach.
+    """
     orthogonal, amplification = _cusp_bases(window.tobytes(), shape, exponent)
     left = values - np.einsum("pmk,pk->pm", orthogonal, np.einsum("pmk,m->pk", orthogonal, values))
     misfit = np.einsum("pm,pm->p", left, left)
@@ -341,7 +415,10 @@ def _cusp_place(
 
 @functools.lru_cache(maxsize=256)
 def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> tuple[np.ndarray, float]:
-    """Orthonormal columns for every place to try (places, nodes, unknowns), and how a residual tells on the value."""
+    """Orthonormal columns for every place to try, shape (places, nodes, unknowns), and the amplification of errors.
+
+    The amplification is the norm of the row that gives the value, for a cusp at the middle place.
+    """
     x = np.frombuffer(window)
     places = np.linspace(-CUSP_REACH, CUSP_REACH, CUSP_PLACES)
     columns = np.array([_left_cusp(x, place, shape, exponent) for place in places])
@@ -350,13 +427,19 @@ def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) ->
 
 
 def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
-    """A corner at x = 0, between two smooth branches that fall on both sides.
+    """A corner at x = 0, from which two smooth branches fall on both sides.
 
     Parameters
     ----------
     x : ndarray, shape (n,)
         Distances of the nodes from the corner in node distances, increasing.
     values : ndarray, shape (n,)
+        Values at these nodes.
+
+    Returns
+    -------
+    Peak or None
+        None if the values do not fall on both sides with a clear change of slope.
     """
     best: Peak | None = None
     for half, taken in _windows(x, itertools.product(HALF_WIDTHS, CORNER_SKIPPED)):

@@ -1,4 +1,4 @@
-"""Peaks of pressure and shear, read between the nodes."""
+"""Peaks of pressure and shear traction, read between the nodes."""
 
 from __future__ import annotations
 
@@ -11,31 +11,45 @@ import numpy as np
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
 from fastpin.states import fits
-from fastpin.states.zones import Interval, runs, unrolled
+from fastpin.states.zones import Interval, is_all_round, runs, unrolled
 
 NEAR = 12
-"""Node distances from a border within which the largest shear of unlike bodies belongs to its cusp."""
+"""Reach of the cusp at a stick-slip border of unlike bodies, in node distances.
+
+A largest shear traction within this reach belongs to the cusp.
+"""
 
 RIVAL = 0.8
-"""Part of the largest nodal shear that the nodes beside a border need for its cusp to be a candidate."""
+"""Least nodal shear beside a border, in parts of the largest nodal shear.
+
+With less, the cusp at the border is no candidate for the peak.
+"""
 
 CUSP_RISE = 1.2
-"""Most by which a cusp may be above the largest node, in parts of the drop to the lower node beside that."""
+"""Largest height of a cusp above the largest nodal value.
+
+The unit is the drop from the largest nodal value to the lower one of its two neighbours.
+"""
 
 DROP_NODES = 3
-"""Nodes on either side of the largest one, by whose values a peak at a border is judged."""
+"""Number of nodes on either side of the largest one whose values must be consistent with a peak at a border."""
 
 TIE = 1e-9
-"""Relative difference below which two peaks are equal; the one farther to the right is taken."""
-
-
-# --- peaks ----------------------------------------------------------------------------------------------------
+"""Relative difference below which two peaks are equal. Of equal peaks the one farthest to the right is taken."""
 
 
 def pressure_peak(grid: Grid, pressure: np.ndarray, coupled: bool = False) -> tuple[float, float]:
-    """Largest pressure and its place.
+    """Largest contact pressure and its angle (rad), read between the nodes.
 
-    Where friction couples pressure and shear (unlike bodies) the pressure has a corner where the pin first touched.
+    If friction couples pressure and shear (unlike bodies), the pressure has a corner where the pin first touched.
+
+    Parameters
+    ----------
+    grid : Grid
+    pressure : ndarray, shape (n,)
+        Nodal pressure N >= 0, in any unit; the peak has the same unit.
+    coupled : bool
+        Whether the peak may be such a corner.
     """
     top = _top(grid, pressure)
     value, place, smooth = _smooth_peak(grid, pressure, top)
@@ -59,10 +73,24 @@ def shear_peak(
     stick: list[Interval],
     tilt: float = 0.0,
 ) -> tuple[float, float]:
-    """Shear traction of largest magnitude, with its sign, and its place.
+    """Shear traction of largest magnitude, with its sign, and its angle (rad), read between the nodes.
 
-    The shear peaks smoothly inside a zone; in a cusp at a stick-slip border, where it is mu N, or for unlike bodies a
-    little beyond it; or in a cusp where such a border once was. `tilt` is arctan(mu beta_D)/pi, see (T26).
+    The peak has one of three forms. It is smooth inside a zone. Or it is a cusp at a stick-slip border, where |T| is
+    mu N; for unlike bodies the largest value lies a little beyond the border. Or it is a cusp at an earlier border.
+
+    Parameters
+    ----------
+    grid : Grid
+    pressure, shear : ndarray, shape (n,)
+        Nodal tractions N >= 0 and T, in one unit; the peak has the same unit.
+    sticking : ndarray of bool, shape (n,)
+        Nodes that stick.
+    friction : float
+        The coefficient mu.
+    stick : list of (float, float)
+        Stick intervals (start, stop), rad.
+    tilt : float
+        arctan(mu beta_D)/pi, see (T26); 0 for like bodies.
     """
     top = _top(grid, np.abs(shear))
     peaks, fitted_here, border_nearby = _peaks_at_borders(grid, pressure, shear, sticking, friction, stick, tilt, top)
@@ -85,9 +113,16 @@ def _peaks_at_borders(
     tilt: float,
     top: int,
 ) -> tuple[list[tuple[float, float, int]], bool, bool]:
-    """Values, places and highest nodes of the peaks at stick-slip borders that may be the largest.
+    """Peaks at stick-slip borders, as candidates for the largest one.
 
-    And whether one of them is that of the largest node `top`, fitted on both sides, and whether a border is near that.
+    Returns
+    -------
+    peaks : list of (float, float, int)
+        Value, angle and highest node of each.
+    fitted_here : bool
+        Whether the peak at `top` is among them, and was fitted on both sides of its border.
+    border_nearby : bool
+        Whether a border lies within two node distances of the node `top`.
     """
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, fitted_here, border_nearby = [], False, False
@@ -95,7 +130,7 @@ def _peaks_at_borders(
         offsets = outwards * angle_between(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
-            continue  # the end of the contact
+            continue  # no slip beside this end of the stick zone: it is the end of the contact
         beside = np.flatnonzero((offsets >= -2.0 * spacing) & (offsets <= (NEAR if tilt else 2.0) * spacing))
         highest = int(beside[np.argmax(magnitude[beside])])
         border_nearby = border_nearby or abs(offsets[top]) <= 2.0 * spacing
@@ -116,7 +151,7 @@ def _peaks_at_borders(
 
 
 def _top(grid: Grid, values: np.ndarray) -> int:
-    """The node with the largest value; of equals, as symmetric contacts have them, the one farthest to the right."""
+    """The node with the largest value. In symmetric contacts two nodes have it: take the one to the right."""
     equal = np.flatnonzero(values >= (1.0 - TIE) * values.max())
     return int(equal[np.argmax([_from_bottom(angle) for angle in grid.theta[equal]])])
 
@@ -127,18 +162,23 @@ def _from_bottom(angle: float) -> float:
 
 
 def _borders(stick: list[Interval]) -> Iterator[tuple[float, int]]:
-    """Ends of stick zones, and to which side of them nodes do not stick; none of a contact that sticks all round."""
+    """Ends of the stick zones, rad, and the direction (1 or -1) from each end out of its zone.
+
+    A contact that sticks all round has none.
+    """
     for start, stop in stick:
-        if stop - start < 2.0 * math.pi - 1e-9:
+        if not is_all_round(stop - start):
             yield from ((start, -1), (stop, 1))
 
 
 def _peak_of_nodes(
     grid: Grid, shear: np.ndarray, sticking: np.ndarray, top: int, border_nearby: bool, tilt: float
 ) -> tuple[float, float, int]:
-    """Value and place of the peak at the node `top`: smooth, or the cusp of an old border if no border is `near`.
+    """Value, angle and node of the peak at the node `top`, without a fit at a border.
 
-    `shear` is the shear traction with the sign that makes it positive at `top`.
+    The peak is smooth. Unless there is a `border_nearby`, it may also be the cusp of an earlier border. If only some of
+    the node and its neighbours stick, it is the nodal value. `shear` is the shear traction with the sign that makes it
+    positive at `top`.
     """
     neighbours = sticking[[top - 1, top, (top + 1) % grid.size]]
     if not np.all(neighbours == neighbours[0]):
@@ -152,7 +192,7 @@ def _peak_of_nodes(
 def _border_peak(
     grid: Grid, bound: np.ndarray, border: float, outwards: float, exponent: float, node: int
 ) -> tuple[float, float] | None:
-    """Largest mu N on the slip side of a border and its place; None if it is not within three nodes of `node`."""
+    """Largest mu N on the slip side of a border, and its angle; None if it is not within three nodes of `node`."""
     nodes, x = _around(grid, bound > 0.0, node)
     spacing = float(grid.weights[node])
     offset = outwards * math.remainder(float(grid.theta[node]) - border, 2.0 * math.pi) / spacing
@@ -164,9 +204,10 @@ def _border_peak(
 
 
 def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, tilt: float) -> tuple[float, float] | None:
-    """Height and place of a cusp inside a stick zone; None if the largest nodal value tells it better.
+    """Height and angle of the cusp of an earlier border inside a stick zone; None if the fits are not plausible.
 
-    It does if the fitted one is lower, or higher by more than what the nodes beside it are lower.
+    A plausible cusp is not below the largest nodal value. It is above it by at most CUSP_RISE times the drop from
+    there to the lower neighbouring node.
     """
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
@@ -184,9 +225,10 @@ def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, til
 
 
 def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
-    """Whether a fitted peak fits the values about the largest one, at `top`.
+    """Whether a fitted peak is consistent with the nodal values about the largest one, at `top`.
 
-    It may be higher by what they fall by on the steeper side, and lower by what they do on the other, in a few nodes.
+    The values fall by some amount within DROP_NODES nodes on either side. The peak may be higher than the largest
+    value by the larger drop, or lower by the smaller drop.
     """
     steps = np.arange(1, DROP_NODES + 1)
     left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
@@ -195,7 +237,10 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
 
 
 def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
-    """The run of `mask` with `node` in it, and how far its nodes are from that one, in node distances, increasing."""
+    """The run of `mask` that contains `node`, and the distances of its nodes from `node`.
+
+    The distances are in node distances and increase. Both arrays are empty if `mask` is False at `node`.
+    """
     for run in runs(grid, mask):
         at = np.flatnonzero(run == node)
         if at.size:
@@ -208,17 +253,17 @@ def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.nda
 
 
 def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float, bool]:
-    """Top of the parabola through node `top` and its neighbours, and whether the values are smooth there.
+    """Value and angle of the top of the parabola through node `top` and its neighbours, and whether it is smooth there.
 
-    Where the values have a kink the node itself.
+    If the values have a kink at the node, the peak is the node itself.
     """
     n = grid.size
     at_node = float(values[top]), float(grid.theta[top])
     if not grid.closed and not 2 <= top <= n - 3:
         return *at_node, True
     left, right = grid.knots()
-    border_nearby = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
-    slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(border_nearby)]
+    nodes = [(top + k) % n for k in (-2, -1, 0, 1, 2)]
+    slopes = [(values[j] - values[i]) / (right[i] - grid.theta[i]) for i, j in pairwise(nodes)]
     bends = [before - after for before, after in pairwise(slopes)]
     smooth = 0.0 < max(bends) <= 3.0 * min(bends)
     if abs(bends[1]) > 3.0 * min(abs(bends[0]), abs(bends[2])):
@@ -233,10 +278,10 @@ def _smooth_peak(grid: Grid, values: np.ndarray, top: int) -> tuple[float, float
 
 
 def _interpolated(grid: Grid, values: np.ndarray, angle: float) -> float:
-    """Interpolation at `angle`: quadratic, from the three nearest nodes; linear where one of them is zero."""
+    """Value at `angle`, interpolated: quadratic from the three nearest nodes, or linear if a value there is zero."""
     offsets = angle_between(grid.theta, angle)
-    border_nearby = np.argsort(np.abs(offsets))[:3]
-    if not np.all(values[border_nearby] > 0.0):
-        border_nearby = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
-                         np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
-    return float(np.polyval(np.polyfit(offsets[border_nearby], values[border_nearby], border_nearby.size - 1), 0.0))
+    nearest = np.argsort(np.abs(offsets))[:3]
+    if not np.all(values[nearest] > 0.0):
+        nearest = np.array([np.flatnonzero(offsets < 0.0)[np.argmax(offsets[offsets < 0.0])],
+                            np.flatnonzero(offsets >= 0.0)[np.argmin(offsets[offsets >= 0.0])]])  # fmt: skip
+    return float(np.polyval(np.polyfit(offsets[nearest], values[nearest], nearest.size - 1), 0.0))

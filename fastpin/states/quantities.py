@@ -1,4 +1,4 @@
-"""The quantities that are reported of a state: names, kinds and sizes, and how those of two grids are compared."""
+"""The reported quantities of a state: names, kinds, sizes, and the comparison of two grids."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import numpy as np
 
 from fastpin.model.angles import angle_between, from_bottom
 from fastpin.states.state import State
-from fastpin.states.zones import Interval
+from fastpin.states.zones import Interval, is_all_round
 
 
 class Quantity(NamedTuple):
-    """A number that a state has.
+    """A reported number of a state.
 
     Attributes
     ----------
     label : str
-        What tables and figures call it.
+        Its name in tables and figures.
     kind : str
-        A key of :func:`fastpin.report.units`, "angle" (a place on the hole, rad) or "width" (rad).
+        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad) or "width" (rad).
     of : callable
-        Its value for a state, SI or in the units of a dimensionless problem.
+        Gives its value for a state, in SI units or in the units of a dimensionless problem.
     """
 
     label: str
@@ -32,12 +32,15 @@ class Quantity(NamedTuple):
 
 
 def width(intervals: Sequence[Interval]) -> float:
-    """Length of all intervals together, rad."""
+    """Total length of all intervals, rad."""
     return float(sum(stop - start for start, stop in intervals))
 
 
 def _integral(state: State, traction: np.ndarray) -> float:
-    """Integral of a nodal traction round the hole, N/m; that of a magnitude is off where the sign changes, O(h^2)."""
+    """Integral of a nodal traction round the hole, N/m.
+
+    The integral of a magnitude has an error of O(h^2) where the sign of the traction changes.
+    """
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
@@ -60,17 +63,21 @@ QUANTITIES: dict[str, Quantity] = {
     "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation),
     "work": Quantity("work", "energy", lambda state: state.work),
 }
-"""What every state has, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
+"""The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
-To these come the ends of the intervals of contact and stick: "contact_1_start", "contact_1_stop", "contact_2_start",
-"stick_1_start" and so on, angles in rad, counted along +theta. A contact all round has none.
+A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",
+"stick_1_start" and so on. They are angles in rad, counted along +theta. A contact all round has no ends.
 """
 
 ZONES = ("contact", "stick")
+"""Zones whose ends are quantities."""
 
 
 def quantity(name: str) -> Quantity:
-    """The quantity of a name, also that of an end of an interval."""
+    """The quantity of a name in :data:`QUANTITIES`, or of the end of an interval such as "contact_1_start".
+
+    The name is not checked. Reading an end from a state without that interval raises KeyError.
+    """
     if name in QUANTITIES:
         return QUANTITIES[name]
     zone = name.partition("_")[0]
@@ -78,25 +85,30 @@ def quantity(name: str) -> Quantity:
 
 
 def intervals(state: State, zone: str) -> list[Interval]:
-    """The intervals of "contact" or "stick" that have ends."""
-    found: list[Interval] = getattr(state, zone)
-    return [] if found and width(found) >= 2.0 * math.pi - 1e-9 else found
+    """The intervals of the zone "contact" or "stick", rad; none for a zone round the whole hole, which has no ends."""
+    zones: list[Interval] = getattr(state, zone)
+    return [] if zones and is_all_round(width(zones)) else zones
 
 
 def values(state: State) -> dict[str, float]:
-    """All quantities that a state has; angles in rad, NaN where there is none (of a peak without contact)."""
-    found = {name: each.of(state) for name, each in QUANTITIES.items()}
+    """All quantities of a state by name. Angles are in rad; the angle of a peak that does not exist is NaN."""
+    numbers = {name: entry.of(state) for name, entry in QUANTITIES.items()}
     for zone in ZONES:
-        found |= _ends(zone, intervals(state, zone))
-    return found
+        numbers |= _ends(zone, intervals(state, zone))
+    return numbers
 
 
 def matching_values(state: State, other: State) -> dict[str, float]:
-    """The quantities of `state` as `other` has them, which is the same load on another grid.
+    """The quantities of `other`, the same load on another grid, in a form to compare with `state`.
 
-    Angles are those next to the ones of `state`, whole turns apart. The peak shear, which may be at one of two places
-    of opposite signs, is compared in magnitude, with the sign that it has in `state`. NaN stands for what can't be
-    compared: the angle of such a peak, the ends of zones that are not as many.
+    An angle is moved by whole turns next to the angle of `state`. The peak shear may be at one of two places with
+    opposite signs. It is compared in magnitude: it gets the sign that it has in `state`. NaN stands for a value that
+    can't be compared: the angle of such a peak, and the ends of zones whose number differs.
+
+    Returns
+    -------
+    dict of str to float
+        Values by the names of the quantities of `state`, in the units of :func:`values`.
     """
     mine, theirs = values(state), values(other)
     if mine["peak_shear"] * theirs["peak_shear"] < 0.0:
@@ -110,7 +122,10 @@ def matching_values(state: State, other: State) -> dict[str, float]:
 
 
 def size(name: str, state: State) -> float:
-    """The natural size of a quantity: what is much smaller is zero. Without contact, 0 but for the pin's motion."""
+    """The natural size of a quantity, in its unit. A much smaller value is zero.
+
+    Without contact all sizes are 0 except the sizes of the pin's motion.
+    """
     problem, pressure = state.problem, state.peak_pressure
     force = QUANTITIES["pressure_integral"].of(state)
     strain = problem.pair.beta_star * pressure or abs(problem.clearance) / problem.hole_radius
@@ -133,14 +148,14 @@ def _ends(zone: str, found: Sequence[Interval]) -> Iterator[tuple[str, float]]:
 
 
 def _beside(angle: float, other: float) -> float:
-    """`other`, whole turns from where it is, next to `angle`."""
+    """The angle `other` moved by whole turns next to `angle`; NaN if one of them is not finite."""
     if not (math.isfinite(angle) and math.isfinite(other)):
         return math.nan
     return angle + math.remainder(other - angle, 2.0 * math.pi)
 
 
 def _match_intervals(mine: Sequence[Interval], theirs: Sequence[Interval]) -> list[Interval]:
-    """Their intervals in the order of mine, which may begin elsewhere on a circle; NaN where they are not as many."""
+    """Reorder `theirs` to match `mine` around the circle. Return NaN intervals if the numbers differ."""
     if len(mine) != len(theirs):
         return [(math.nan, math.nan)] * len(mine)
 
@@ -152,7 +167,7 @@ def _match_intervals(mine: Sequence[Interval], theirs: Sequence[Interval]) -> li
 
 
 def in_degrees(name: str, value: float) -> float:
-    """A quantity as it is reported: angles from the bottom of the hole and widths in degrees, all else as it is."""
+    """Convert a value for reports: angles (from the bottom of the hole) and widths in degrees, others unchanged."""
     kind = quantity(name).kind
     if kind == "angle":
         return from_bottom(value) if math.isfinite(value) else math.nan
@@ -160,10 +175,10 @@ def in_degrees(name: str, value: float) -> float:
 
 
 def bar_in_degrees(name: str, bar: float) -> float:
-    """The error bar of a quantity as it is reported."""
+    """Convert an error bar for reports: bars of angles and widths in degrees, others unchanged."""
     return math.degrees(bar) if quantity(name).kind in ("angle", "width") else bar
 
 
 def load_point(state: State) -> float:
-    """Where in the history a state is: 1 at the first corner, 1.5 halfway from there to the second."""
+    """The place of a state in the history: step + fraction, 1 at the first corner, 1.5 halfway to the second one."""
     return state.step + state.fraction

@@ -1,4 +1,4 @@
-"""One state of the contact; edges and peaks are read between nodes."""
+"""One state of the contact: tractions, motion, zones, peaks and energies."""
 
 from __future__ import annotations
 
@@ -20,38 +20,47 @@ from fastpin.states.zones import Interval
 
 @dataclass(frozen=True, eq=False, repr=False)
 class State:
-    """The contact at one load. Its arrays can't be written to: steps that repeat share them.
+    """The contact at one load.
+
+    The arrays are read-only, because steps that repeat share them. All numbers are in SI units, or in the units of a
+    dimensionless problem.
 
     Attributes
     ----------
     step : int
         Index of the load corner that this state belongs to (0 for the first).
     fraction : float
-        How far along the step from the previous corner, 0 to 1; 1 at the corner itself.
+        Part of the step from the previous corner to this one, 0 to 1; 1 at the corner itself.
     load : dict of str to float
-        Loads by name, see :data:`fastpin.loading.LOADS`.
+        Loads by name, see :data:`fastpin.model.loads.LOADS`.
     theta : ndarray, shape (n,)
         Node angles, rad; -pi/2 is the bottom of the hole.
     pressure, shear : ndarray, shape (n,)
         Contact pressure N >= 0 and shear traction T on the pin, positive along +theta (counter-clockwise), Pa.
     gap, slip : ndarray, shape (n,)
         Gap h >= 0 and slip s of the pin over the plate, positive along +theta, m. Slip counts from the position
-        in which the pin first rested on the hole (for an interference fit: the concentric one).
+        in which the pin first rested on the hole (for an interference fit, from the concentric position).
     status : ndarray of int8, shape (n,)
-        OPEN, STICK, SLIP_POSITIVE or SLIP_NEGATIVE. Without friction every closed node is SLIP_POSITIVE.
+        Values of :class:`fastpin.Status`: OPEN, STICK, SLIP_POSITIVE or SLIP_NEGATIVE. Without friction every closed
+        node is SLIP_POSITIVE.
     dx, dy, rotation : float
         Rigid motion of the pin along +x, +y (m) and counter-clockwise (rad) from its first resting position.
-        In the paper's symbols C_0x, -Delta and C_omega; C_omega also where a hub of another radius is held.
+        In the paper's symbols: C_0x, -Delta and C_omega, also if a hub of another radius is held.
     dissipation, work, energy : float
         Energy dissipated by friction so far, work of the loads so far and elastic energy now, J/m. Work and energy
-        leave out what depends on the load alone (infinite for a load at a point), so they may be negative. An
-        interference fit begins with the energy of its assembly in both.
+        leave out the part that depends on the load alone (infinite for a load at a point), so they may be negative.
+        An interference fit begins with the energy of its assembly in both work and energy.
     residuals : dict of str to float
-        Largest violation, recomputed from the matrices: "gap" and "slip" relative to the largest displacement,
-        "cone" and "equilibrium" relative to the largest traction and the load.
+        Largest violations of the contact conditions, recomputed from the matrices. "gap" and "slip" are relative to
+        the largest displacement, "cone" (Coulomb's law and N >= 0) to the largest pressure, "equilibrium" to the sum of
+        the resultants of the absolute tractions.
+    problem : Problem
+        Materials, geometry, friction and the way in which the pin is held.
+    grid : Grid
+        The nodes.
     error_bars : Mapping of str to float, or None
-        Largest likely error of each quantity and of each end of a zone, see
-        :class:`fastpin.states.error_bars.ErrorBars`. None unless ``solve(..., error_bars=True)``.
+        Largest likely error of each quantity and of each end of a zone, by name, see
+        :func:`fastpin.states.error_bars.bars`. None unless ``solve(..., error_bars=True)``.
     """
 
     step: int
@@ -87,11 +96,11 @@ class State:
             )
             if value != 0.0
         ]
-        zones_ = [f"{name} {_in_degrees(found)}" for name, found in (("contact", self.contact), ("stick", self.stick))]
+        zones_ = [f"{name} {_in_degrees(ends)}" for name, ends in (("contact", self.contact), ("stick", self.stick))]
         return f"{head}\n {', '.join(peaks_)}\n {', '.join(zones_)} deg, {self.grid.size} nodes>"
 
     def _repr_html_(self) -> str:
-        """A small table and a figure, for notebooks."""
+        """HTML with a small table and a figure, for notebooks."""
         import fastpin
 
         return fastpin.figures.state_html(self)
@@ -103,17 +112,19 @@ class State:
 
     @cached_property
     def contact(self) -> list[Interval]:
-        """Contact intervals (start, stop), rad, read between nodes (N is extrapolated to zero, see edges.py).
+        """Contact intervals (start, stop), rad, read between the nodes.
 
-        A contact round the whole circle is one interval of length 2 pi.
+        The pressure is extrapolated to zero, see :mod:`fastpin.states.fits`. A contact round the whole circle is one
+        interval of length 2 pi.
         """
         return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_exponents, self._sticking)
 
     @cached_property
     def stick(self) -> list[Interval]:
-        """Stick intervals (start, stop), rad, read between nodes (mu N - |T| is extrapolated to zero).
+        """Stick intervals (start, stop), rad, read between the nodes.
 
-        Nodes that stick but have come to |T| = mu N at this very load count as slipping.
+        mu N - |T| is extrapolated to zero, see :mod:`fastpin.states.fits`. Sticking nodes that reach |T| = mu N exactly
+        at this load count as slipping.
         """
         closed = self.status != OPEN
         return zones.stick_intervals(
@@ -122,27 +133,27 @@ class State:
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:
-        """Slip zones (start, stop, sign), rad: what is in contact and does not stick, with the sign of the slip."""
+        """Slip zones (start, stop, sign), rad: the parts of the contact that do not stick, and the sign of the slip."""
         return zones.complement(self.grid, self.contact, self.stick, self.status)
 
     @property
     def peak_pressure(self) -> float:
-        """Largest contact pressure, Pa, read between nodes."""
+        """Largest contact pressure, Pa, read between nodes; 0 without contact."""
         return self._pressure_peak[0]
 
     @property
     def peak_pressure_angle(self) -> float:
-        """Where the largest contact pressure acts, rad; NaN without contact."""
+        """Angle of the largest contact pressure, rad; NaN without contact."""
         return self._pressure_peak[1]
 
     @property
     def peak_shear(self) -> float:
-        """Shear traction of largest magnitude with its sign, Pa, read between nodes."""
+        """Shear traction of largest magnitude, with its sign, Pa, read between nodes; 0 without shear."""
         return self._shear_peak[0]
 
     @property
     def peak_shear_angle(self) -> float:
-        """Where the shear traction of largest magnitude acts, rad; NaN where there is no shear."""
+        """Angle of the shear traction of largest magnitude, rad; NaN without shear."""
         return self._shear_peak[1]
 
     @cached_property
@@ -161,16 +172,16 @@ class State:
 
     @cached_property
     def _tilt(self) -> float:
-        """By how much friction between unlike bodies moves the exponents of edges and borders off a half, (T26)."""
+        """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
         return math.atan(self.problem.friction * self.problem.pair.dundurs()[1]) / math.pi
 
     def _contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
-        """With which the pressure falls to zero at the ends of the contact of the nodes `run`, (T21)."""
+        """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
         first, last = self.status[run[[0, -1]]]
         return 0.5 - self._tilt * float(first), 0.5 + self._tilt * float(last)
 
     def _stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
-        """With which mu N - |T| falls to zero at the ends of the stick zone of the nodes `run`, (T26)."""
+        """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26)."""
         before, after = np.sign(self.shear[[run[0] - 1, (run[-1] + 1) % self.shear.size]])
         return 0.5 - self._tilt * float(before), 0.5 + self._tilt * float(after)
 
@@ -184,9 +195,9 @@ class State:
 
     @cached_property
     def resultants(self) -> dict[str, float]:
-        """The loads that the tractions balance, (50), (51): P and Q in N/m, M in N.
+        """The loads that the tractions balance, (50), (51): "P" and "Q" in N/m, "M" in N.
 
-        Where the rotation is held, M is the moment that holds it.
+        If the rotation of the pin is held, M is the moment that holds it.
         """
         cos, sin = self.grid.trig_moments()
         radius = self.problem.hole_radius
@@ -198,6 +209,6 @@ class State:
 
 
 def _in_degrees(intervals: list[Interval]) -> str:
-    """Intervals in degrees from the bottom, as text."""
+    """Text of the intervals in degrees from the bottom."""
     ends = [interval_from_bottom(start, stop) for start, stop in intervals]
     return " and ".join(f"{start:z.2f} to {stop:z.2f}" for start, stop in ends) or "none"

@@ -1,4 +1,4 @@
-"""Contact edges, stick-slip borders and peaks, read between the nodes with the fits of edges.py."""
+"""Intervals of contact, stick and slip. Their ends are read between the nodes with the fits of fits.py."""
 
 from __future__ import annotations
 
@@ -12,15 +12,21 @@ from fastpin.model.grid import Grid
 from fastpin.states import fits
 
 Interval = tuple[float, float]
+"""Start and stop angle of an interval round the hole, rad, start < stop."""
 
 
 def square_root(run: np.ndarray) -> tuple[float, float]:
-    """Exponents with which a quantity falls to zero at the ends of the zone of the nodes `run`: like bodies."""
+    """Exponents of the zeros of a quantity at both ends of a zone, for like bodies: 1/2 for any nodes `run`."""
     return 0.5, 0.5
 
 
+def is_all_round(length: float) -> bool:
+    """Whether a zone of a given length, rad, goes all round the hole."""
+    return length >= 2.0 * math.pi - 1e-9
+
+
 def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
-    """Index arrays of consecutive True nodes; on a circle a run may pass the last node."""
+    """Index arrays of the runs of consecutive True nodes. On a circle a run may continue past the last node."""
     n = grid.size
     if mask.all():
         return [np.arange(n)]
@@ -41,9 +47,24 @@ def intervals(
     exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
     kinds: np.ndarray | None = None,
 ) -> list[Interval]:
-    """Intervals of the zones in `mask`, at whose ends `quantity` (>= 0 inside) falls to zero with these exponents.
+    """Intervals of the zones in `mask`. A quantity falls to zero at their ends.
 
-    Where `kinds` (n,) changes, inside a zone, the quantity may have a kink.
+    Parameters
+    ----------
+    grid : Grid
+    mask : ndarray of bool, shape (n,)
+        Nodes inside the zones.
+    quantity : ndarray, shape (n,)
+        Nodal values, >= 0 inside the zones.
+    exponents : callable
+        Gives for the node indices of a zone the exponents of the zeros at its start and stop.
+    kinds : ndarray, shape (n,), optional
+        The quantity may have a kink inside a zone where `kinds` changes.
+
+    Returns
+    -------
+    list of (float, float)
+        Start and stop, rad. A zone round the whole circle is one interval of length 2 pi.
     """
     kinds = mask if kinds is None else kinds
     if mask.all() and grid.closed:
@@ -63,7 +84,7 @@ def intervals(
 
 
 def _alike(kinds: np.ndarray) -> int:
-    """How many of the first values are the same."""
+    """The number of values at the beginning that equal the first one."""
     other = kinds != kinds[0]
     return int(np.argmax(other)) if other.any() else kinds.size
 
@@ -76,10 +97,26 @@ def stick_intervals(
     contact: list[Interval],
     exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
 ) -> list[Interval]:
-    """Intervals of the stick zones, where `reserve` = mu N - |T| falls to zero or the contact ends.
+    """Intervals of the stick zones. A stick zone ends where mu N - |T| falls to zero, or with the contact.
 
-    `contact` are the intervals of the `closed` nodes. A zone that reaches the outermost closed node ends with the
-    contact: a slip zone without a node is none.
+    A stick zone that reaches the outermost closed node ends with the contact: a slip zone has at least one node.
+
+    Parameters
+    ----------
+    grid : Grid
+    sticking, closed : ndarray of bool, shape (n,)
+        Nodes that stick, and nodes in contact.
+    reserve : ndarray, shape (n,)
+        mu N - |T|.
+    contact : list of (float, float)
+        Contact intervals of the closed nodes, rad.
+    exponents : callable
+        As for :func:`intervals`.
+
+    Returns
+    -------
+    list of (float, float)
+        Start and stop, rad.
     """
     if closed.all() and grid.closed:
         return intervals(grid, sticking, reserve, exponents)
@@ -97,6 +134,7 @@ def stick_intervals(
 
 
 def unrolled(grid: Grid, run: np.ndarray) -> np.ndarray:
+    """Increasing angles of the nodes of a run, rad; a full turn is added past the last node of a circle."""
     theta = grid.theta[run].copy()
     theta[np.r_[False, np.cumsum(np.diff(run) < 0) > 0]] += 2.0 * math.pi
     return theta
@@ -105,10 +143,16 @@ def unrolled(grid: Grid, run: np.ndarray) -> np.ndarray:
 def complement(
     grid: Grid, contact: list[Interval], stick: list[Interval], status: np.ndarray
 ) -> list[tuple[float, float, int]]:
-    """Parts of the contact intervals outside the stick intervals, with the sign of the slip of their nodes."""
+    """Slip zones: the parts of the contact intervals outside the stick intervals.
+
+    Returns
+    -------
+    list of (float, float, int)
+        Start and stop, rad, and the sign of the slip of the nodes inside (`status`, shape (n,)).
+    """
     zones = []
     for start, stop in contact:
-        if stop - start >= 2.0 * math.pi - 1e-9 and stick:  # contact all round: begin with a stick zone
+        if is_all_round(stop - start) and stick:  # contact all round: begin at the start of a stick zone
             start = stick[0][0]
             stop = start + 2.0 * math.pi
             stick = [
@@ -123,7 +167,7 @@ def complement(
 
 
 def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[tuple[float, float, int]]:
-    """A slip zone, split where the sign of the slip changes between two nodes."""
+    """Parts of the slip zone from `start` to `stop`, split where the sign of the slip changes between two nodes."""
     turns = np.floor((grid.theta - start) / (2.0 * math.pi))
     theta = grid.theta - 2.0 * math.pi * turns if grid.closed else grid.theta
     order = np.argsort(theta)
@@ -131,8 +175,8 @@ def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[
     if order.size == 0:  # narrower than a node distance
         slipping = np.flatnonzero(np.abs(status) == 1)
         away = np.abs(angle_between(grid.theta[slipping], 0.5 * (start + stop)))
-        near = slipping.size and away.min() <= stop - start + float(grid.weights.max())
-        return [(float(start), float(stop), int(status[slipping[np.argmin(away)]]))] if near else []
+        in_reach = slipping.size and away.min() <= stop - start + float(grid.weights.max())
+        return [(float(start), float(stop), int(status[slipping[np.argmin(away)]]))] if in_reach else []
     signs, angles = status[order], theta[order]
     changes = np.flatnonzero(np.diff(signs))
     borders = [start, *(0.5 * (angles[changes] + angles[changes + 1])), stop]

@@ -1,5 +1,6 @@
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
+from .layout import versions as versions
 from .recording import record as record
 from .recording import resume as resume
 from .recording import stored_case as stored_case

@@ -1,4 +1,4 @@
-"""Results for other libraries: xarray and pandas."""
+"""Conversion of results to xarray and pandas."""
 
 from __future__ import annotations
 
@@ -20,25 +20,34 @@ if TYPE_CHECKING:
     import xarray
 
 COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fraction")
+"""Variables that are coordinates of a dataset."""
 
 Variables = dict[str, tuple[list[str], Any, dict[str, str]]]
-"""For each variable of a dataset: dimensions, values, attributes."""
+"""Dimensions, values and attributes of each variable of a dataset."""
 
 
 def to_xarray(source: Result | str | Path) -> xarray.Dataset:
-    """All states as an xarray.Dataset with the dimensions "state" and "theta", and units as attributes.
+    """Return all states as an xarray.Dataset with the dimensions "state" and "theta".
 
-    A finished file can also be read piece by piece, without fastpin: ``xarray.open_dataset(path, group="states")``.
+    The attribute "units" of a variable names its unit. xarray also reads a finished file piece by piece, without
+    fastpin: ``xarray.open_dataset(path, group="states")``.
 
     Parameters
     ----------
     source : Result or path
         A result, or its HDF5 file.
 
+    Returns
+    -------
+    xarray.Dataset
+        Pressures, shear tractions, gaps and slips have the shape (states, n). Loads and residuals have the dimensions
+        "load_name" and "residual_name" in place of "theta". Values are in SI units or in the units of a dimensionless
+        problem, angles in rad.
+
     Raises
     ------
     InputError
-        See :func:`fastpin.load`; also if xarray is not installed.
+        If the file can't be read, see :func:`fastpin.load`, or xarray is not installed.
     """
     try:
         import xarray
@@ -79,7 +88,7 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
 
 
 def to_dataframe(result: Result) -> pandas.DataFrame:
-    """The reported quantities as a pandas.DataFrame, a row a state.
+    """Return the reported quantities as a pandas.DataFrame with one row for each state.
 
     Columns are "load_point", "step", "fraction", the loads ("load_P", "load_Q", ...) and the quantities of
     :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad.

@@ -1,4 +1,7 @@
-"""Output files that are either whole or not there: checked before the work, written aside and renamed."""
+"""Safe writing of output files: a file is either whole or absent.
+
+A path is checked before the work begins. The new file is written under another name and then renamed.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from fastpin.errors import InputError
 
 
 def check_writable(path: str | Path) -> None:
-    """Raise :class:`InputError` if `path` can't be written: better before an hour of computing than after."""
+    """Raise :class:`InputError` if `path` can't be written. Call this before an hour of computing, not after."""
     path = Path(path)
     if path.is_dir():
         raise InputError(str(path), "is a directory, a file name is needed")
@@ -25,28 +28,33 @@ def check_writable(path: str | Path) -> None:
 
 
 def check_exists(path: Path) -> None:
-    """Raise :class:`InputError` if `path` is no file."""
+    """Raise :class:`InputError` if `path` is not a regular file."""
     if not path.is_file():
         raise InputError(str(path), "is a directory, a file is needed" if path.is_dir() else "there is no such file")
 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path beside `path`; it takes the name `path` when the block ends without an error.
+    """Yield a temporary path beside `path`, and rename it to `path` when the block ends without an error.
 
-    An interrupted or failed write leaves what was there before. Symbolic links are followed; what is no
-    regular file (``/dev/stdout``, a named pipe) can't be replaced and is written directly.
+    An interrupted or failed write leaves the old file unchanged. Symbolic links are followed. A special file, such as
+    ``/dev/stdout`` or a named pipe, can't be replaced: it is written directly.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
     """
     if _is_special(Path(path)):
         yield Path(path)
         return
     target = Path(os.path.realpath(path))
-    # The suffix stays, because writers choose their format by it; the process id keeps two runs apart.
+    # The suffix stays: writers choose their format by it. The process id separates two runs.
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
         yield temporary
-        with temporary.open("rb") as written:
-            os.fsync(written.fileno())
+        with temporary.open("rb") as file:
+            os.fsync(file.fileno())
         temporary.replace(target)
     except OSError as error:
         raise InputError(str(path), f"can't be written: {error.strerror or error}") from None

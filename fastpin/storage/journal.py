@@ -1,9 +1,9 @@
-"""A file that changes in transactions: whatever happens to the process, it is as it was after the last one.
+"""A file that changes in transactions. A killed process leaves the file as its last transaction left it.
 
-HDF5 changes its indices in place. A process that is killed in between leaves a file that can't be read any more, with
-all that was ever written to it. So before a part of the file is overwritten, what stood there goes to a journal beside
-it; the next one who opens the file puts it back. A transaction ends when the journal is emptied, which happens at once
-or not at all.
+HDF5 changes its indices in place. A process killed during such a change leaves an unreadable file, and every earlier
+state in it is lost. Therefore the old bytes go to a journal beside the file before a part of the file is overwritten.
+The next process that opens the file puts the old bytes back. A transaction ends when the journal is emptied. That
+happens at once or not at all.
 """
 
 from __future__ import annotations
@@ -25,27 +25,28 @@ from fastpin.errors import InputError
 fcntl: ModuleType | None
 try:
     import fcntl
-except ImportError:  # no such locks on this system: nobody else may write to the file
+except ImportError:  # This system has no such locks: no second process may write to the file.
     fcntl = None
 
 
-_RECORD = struct.Struct("<QIII")  # place in the file, length, checksums of what follows and of what came in its place
+# Head of a journal record: place in the file, length of the old bytes, checksums of the old and of the new bytes.
+_RECORD = struct.Struct("<QIII")
 
 
 def journal_of(path: Path) -> Path:
-    """Where the journal of a file is: beside the file itself, whatever links lead there."""
+    """Return the path of a file's journal. It stands beside the file itself, also if `path` is a link."""
     real = Path(os.path.realpath(path))
     return real.with_name(real.name + ".journal")
 
 
 class JournaledFile:
-    """A file for h5py, whose changes are undone if they are not committed.
+    """A file for h5py. Changes without a commit are undone.
 
     Parameters
     ----------
     path : Path
     new : bool
-        Begin with an empty file, whatever is there.
+        Begin with an empty file. An existing file is emptied.
 
     Raises
     ------
@@ -71,32 +72,32 @@ class JournaledFile:
         except OSError as error:
             os.close(self._file)
             raise InputError(str(journal_of(path)), f"can't be written: {error.strerror}") from None
-        _wait_for(self._journal, alone=True)
+        _wait_for(self._journal, exclusive=True)
         if new:
             os.ftruncate(self._journal, 0)
             os.ftruncate(self._file, 0)
         else:
             _roll_back(self._file, self._journal)
-        _wait_for(self._journal, alone=None)
+        _wait_for(self._journal, exclusive=None)
         self._size = os.fstat(self._file).st_size
         self._written = 0  # bytes of the journal
 
     def begin(self) -> None:
-        """Begin a transaction; readers are kept waiting until it ends."""
+        """Begin a transaction. Readers wait until it ends."""
         if self._open_transaction:
             return
-        _wait_for(self._journal, alone=True)
+        _wait_for(self._journal, exclusive=True)
         self._written = 0
         self._note(self._size, b"", b"")
         self._open_transaction = True
 
     def commit(self) -> None:
-        """End the transaction: what was written since it began is part of the file.
+        """End the transaction. Everything written since its beginning is now part of the file.
 
         Raises
         ------
         OSError
-            If something could not be written. The transaction is undone, and the file can only be closed.
+            If some bytes could not be written. The transaction is undone, and the file can only be closed.
         """
         if self._error is not None:
             self.abandon()
@@ -106,16 +107,16 @@ class JournaledFile:
         os.ftruncate(self._journal, 0)
         self._size = os.fstat(self._file).st_size
         self._open_transaction = False
-        _wait_for(self._journal, alone=None)
+        _wait_for(self._journal, exclusive=None)
 
     def abandon(self) -> None:
-        """Undo the transaction, and ignore all that is still written."""
+        """Undo the transaction, and ignore all later writes."""
         self._abandoned = True
-        with contextlib.suppress(OSError):  # else the next one who opens the file will do it
+        with contextlib.suppress(OSError):  # After an error the next process that opens the file does it.
             _roll_back(self._file, self._journal)
 
     def release(self) -> None:
-        """Leave the file to others. The journal goes, if nothing is left to be undone."""
+        """Close the file and give up its locks. Remove the journal if it is empty: nothing must be undone."""
         if not os.fstat(self._journal).st_size:
             journal_of(self._path).unlink(missing_ok=True)
         os.close(self._journal)
@@ -126,28 +127,34 @@ class JournaledFile:
         _write_all(self._journal, record, self._written)
         self._written += len(record)
 
-    # -- what h5py calls. Its library does not survive an exception here: they wait for the end of the transaction.
+    # h5py calls the methods below. Its library does not survive an exception in them, so errors wait for the end of
+    # the transaction.
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move the place of the next read or write, and return it, in bytes."""
         base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: os.fstat(self._file).st_size}[whence]
         self._place = base + offset
         return self._place
 
     def tell(self) -> int:
+        """Return the place of the next read or write, in bytes."""
         return self._place
 
     def readinto(self, buffer: memoryview) -> int:
+        """Read into a buffer, and return the number of bytes."""
         data = os.pread(self._file, len(buffer), self._place)
         buffer[: len(data)] = data
         self._place += len(data)
         return len(data)
 
     def read(self, size: int = -1) -> bytes:
+        """Read `size` bytes, or the rest of the file if `size` is negative."""
         data = os.pread(self._file, size if size >= 0 else os.fstat(self._file).st_size - self._place, self._place)
         self._place += len(data)
         return data
 
     def write(self, data: memoryview) -> int:
+        """Write `data`, and return the number of bytes. The overwritten bytes go to the journal first."""
         size = len(data)
         if not self._abandoned and self._error is None:
             try:
@@ -162,6 +169,7 @@ class JournaledFile:
         return size
 
     def truncate(self, size: int | None = None) -> int:
+        """Set the size of the file, in bytes, and return it. A removed end goes to the journal first."""
         size = self._place if size is None else size
         if not self._abandoned and self._error is None:
             try:
@@ -174,38 +182,42 @@ class JournaledFile:
         return size
 
     def flush(self) -> None:
-        pass
+        """Do nothing: the file has no buffer."""
 
 
 @contextmanager
 def consistent_view(path: Path) -> Iterator[None]:
-    """Keep a file as its last transaction left it, while it is being read.
+    """Keep a file as its last transaction left it during the block, for a reader.
+
+    A run that is writing to the file waits until the block ends. An unfinished transaction of a killed process is
+    undone first.
 
     Raises
     ------
     InputError
-        If a process was killed while it wrote, and the file can't be put right because it can't be written.
+        If a process was killed during a transaction, and the transaction can't be undone because the file can't be
+        written.
     """
     journal = journal_of(path)
     if not journal.is_file():
         yield
         return
-    with journal.open("rb") as opened:
-        _wait_for(opened.fileno(), alone=False)
-        if os.fstat(opened.fileno()).st_size:  # nobody is writing, and somebody was
-            _wait_for(opened.fileno(), alone=True)
+    with journal.open("rb") as locked:
+        _wait_for(locked.fileno(), exclusive=False)
+        if os.fstat(locked.fileno()).st_size:  # No process is writing, and one was killed during a transaction.
+            _wait_for(locked.fileno(), exclusive=True)
             try:
-                with path.open("r+b") as file, journal.open("r+b") as left:
-                    _roll_back(file.fileno(), left.fileno())
+                with path.open("r+b") as file, journal.open("r+b") as writable:
+                    _roll_back(file.fileno(), writable.fileno())
             except OSError as error:
                 message = f"was being written when its run was killed, and can't be put right: {error.strerror}"
                 raise InputError(str(path), message) from None
-            _wait_for(opened.fileno(), alone=False)
+            _wait_for(locked.fileno(), exclusive=False)
         yield
 
 
 def open_h5(path: Path) -> h5py.File:
-    """Open an HDF5 file for reading, also while a run is writing to it; see :func:`settled`.
+    """Open an HDF5 file for reading, also while a run is writing to it; see :func:`consistent_view`.
 
     Raises
     ------
@@ -217,7 +229,7 @@ def open_h5(path: Path) -> h5py.File:
     except OSError:
         pass
     try:
-        return h5py.File(path, "r")  # opened already in this process, with locks
+        return h5py.File(path, "r")  # This process has the file open already, with locks.
     except OSError:
         raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
 
@@ -231,26 +243,26 @@ def check_free(path: Path) -> None:
             raise InputError(str(path), "another run is writing to it")
 
 
-def _wait_for(journal: int, alone: bool | None) -> None:
-    """Wait for the lock under which the file is written (`alone`) or read; None gives it back."""
+def _wait_for(journal: int, exclusive: bool | None) -> None:
+    """Wait for the lock of a journal: exclusive to write the file, shared to read it. None gives the lock back."""
     if fcntl is not None:
-        kind = {True: fcntl.LOCK_EX, False: fcntl.LOCK_SH, None: fcntl.LOCK_UN}[alone]
-        with contextlib.suppress(OSError):  # a file system without locks
+        kind = {True: fcntl.LOCK_EX, False: fcntl.LOCK_SH, None: fcntl.LOCK_UN}[exclusive]
+        with contextlib.suppress(OSError):  # The file system may have no locks.
             fcntl.flock(journal, kind)
 
 
 def _roll_back(file: int, journal: int) -> None:
-    """Put back what an unfinished transaction has overwritten, the latest first.
+    """Put back the bytes that an unfinished transaction has overwritten, the latest first.
 
-    A journal that was left behind by another file of the same name is of no use: the parts that it speaks of are
-    neither what they were before the transaction nor what that made of them.
+    The journal may come from an older file of the same name. Then a part of the file has neither the old nor the new
+    bytes of its record, and the file stays unchanged. Either way the journal is emptied.
     """
     records = list(_records(os.pread(journal, os.fstat(journal).st_size, 0)))
     restored: list[tuple[int, bytes]] = []
     ours = bool(records) and os.fstat(file).st_size >= records[0][0]
     for number, (place, old, new) in reversed(list(enumerate(records[1:], start=1))):
         now = _as_restored(os.pread(file, len(old), place), place, restored)
-        latest = number == len(records) - 1  # may have been written in part
+        latest = number == len(records) - 1  # Its new bytes may have been written in part.
         ours &= latest or now == old or zlib.crc32(now) == new
         restored.append((place, old))
     if ours:
@@ -261,7 +273,7 @@ def _roll_back(file: int, journal: int) -> None:
 
 
 def _as_restored(now: bytes, place: int, restored: list[tuple[int, bytes]]) -> bytes:
-    """A part of a file, after others have been restored one after the other."""
+    """Return the bytes `now` of a part of a file, as they are after other parts were restored in order."""
     part = bytearray(now)
     for begin, old in restored:
         first, last = max(begin, place), min(begin + len(old), place + len(now))
@@ -271,7 +283,10 @@ def _as_restored(now: bytes, place: int, restored: list[tuple[int, bytes]]) -> b
 
 
 def _records(data: bytes) -> Iterator[tuple[int, bytes, int]]:
-    """The whole records of a journal; the last one may have been cut short, before what it describes was done."""
+    """Yield place, old bytes and checksum of the new bytes of each whole record of a journal.
+
+    The last record may be cut short. Then its part of the file was not overwritten yet.
+    """
     at = 0
     while at + _RECORD.size <= len(data):
         place, length, checksum, new = _RECORD.unpack_from(data, at)
@@ -294,13 +309,13 @@ def _write_all(file: int, data: bytes, place: int) -> None:
 
 
 def _try_lock(file: int) -> bool:
-    """Take the lock of the only writer, unless somebody has it."""
+    """Take the writer's lock. Return False if another process has it."""
     if fcntl is None:
         return True
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
-    except OSError:  # a file system without locks
+    except OSError:  # The file system has no locks.
         return True
     return True

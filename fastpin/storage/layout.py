@@ -1,17 +1,18 @@
-"""How a result lies in an HDF5 file.
+"""The layout of a result in an HDF5 file.
 
 ======================  ============================================================================================
-``/``                   attributes: format, versions, when and where it was made, whether it is complete, what failed
+``/``                   attributes: format, versions, date and machine, whether the run is complete, its error
 ``/problem``            attributes: geometry, friction, materials, units
-``/history``            ``corners`` (NaN: not given), ``blocks`` of them and how often each is run through
+``/history``            ``corners`` (NaN: not given), ``blocks`` of corners with the number of times of each block
 ``/grid``               ``theta`` (n,), rad
 ``/solver``             attributes: method and options; ``statistics``
-``/states``             one array a quantity, one row a state: (states,), (states, n) or (states, names)
-``/cycles``             one array a quantity, one row a cycle; empty where the history has none
-``/restart``            to go on from: ``start``, ``latest`` and the corners that were asked for
+``/states``             one array for each quantity, one row for each state: (states,), (states, n) or (states, names)
+``/cycles``             one array for each quantity, one row for each cycle; empty if the history has no cycles
+``/restart``            restarts to continue from: ``start``, ``latest`` and the corners of the option ``save_after``
 ======================  ============================================================================================
 
-Every array says its unit. Dimensions are named in the way of netCDF, so that xarray reads ``/states`` as it is.
+Every array has its unit as an attribute. Dimensions are named as in netCDF. Therefore xarray reads ``/states``
+directly.
 """
 
 from __future__ import annotations
@@ -45,9 +46,9 @@ from fastpin.version import __version__
 FORMAT = "fastpin result"
 FORMAT_VERSION = 2
 
-# Kind of quantity (a key of report.units, or "" for a plain number) of every field of a state that is stored
-# as an array. The rest of State is treated one by one below; coarse states, of which error bars are made, are not
-# stored. A test sees to it that nothing is forgotten.
+# Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
+# number. The other fields of State are written and read one by one. The coarse states behind error bars are not stored.
+# A test checks that every field of State is in one of the three tables.
 NODE_FIELDS = {
     "pressure": "traction",
     "shear": "traction",
@@ -55,6 +56,7 @@ NODE_FIELDS = {
     "slip": "displacement",
     "status": "",
 }
+"""Kind of quantity of each field of a state with one value for each node, shape (n,)."""
 
 NUMBER_FIELDS = {
     "step": "",
@@ -66,15 +68,20 @@ NUMBER_FIELDS = {
     "work": "energy",
     "energy": "energy",
 }
+"""Kind of quantity of each field of a state with one number."""
 
 OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars")
+"""Fields of a state that are stored in another form, or not at all."""
+
 FIELD_KINDS = {**NODE_FIELDS, **NUMBER_FIELDS}
-"""Kind of quantity of each array that has a unit."""
+"""Kind of quantity of each array of node values or numbers in ``/states``."""
 
 STATE_ROWS = (*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals")
-"""Arrays that have a row for every state."""
+"""Arrays of ``/states`` with one row for each state."""
 
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
+"""Names of the residuals of a state, in the order of a row."""
+
 CYCLE_FIELDS = {
     "corner": "",
     "length": "",
@@ -85,8 +92,10 @@ CYCLE_FIELDS = {
     "rotation_change": "rotation",
     "solved": "",
 }
+"""Kind of quantity of each field of a cycle."""
 
 WHOLE_NUMBERS = ("step", "corner", "length", "number")
+"""Fields of states and cycles that are whole numbers."""
 
 _PROBLEM_FIELDS = (
     "hole_radius",
@@ -98,17 +107,21 @@ _PROBLEM_FIELDS = (
     "dimensionless",
 )
 
-_ROWS = 128  # of numbers, in a chunk
+_ROWS = 128  # rows in a chunk of an array without node values
 
 Rows = dict[str, np.ndarray]
-"""Some states or cycles: for each quantity an array whose first dimension counts them."""
+"""Arrays of some states or cycles, by quantity. The first dimension counts the states or cycles."""
 
 
-# -- what does not grow --------------------------------------------------------------------------------------
+# -- parts of fixed size: problem, history, grid, options, statistics ---------------------------------------
 
 
 def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Grid, options: Mapping[str, Any]) -> None:
-    """Write everything but states, cycles and restarts into an empty file; `options` of the solver are attributes."""
+    """Write everything except the states, cycles and restarts into an empty file.
+
+    `options` are the attributes of ``/solver``; None leaves an option out. The arrays of states and cycles begin
+    without rows.
+    """
     file.attrs["format"] = FORMAT
     file.attrs["format_version"] = FORMAT_VERSION
     file.attrs["complete"] = False
@@ -131,7 +144,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Versions of fastpin, Python and the libraries."""
+    """Return the versions of fastpin, Python and the libraries, by name."""
     libraries = {name: metadata.version(name) for name in ("numpy", "scipy", "numba", "h5py")}
     return {"fastpin": __version__, "python": platform.python_version(), **libraries}
 
@@ -148,7 +161,7 @@ def _write_problem(group: h5py.Group, problem: Problem) -> None:
 
 
 def read_problem(file: h5py.File) -> Problem:
-    """The problem of a result."""
+    """Read the problem of a result."""
     group, bodies = file["problem"], {}
     for name in ("pin", "plate"):
         attributes = group[name].attrs
@@ -169,31 +182,32 @@ def _write_history(group: h5py.Group, problem: Problem, history: LoadHistory) ->
 
 
 def read_history(file: h5py.File) -> LoadHistory:
-    """The load history of a result."""
+    """Read the load history of a result."""
     group = file["history"]
-    corners, ends, lengths = group["corners"][()], group["ends"][()], group["cycle_lengths"][()].tolist()
+    corners = all_loads(group["corners"][()], np.nan)
+    ends, lengths = group["ends"][()], group["cycle_lengths"][()].tolist()
     blocks, row, inner = [], 0, 0
     for rows, count, cycle, size, cycles in group["blocks"][()].tolist():
-        own = tuple(lengths[inner : inner + cycles])
-        blocks.append(Block(corners[row : row + rows], ends[row : row + rows], own, count, bool(cycle), size))
+        inner_lengths = tuple(lengths[inner : inner + cycles])
+        blocks.append(Block(corners[row : row + rows], ends[row : row + rows], inner_lengths, count, bool(cycle), size))
         row, inner = row + rows, inner + cycles
     return LoadHistory.of_blocks(blocks)
 
 
 def read_grid(file: h5py.File) -> Grid:
-    """The nodes of a result."""
+    """Read the grid of a result."""
     return Grid(file["grid/theta"][()], bool(file["grid"].attrs["closed"]))
 
 
 def option_attributes(options: SolveOptions) -> dict[str, Any]:
-    """The options of a run as attributes of ``/solver``."""
-    kept = options.keywords()
-    del kept["between"], kept["error_bars"]
-    return {**kept, "fractions": options.fractions}
+    """Return the options of a run as attributes of ``/solver``."""
+    attributes = options.keywords()
+    del attributes["between"], attributes["error_bars"]
+    return {**attributes, "fractions": options.fractions}
 
 
 def read_options(file: h5py.File) -> SolveOptions:
-    """The options of a result; of one that :func:`fastpin.save` wrote only the nodes and the method are known."""
+    """Read the options of a result. A file of :func:`fastpin.save` has only the nodes and the method."""
     stored = {name: as_python(value) for name, value in file["solver"].attrs.items()}
     options: dict[str, Any] = {"nodes": stored.get("nodes", len(file["grid/theta"])), "method": stored["method"]}
     if options["method"] == "increment":
@@ -202,22 +216,23 @@ def read_options(file: h5py.File) -> SolveOptions:
         options["between"] = stored["fractions"][:-1].tolist()
     if "arc" in stored:
         start, stop = stored["arc"].tolist()
-        options["arc"] = (start, min(stop, start + 2.0 * np.pi))  # earlier versions took longer arcs for a circle
+        # Earlier versions took an arc longer than 2 pi as a circle.
+        options["arc"] = (start, min(stop, start + 2.0 * np.pi))
     options |= {name: stored[name] for name in ("keep", "shortcut") if name in stored}
     return SolveOptions(**options)
 
 
 def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
-    """Write what the solver counted."""
+    """Write the statistics of the solver, by name."""
     file["solver/statistics"].attrs.update(statistics)
 
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
-    """What the solver counted."""
+    """Read the statistics of the solver, by name."""
     return {str(name): as_python(value) for name, value in file["solver/statistics"].attrs.items()}
 
 
-# -- what grows ----------------------------------------------------------------------------------------------
+# -- growing arrays: states, cycles -------------------------------------------------------------------------
 
 _PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 
@@ -227,7 +242,10 @@ def _dtype(name: str) -> type:
 
 
 def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
-    """An array that grows by rows: those of nodes are packed one by one, and never written again."""
+    """Create an array that grows by rows.
+
+    Each row of node values is a chunk, compressed, and never written again.
+    """
     nodes = name in NODE_FIELDS
     chunks = (1 if nodes else _ROWS, *shape)
     dataset = group.create_dataset(
@@ -264,13 +282,26 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
 
 
 def load_units(problem: Problem) -> list[str]:
-    """The unit of each load, in the order of a load vector."""
+    """Return the unit of each load, in the order of a load vector."""
     unit = units(problem)
     return [unit[LOAD_KIND[name]] for name in LOADS]
 
 
+def all_loads(vectors: np.ndarray, missing: float) -> np.ndarray:
+    """Add the loads that were unknown when a file was written. New loads stand at the end of a load vector.
+
+    Parameters
+    ----------
+    vectors : ndarray, shape (..., loads of the file)
+    missing : float
+        Value of the other loads: 0, or NaN for loads that are not given.
+    """
+    lacking = len(LOADS) - vectors.shape[-1]
+    return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, lacking)], constant_values=missing)
+
+
 def rows_of(states: Sequence[State]) -> Rows:
-    """States as rows."""
+    """Return the rows of some states. The residuals of a state may be missing: NaN stands for them."""
     names = [*NODE_FIELDS, *NUMBER_FIELDS]
     rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
     rows["loads"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
@@ -281,18 +312,18 @@ def rows_of(states: Sequence[State]) -> Rows:
 
 
 def cycle_rows(cycles: Sequence[Cycle]) -> Rows:
-    """Cycles as rows."""
+    """Return the rows of some cycles."""
     return {name: np.array([getattr(cycle, name) for cycle in cycles], dtype=_dtype(name)) for name in CYCLE_FIELDS}
 
 
 def count(group: h5py.Group) -> int:
-    """Number of rows of ``/states`` or ``/cycles``."""
+    """Return the number of rows of ``/states`` or ``/cycles``."""
     first = next((group[name] for name in ("state", "corner") if name in group), None)
     return 0 if first is None else int(first.shape[0])
 
 
 def append(group: h5py.Group, rows: Rows) -> None:
-    """Add rows to ``/states`` or ``/cycles``."""
+    """Append rows to ``/states`` or ``/cycles``."""
     size, old = len(next(iter(rows.values()))), count(group)
     if size == 0:
         return
@@ -301,11 +332,25 @@ def append(group: h5py.Group, rows: Rows) -> None:
     for name, array in rows.items():
         dataset = group[name]
         dataset.resize(old + size, axis=0)
-        dataset[old:] = array
+        dataset[old:] = array[:, : dataset.shape[1]] if name == "loads" else array  # an older file has fewer loads
 
 
 def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[int]) -> Rows:
-    """Some rows of ``/states`` or ``/cycles``."""
+    """Read some rows of ``/states`` or ``/cycles``.
+
+    Parameters
+    ----------
+    group : h5py.Group
+    names : sequence of str
+        Arrays of the group.
+    picked : slice or sequence of int
+        Places of the rows. A sequence may have any order.
+
+    Raises
+    ------
+    ValueError
+        If the arrays have different numbers of rows.
+    """
     size = count(group)
     for name in names:
         if group[name].shape[0] != size:
@@ -316,12 +361,19 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
 
 
 def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | Sequence[int]) -> list[State]:
-    """Some states of a result."""
+    """Read some states of a result, by their places in the file.
+
+    Raises
+    ------
+    ValueError
+        If the arrays don't fit each other, or the nodes of `grid`.
+    """
     group = file["states"]
     for name in NODE_FIELDS:
         if group[name].shape[1:] != (grid.size,):
             raise ValueError(f"states/{name} has shape {group[name].shape}, there are {grid.size} nodes")
     rows = read_rows(group, STATE_ROWS, picked)
+    loads = all_loads(rows["loads"], 0.0)
     states = []
     for k in range(len(rows["step"])):
         per_node = {name: rows[name][k] for name in NODE_FIELDS}
@@ -332,7 +384,7 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
             State(
                 **per_node,
                 **{name: rows[name][k].item() for name in NUMBER_FIELDS},
-                load=named_load(rows["loads"][k]),
+                load=named_load(loads[k]),
                 theta=grid.theta,
                 residuals={name: value for name, value in residuals if not np.isnan(value)},
                 problem=problem,
@@ -343,7 +395,7 @@ def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | S
 
 
 def read_cycles(file: h5py.File) -> list[Cycle]:
-    """The cycles of a result."""
+    """Read the cycles of a result."""
     if not count(file["cycles"]):
         return []
     rows = read_rows(file["cycles"], list(CYCLE_FIELDS), slice(None))
@@ -351,7 +403,7 @@ def read_cycles(file: h5py.File) -> list[Cycle]:
 
 
 def check_format(file: h5py.File, path: str) -> None:
-    """Raise :class:`InputError` if a file is no result, or of another version."""
+    """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
     made_by = file.attrs.get("version_fastpin", "unknown")
@@ -360,7 +412,7 @@ def check_format(file: h5py.File, path: str) -> None:
 
 
 def as_python(value: Any) -> Any:
-    """An attribute as a Python value."""
+    """Return a NumPy scalar as a Python number. Any other value of an attribute stays as it is."""
     return value.item() if isinstance(value, np.generic) else value
 
 
@@ -368,56 +420,61 @@ _ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.na
 
 
 def write_restart(group: h5py.Group, restart: Restart) -> None:
-    """Write a restart into an empty group, without units: tractions in F/R, displacements in F beta*."""
-    met, marks = list(restart.repeats), list(restart.marks.items())
-    configurations: list[Configuration] = []
-    places: dict[int, int] = {}
+    """Write a restart into an empty group.
 
-    def place(configuration: Configuration) -> int:
-        """Where a configuration is stored; those that share their arrays are stored once."""
-        known = places.setdefault(id(configuration.slip), len(configurations))
-        if known == len(configurations):
+    Configurations are dimensionless: tractions in F/R, displacements in F beta*.
+    """
+    known, marks = list(restart.repeats), list(restart.marks.items())
+    configurations: list[Configuration] = []
+    indices: dict[int, int] = {}
+
+    def index_of(configuration: Configuration) -> int:
+        """Return the index of a configuration. Configurations that share their arrays are stored once."""
+        index = indices.setdefault(id(configuration.slip), len(configurations))
+        if index == len(configurations):
             configurations.append(configuration)
-        return known
+        return index
 
     group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
-    group.attrs["configuration"] = place(restart.configuration)
+    group.attrs["configuration"] = index_of(restart.configuration)
     group["load"] = restart.load
     group["met"] = np.array(
-        [(place(one.configuration), one.ends_cycle, one.last, one.period, one.since) for one in met], dtype=np.int64
+        [(index_of(item.configuration), item.ends_cycle, item.last, item.period, item.since) for item in known],
+        dtype=np.int64,
     ).reshape(-1, 5)
     group["marks"] = np.array(
-        [(*key, place(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
+        [(*key, index_of(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
     ).reshape(-1, 5)
     group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
     for name in _ARRAYS:
-        group[f"configurations/{name}"] = np.array([getattr(one, name) for one in configurations])
+        group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
     group.create_group("statistics").attrs.update(restart.statistics)
 
 
 def read_restart(group: h5py.Group) -> Restart:
-    """Read what :func:`write_restart` wrote."""
+    """Read a restart from a group of :func:`write_restart`."""
     arrays = {name: group[f"configurations/{name}"][()] for name in _ARRAYS}
-    count = len(arrays["load"])
-    all_of_them = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(count)]
-    met = [
-        KnownConfiguration(all_of_them[place], bool(ends), int(last), int(period), int(since))
-        for place, ends, last, period, since in group["met"][()]
+    arrays["load"] = all_loads(arrays["load"], 0.0)
+    size = len(arrays["load"])
+    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(size)]
+    known = [
+        KnownConfiguration(configurations[index], bool(ends), int(last), int(period), int(since))
+        for index, ends, last, period, since in group["met"][()]
     ]
     marks = {
-        (int(block), int(inner)): CycleEnd(int(corner), int(number), all_of_them[place], float(dissipation))
-        for (block, inner, place, corner, number), dissipation in zip(
+        (int(block), int(inner)): CycleEnd(int(corner), int(number), configurations[index], float(dissipation))
+        for (block, inner, index, corner, number), dissipation in zip(
             group["marks"][()], group["marks_dissipation"][()], strict=True
         )
     }
     return Restart(
         corner=int(group.attrs["corner"]),
-        load=group["load"][()],
+        load=all_loads(group["load"][()], 0.0),
         force=float(group.attrs["force"]),
-        configuration=all_of_them[int(group.attrs["configuration"])],
+        configuration=configurations[int(group.attrs["configuration"])],
         dissipation=float(group.attrs["dissipation"]),
         work=float(group.attrs["work"]),
-        repeats=Repeats(met),
+        repeats=Repeats(known),
         marks=marks,
         statistics={str(name): float(value) for name, value in group["statistics"].attrs.items()},
     )

@@ -1,4 +1,4 @@
-"""Histories followed into a file: states are appended as they come, and nothing that was appended is ever lost."""
+"""Runs that write to a file. Every state is appended to the file soon after it is solved, and is never lost again."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ def record(
     progress: Progress | None = None,
     **options: Unpack[OptionValues],
 ) -> None:
-    """Follow a load history as :func:`fastpin.solve` does, into an HDF5 file instead of memory.
+    """Follow a load history as :func:`fastpin.solve`, and write the states to an HDF5 file.
 
-    States are in the file, for good, a tenth of a second after they were found, whatever happens to the process.
-    Memory does not grow with the history. :func:`resume` goes on where a run has ended early, with the same bits as if
-    it had not; :func:`fastpin.store.load` reads the file, also while it is being written.
+    A state is safe in the file a tenth of a second after it is solved. A killed process does not lose it. Memory does
+    not grow with the history. :func:`resume` continues a run that has ended early, to the same bits as an uninterrupted
+    run. :func:`fastpin.load` reads the file, also during the run.
 
     Parameters
     ----------
@@ -49,37 +49,37 @@ def record(
     path : path
         The file. Until the run ends, a journal and a checkpoint stand beside it.
     title : str
-        Kept with the file.
+        Title of the run, stored in the file.
     save_after : sequence of int
-        Corners at which a restart is kept: ``load(path, after=corner)`` is quick then.
+        Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
-        Replace a file that exists.
+        Replace an existing file.
     **options
-        See :class:`fastpin.SolveOptions`. Error bars are not kept in files, so they are refused.
+        See :class:`fastpin.SolveOptions`. Error bars are refused: a file has no place for them.
 
     Raises
     ------
     InputError
         Naming the field that can't be used; also if the file exists, or can't be written.
     SolveError
-        As :func:`fastpin.solve`. What was solved before is in the file; ``result`` holds the last state of it.
+        See :func:`fastpin.solve`. The earlier states are in the file. ``result`` of the error holds the last of them.
     OSError
-        If the file can't be written any more, for example because the disk is full. What was in it stays.
+        If the file can't be written any more, for example because the disk is full. The states in the file stay.
 
-    A KeyboardInterrupt ends the file properly; what was solved before is in it.
+    A KeyboardInterrupt ends the file properly, with all earlier states.
     """
     path = Path(path)
     check_writable(path)
     if start is not None:
         check_start(problem, start)
-    saved = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
-    chosen = SolveOptions(**options)
-    check_grid(chosen, grid)
-    if chosen.error_bars:
+    save_corners = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
+    solve_options = SolveOptions(**options)
+    check_grid(solve_options, grid)
+    if solve_options.error_bars:
         raise InputError("error_bars", "are not kept in files; leave them out, or solve without a file")
-    task = Task(problem, as_history(history), chosen, grid, progress, saved)
-    if max(saved, default=0) > len(task.history):
-        raise InputError("save_after", f"must be corners from 1 to {len(task.history)}, not {max(saved)}")
+    task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
+    if max(save_corners, default=0) > len(task.history):
+        raise InputError("save_after", f"must be corners from 1 to {len(task.history)}, not {max(save_corners)}")
     writer = FileRecorder(path, task, title)
     writer.overwrite = overwrite
     writer.check_overwriting()
@@ -92,12 +92,14 @@ def record(
 
 
 def resume(path: str | Path, progress: Progress | None = None) -> None:
-    """Go on with the run of a file that was killed, interrupted or stopped by an error.
+    """Continue the run of a file after a kill, an interrupt or an error.
 
     Parameters
     ----------
     path : path
+        The file of :func:`record`.
     progress : callable, optional
+        See :func:`fastpin.solve`.
 
     Raises
     ------
@@ -122,12 +124,12 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
 
 
 def stored_case(path: str | Path) -> Case:
-    """The case of a stored result: problem, history and options.
+    """Read the case of a stored result: problem, history, options and title.
 
     Raises
     ------
     InputError
-        See :func:`fastpin.store.load`.
+        See :func:`fastpin.load`.
     """
     with open_result(Path(path)) as file:
         title = str(file["solver"].attrs.get("title", ""))

@@ -1,6 +1,7 @@
-"""Results in HDF5 files: all states with problem, history, grid, versions and units. See layout.py for what is where.
+"""Results in HDF5 files: all states with problem, history, grid, versions and units.
 
-:func:`fastpin.record.record` writes such files while a history is followed; here are results that are in memory.
+:func:`save` writes a result that is in memory. :func:`fastpin.record` writes the same kind of file during a run. The
+layout of a file stands in layout.py.
 """
 
 from __future__ import annotations
@@ -41,25 +42,27 @@ from fastpin.storage.layout import (
 )
 
 ALL = slice(None)
+"""All states of a file."""
 
 
 def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
-    """Write a result to an HDF5 file, whole or not at all. Error bars are not kept.
+    """Write a result to an HDF5 file, whole or not at all. Error bars are not written.
 
     Parameters
     ----------
     result : Result
     path : path
-        Overwritten if it exists, unless it holds an unfinished run.
+        An existing file is overwritten, but not a file with an unfinished run.
     error : str, optional
-        Why the result is incomplete, kept with it.
+        Why the result is incomplete; stored in the file.
     restart : bool
-        Also keep what is needed to go on from the result.
+        Also write the restart, from which another solution can continue.
 
     Raises
     ------
     InputError
-        If `path` can't be written.
+        If `path` can't be written, holds an unfinished run, or another run is writing to it. Also if a state of the
+        result is on another grid.
     """
     check_writable(path)
     check_free(Path(path))
@@ -80,26 +83,27 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
 
 
 def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | None = None) -> Result:
-    """Read a result, also of a run that is still being written or was killed.
+    """Read a result. The run of the file may be finished, unfinished or killed.
 
     Parameters
     ----------
     path : path
     states : slice or sequence of int
-        Which states to read, by their place in the file; all unless given.
+        States to read, by their place in the file from 0; negative places count from the end. All states by default.
     after : int, optional
-        Only what was found up to this corner, counted from 1, to go on from there: ``solve(..., start=result)``. If it
-        is not one of those that were saved, what lies between is solved again, which gives the same bits.
+        Read the result only up to this corner, counted from 1. ``solve(..., start=result)`` then continues from the
+        corner. If the corner has no restart in the file, the steps from the last restart before it are solved again.
+        They give the same bits.
 
     Returns
     -------
     Result
-        The states that were asked for. A finished result can be gone on from.
+        The states in `states`. Another solution can continue from a finished result.
 
     Raises
     ------
     InputError
-        If the file can't be read, was cut short, or is no result of fastpin; or has no such corner.
+        If the file can't be read, was cut short, or is no result of fastpin. Also if it has no such corner or state.
     """
     path = Path(path)
     with open_result(path) as file:
@@ -132,12 +136,12 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             cycles=tuple(cycles),
         )
     if task is not None and restart is not None and restart.corner < len(task.history):
-        result.restart = task.reach(restart, grid)  # the file is free again: this may take a while
+        result.restart = task.reach(restart, grid)  # The file is closed by now: this may take long.
     return result
 
 
 def is_unfinished(path: Path) -> bool:
-    """Whether a file holds a run that has not come to its end."""
+    """Whether a file holds an unfinished run."""
     try:
         with open_result(path) as file:
             return "run" in file.attrs and not file.attrs.get("complete", True)
@@ -146,7 +150,7 @@ def is_unfinished(path: Path) -> bool:
 
 
 def state_count(path: str | Path) -> int:
-    """Number of states in a file.
+    """Return the number of states in a file.
 
     Raises
     ------
@@ -159,12 +163,12 @@ def state_count(path: str | Path) -> int:
 
 @contextmanager
 def open_result(path: Path) -> Iterator[Any]:
-    """A result open for reading, as its last transaction left it.
+    """Open a result for reading, as its last transaction left it.
 
     Raises
     ------
     InputError
-        If the file can't be read, was cut short, or is no result of fastpin; also where its user found it damaged.
+        If the file can't be read, was cut short, or is no result of fastpin. Also if the block finds damaged data.
     """
     check_exists(path)
     with consistent_view(path), open_h5(path) as file:
@@ -178,7 +182,7 @@ def open_result(path: Path) -> Iterator[Any]:
 
 
 def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tuple[Task, Restart]:
-    """The history up to a corner, and the latest restart on the way there."""
+    """Return the task up to the corner `after`, and the latest restart at or before that corner."""
     whole_number("after", after, 1)
     reached = max((int(group.attrs["corner"]) for group in file.get("restart", {}).values()), default=0)
     if count(file["states"]):
@@ -195,7 +199,7 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tu
 
 
 def stored_task(file: h5py.File) -> Task:
-    """The task of the run of a file, on its grid."""
+    """Read the task of the run of a file, on its grid."""
     stops = frozenset(file["solver"].attrs["save_after"].tolist())
     return Task(read_problem(file), read_history(file), read_options(file), read_grid(file), stops=stops)
 

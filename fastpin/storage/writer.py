@@ -46,42 +46,46 @@ from fastpin.storage.store import is_unfinished, load, stored_task
 log = logging.getLogger(__name__)
 
 MOST_PENDING = 64
-"""States that are written together, at most."""
+"""Most states that wait for one commit."""
 
 LONGEST_WAIT = 0.1
-"""Seconds after which a state is in the file, at most, as soon as the next one is there."""
+"""Longest time between two commits, s. After this time the next state or corner commits."""
 
 CHECKPOINT_EVERY = 2.0
-"""Seconds between two checkpoints, at least."""
+"""Shortest time between two checkpoints, s."""
 
 CHECKPOINT_SHARE = 50.0
-"""Times what a checkpoint takes that pass before the next one, at least."""
+"""Shortest time between two checkpoints, in durations of a checkpoint."""
 
 PIECE = 256
-"""States that are copied together."""
+"""Most states that are copied at once, when steps repeat."""
 
 
 def checkpoint_of(path: Path) -> Path:
-    """Where the latest checkpoint of an unfinished run is: beside the file itself, whatever links lead there."""
+    """Return the path of a run's checkpoint. It stands beside the file itself, also if `path` is a link."""
     real = Path(os.path.realpath(path))
     return real.with_name(real.name + ".checkpoint")
 
 
 def clear_checkpoints(path: Path) -> None:
-    """Remove the checkpoint of a run that has ended, and those that a process was killed over."""
+    """Remove the checkpoint of an ended run, and the partly written checkpoints of killed processes."""
     checkpoint = checkpoint_of(path)
-    for left in (checkpoint, *checkpoint.parent.glob(f".{glob.escape(checkpoint.stem)}.*{checkpoint.suffix}")):
-        left.unlink(missing_ok=True)
+    for stale in (checkpoint, *checkpoint.parent.glob(f".{glob.escape(checkpoint.stem)}.*{checkpoint.suffix}")):
+        stale.unlink(missing_ok=True)
 
 
 @contextmanager
 def closing_file(writer: FileRecorder) -> Iterator[None]:
-    """End the file as the run ends."""
+    """End the file of a run when the block ends.
+
+    A SolveError or an interrupt ends the file properly, with the message. The exception then holds the last state as
+    ``result``. Any other exception leaves the file as the last transaction left it.
+    """
     try:
         yield
-    except (SolveError, Interrupted) as ended:
-        if writer.finish(str(ended)):
-            ended.result = load(writer.path, states=slice(-1, None))
+    except (SolveError, Interrupted) as error:
+        if writer.finish(str(error)):
+            error.result = load(writer.path, states=slice(-1, None))
         raise
     except BaseException:
         writer.abort()
@@ -90,24 +94,40 @@ def closing_file(writer: FileRecorder) -> Iterator[None]:
 
 
 class FileRecorder:
-    """The recorder of a run that writes to a file."""
+    """The recorder of a run that writes states, cycles and restarts to a file.
+
+    Parameters
+    ----------
+    path : Path
+    task : Task
+        The task that is followed. Its stops get a restart in the file.
+    title : str
+
+    Attributes
+    ----------
+    chosen_arc : bool
+        Whether the solver chose the arc. A wider arc may then follow.
+    overwrite : bool
+        Whether an existing file may be replaced, also the file of an unfinished run.
+    """
 
     def __init__(self, path: Path, task: Task, title: str) -> None:
         self.path = path
         self.task = task
-        self.chosen_arc = task.options.arc is None and task.grid is None  # by the solver
-        self.overwrite = True  # also an unfinished run
+        self.chosen_arc = task.options.arc is None and task.grid is None
+        self.overwrite = True
         self._title = title
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
         self._name = ""
-        self._states: list[Rows] = []  # to be written
+        self._states: list[Rows] = []  # waiting for the next commit
         self._cycles: list[Cycle] = []
         self._pending = 0
-        self._at = [0, 0]  # states and cycles seen
+        # Pairs of numbers: states, cycles.
+        self._at = [0, 0]  # received from the run
         self._stored = [0, 0]  # in the file
-        self._corner = [0, 0]  # at the last corner
+        self._corner = [0, 0]  # received up to the last corner
         self._copied: Rows | None = None
         self._committed = time.monotonic()
         self._next_checkpoint = 0.0
@@ -115,31 +135,38 @@ class FileRecorder:
         self._began = time.monotonic()
 
     def reopen(self, file: JournaledFile, h5: h5py.File, restart_group: h5py.Group) -> None:
-        """Go on with a file; what was found after the restart will be found again."""
+        """Continue a file from a restart in it. The run gives the later states again."""
         self._file, self._h5 = file, h5
         self._name = str(h5.attrs["run"])
         self._stored = [count(h5["states"]), count(h5["cycles"])]
-        seen = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
-        self._at, self._corner = list(seen), list(seen)
+        counts = int(restart_group.attrs["states"]), int(restart_group.attrs["cycles"])
+        self._at, self._corner = list(counts), list(counts)
         self._seconds = float(restart_group["statistics"].attrs.get("seconds", 0.0))
 
     def check_overwriting(self) -> None:
-        """Raise :class:`InputError` if there is a file that must not be overwritten."""
+        """Raise :class:`InputError` if the file exists and must not be overwritten."""
         if self.path.exists() and not self.path.is_file():
             raise InputError(str(self.path), "must be an ordinary file")
         if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
             return
-        what = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
-        raise InputError(str(self.path), f"{what} (--overwrite replaces it)")
+        reason = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
+        raise InputError(str(self.path), f"{reason} (--overwrite replaces it)")
 
-    # -- what a run calls ----------------------------------------------------------------------------------------
+    # -- calls of the run ----------------------------------------------------------------------------------------
 
     def begin(self, run: Run) -> None:
+        """Begin a new file for `run`, or continue a reopened file on the same grid.
+
+        Raises
+        ------
+        InputError
+            If the file must not be overwritten, or can't be written.
+        """
         self._run = run
         if self._file is not None and np.array_equal(self._h5["grid/theta"][()], run.system.grid.theta):
-            return  # reopened
+            return  # The file was reopened.
         if self._file is None:
-            self.check_overwriting()  # once more: the way to here was long
+            self.check_overwriting()  # Check again: the choice of the arc may have taken long.
         self.abort()
         self._name = uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
@@ -147,23 +174,26 @@ class FileRecorder:
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task, system = self.task, run.system
-        more = {"title": self._title, "arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
-        write_head(self._h5, task.problem, task.history, system.grid, {**option_attributes(task.options), **more})
+        extra = {"title": self._title, "arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
+        write_head(self._h5, task.problem, task.history, system.grid, {**option_attributes(task.options), **extra})
         self._h5.attrs["run"] = self._name
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))
         self._commit()
 
     def add(self, state: State) -> None:
+        """Take a state. It is in the file after the next commit."""
         self._copied = None
         self._put(rows_of([state]))
 
     def add_cycle(self, cycle: Cycle) -> None:
+        """Take a cycle, unless the file has it already."""
         self._at[1] += 1
         if self._at[1] > self._stored[1]:
             self._cycles.append(cycle)
 
     def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+        """Take the latest states once more, with other steps and energies, shape (states,)."""
         size = len(steps)
         if self._copied is None or len(self._copied["step"]) != size:
             self._commit()
@@ -177,6 +207,7 @@ class FileRecorder:
             self._put_again(self._copied, steps, dissipation, work)
 
     def corner_reached(self) -> None:
+        """Write a restart at a stop of the task. Commit after a long wait. Write a checkpoint if one is due."""
         self._corner = list(self._at)
         now = time.monotonic()
         if self._run.corner in self.task.stops and str(self._run.corner) not in self._h5["restart"]:
@@ -188,13 +219,16 @@ class FileRecorder:
             if self._next_checkpoint:
                 self._commit()
                 self._write_checkpoint()
-            took = time.monotonic() - now
-            self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * took)
+            duration = time.monotonic() - now
+            self._next_checkpoint = time.monotonic() + max(CHECKPOINT_EVERY, CHECKPOINT_SHARE * duration)
 
     # -- the file ------------------------------------------------------------------------------------------------
 
     def finish(self, error: str | None) -> bool:
-        """End the file with what the run has found, and why it ended early; False if it had not even begun."""
+        """End the file with the statistics of the run and the message of its error, if any.
+
+        Return False if the file has not begun.
+        """
         if self._file is None:
             return False
         try:
@@ -221,7 +255,7 @@ class FileRecorder:
         clear_checkpoints(self.path)
 
     def abort(self) -> None:
-        """Leave the file as it was after the last transaction."""
+        """Close the file as the last transaction left it."""
         if self._file is not None:
             self._file.abandon()
             self._close()
@@ -236,7 +270,7 @@ class FileRecorder:
             file.release()
 
     def _put(self, rows: Rows) -> None:
-        """Take rows that follow on those before; those that are in the file already are the same."""
+        """Take the next rows. Rows that are in the file already are compared, and not written again."""
         size = len(rows["step"])
         known = min(max(self._stored[0] - self._at[0], 0), size)
         if known:
@@ -258,7 +292,7 @@ class FileRecorder:
             log.warning("%s: states found again differ from those in the file: another machine or version?", self.path)
 
     def _commit(self) -> None:
-        """Write what is pending and end the transaction."""
+        """Write the waiting states and cycles, and end the transaction."""
         assert self._file is not None
         try:
             if self._states:
@@ -292,7 +326,13 @@ class FileRecorder:
 
 
 def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart]:
-    """The writer of an unfinished run, and where the run goes on."""
+    """Reopen the file of an unfinished run, and return its writer and the restart to continue from.
+
+    Raises
+    ------
+    InputError
+        If the file is no result of a run, holds a finished run, or another process is writing to it.
+    """
     file = JournaledFile(path, new=False)
     try:
         if path.stat().st_size == 0:
@@ -324,13 +364,16 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
 
 
 def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Restart:
-    """The latest restart of a run: of its checkpoint, or else of the file itself."""
-    inside = h5["restart/latest"]
+    """Read the latest restart of a run, from its checkpoint or else from the file itself.
+
+    `use` gets the group of the restart while it is open.
+    """
+    file_restart = h5["restart/latest"]
     try:
         with h5py.File(checkpoint_of(path), "r") as checkpoint:
             group: Any = checkpoint["restart"]
             same_run = checkpoint.attrs["run"] == h5.attrs["run"]
-            if same_run and group.attrs["corner"] >= inside.attrs["corner"]:
+            if same_run and group.attrs["corner"] >= file_restart.attrs["corner"]:
                 restart = read_restart(group)
                 use(group)
                 return restart
@@ -338,6 +381,6 @@ def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Res
         pass
     except (OSError, KeyError):
         log.warning("%s can't be read: going on from an earlier corner", checkpoint_of(path))
-    restart = read_restart(inside)
-    use(inside)
+    restart = read_restart(file_restart)
+    use(file_restart)
     return restart

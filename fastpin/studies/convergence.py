@@ -1,4 +1,4 @@
-"""Convergence studies: every reported quantity on finer and finer grids, and with more and more load increments."""
+"""Convergence studies: the reported quantities on ever finer grids, and with ever more load increments."""
 
 from __future__ import annotations
 
@@ -26,23 +26,31 @@ from fastpin.states.quantities import matching_values, quantity, size, values
 from fastpin.studies.extrapolate import Estimate, estimate
 
 LEAST_GRIDS = 3
+"""Fewest grids, or numbers of increments, of a study."""
+
 LEAST_RATIO = 1.1
+"""Smallest ratio of two successive numbers of nodes."""
+
 LEAST_NODES = 51
+"""Fewest nodes of a grid."""
+
 LEAST_CLOSED = 10
-"""Nodes in contact below which a grid says nothing about the quantities of finer ones."""
+"""Fewest nodes in contact. A coarser grid says nothing about the quantities of finer grids."""
 
 SHORT = 6
-"""Up to so many corners are all studied, of a longer history the last one."""
+"""Corners of a short history. All its corners are studied; of a longer history the last corner is studied."""
 
 INCREMENT_NODES = 201
-"""The increment solver has the first grid of so many nodes or more, or the finest."""
+"""Fewest nodes of the increment solver's grid. It is the first such grid of the study, or else the finest grid."""
 
 ROUNDING = 1e-9
-"""Values that differ by so small a part of the quantity's size are the same."""
+"""Largest difference of equal values, in parts of the quantity's size."""
 
 NODES = (101, 201, 401, 801)
+"""Default numbers of nodes."""
 
 Progress = Callable[[float, float, str], None]
+"""Receives the work that is done, all the work, and the name of the present run."""
 
 
 class QuantitySeries(NamedTuple):
@@ -51,18 +59,18 @@ class QuantitySeries(NamedTuple):
     Attributes
     ----------
     corner : int
-        From 1.
+        Counted from 1.
     name : str
-        See :data:`fastpin.quantities.QUANTITIES`.
+        See :data:`fastpin.states.QUANTITIES`.
     values : tuple of float
-        On every grid or for every number of increments; SI or in the units of a dimensionless problem, angles in rad.
-        NaN where a value can't be compared with the last one.
+        Values for every grid or every number of increments, SI or in the units of a dimensionless problem, angles in
+        rad. NaN stands for a value that can't be compared with the last one.
     estimate : Estimate
         Observed order, limit and error bar of the last value.
     size : float
-        The natural size of the quantity, see :func:`fastpin.quantities.size`.
+        The natural size of the quantity, see :func:`fastpin.states.quantities.size`.
     path : float
-        The value of the path solver on the same grid, for a study of increments; NaN for one of grids.
+        In a study of increments, the value of the path solver on the same grid. In a study of grids, NaN.
     """
 
     corner: int
@@ -75,17 +83,17 @@ class QuantitySeries(NamedTuple):
 
 @dataclass(frozen=True)
 class Study:
-    """What one solver gives.
+    """The series of one solver.
 
     Attributes
     ----------
     method : {"path", "increment"}
     counts : tuple of int
-        Numbers of nodes ("path"), or of increments a step.
+        Numbers of nodes for "path", numbers of increments in each step for "increment".
     nodes : int
-        Nodes of the (finest) grid.
-    series : tuple of Series
-        Corner by corner.
+        Nodes of the grid; of the finest grid for "path".
+    series : tuple of QuantitySeries
+        The series of all quantities, corner by corner.
     """
 
     method: Method
@@ -102,13 +110,14 @@ class Convergence:
     ----------
     problem : Problem
     grid : Grid
-        The finest one; all others are on its arc.
+        The finest grid. All other grids are on its arc.
     loads : dict of int to dict
-        The loads at the corners that are studied, counted from 1.
+        The loads at the studied corners. Corners are counted from 1.
     studies : tuple of Study
-        That of the path solver, and that of the increment solver if it was asked for.
+        The study of the path solver. With increments, also the study of the increment solver.
     complete : bool
-        False if it was interrupted, or lost its loads; finer grids, increments or later corners are then missing.
+        False after an interrupt, or after a grid that can't follow the loads. Finer grids, increments or later corners
+        are then missing.
     """
 
     problem: Problem
@@ -123,7 +132,7 @@ class Convergence:
 
 
 class StudyInterrupted(KeyboardInterrupt):
-    """Ctrl-C during a study; ``study`` is what was found before, None with fewer than three grids."""
+    """Ctrl-C during a study. ``study`` holds the finished grids, or None for fewer than three grids."""
 
     def __init__(self, study: Convergence | None) -> None:
         super().__init__("interrupted")
@@ -131,13 +140,14 @@ class StudyInterrupted(KeyboardInterrupt):
 
 
 class StudyLostError(SolveError):
-    """A grid on which the loads can't be followed, or that does not fit in memory; the message names it.
+    """A grid can't follow the loads, or does not fit in memory. The message names the grid.
 
-    ``study`` is what was found: the corners before the one that was lost, or the grids before the one that was too
-    large; None if there are none, or fewer than three grids.
+    ``study`` holds the corners before the lost corner, or the grids before the grid that was too large. It is None
+    without such a corner, or with fewer than three grids.
     """
 
     study: Convergence | None = None
+    """The finished part of the study, or None."""
 
 
 def converge(
@@ -150,46 +160,52 @@ def converge(
     arc: tuple[float, float] | None = None,
     progress: Progress | None = None,
 ) -> Convergence:
-    """Follow a history on several grids, and say how its quantities converge.
+    """Follow a history on several grids, and estimate how its quantities converge.
 
-    All grids are on one arc: `arc`, or one that a coarse run chooses as for :func:`fastpin.solve`. A node of as many of
-    them as can be lies where the first force points.
+    All grids are on one arc: `arc`, or the arc that a coarse run chooses as in :func:`fastpin.solve`. On as many grids
+    as possible, a node lies in the direction of the first force.
 
     Parameters
     ----------
     problem, history
         See :func:`fastpin.solve`.
     nodes : sequence of int
-        At least three numbers of nodes, increasing, from 51 on. Multiples of the numbers of intervals, as in 101, 201,
-        401, give the smoothest sequences; others will do.
+        At least three numbers of nodes, increasing, at least 51 each. Each number must exceed the one before by a
+        tenth. Multiples of the numbers of intervals, as in 101, 201, 401, give the smoothest sequences.
     increments : sequence of int
-        Also follow it with the increment solver, with these numbers of increments a step: at least three, increasing.
+        Also follow the history with the increment solver, with these numbers of increments in each step: at least
+        three, increasing.
     increment_nodes : int, optional
-        Nodes of the increment solver's grid; of `nodes` the first of 201 or more unless given, or the last.
+        Nodes of the increment solver's grid. By default the first number of `nodes` from 201 on, or else the last.
     corner : int, optional
-        The corner that is studied, counted from 1; what follows it is left out, but for the choice of the arc. By
-        default all of up to six, or the last one.
+        The studied corner, counted from 1. Later corners are not followed; they only take part in the choice of the
+        arc. By default all corners of a history of up to six, or else the last corner.
     arc : (float, float), optional
-        Start and end angle, rad; 2 pi apart for the whole circle.
+        Start and end angle, rad. A difference of 2 pi means the whole circle.
     progress : callable, optional
-        Called as ``progress(done, total, what)`` now and then; a unit is some constant time.
+        Called as ``progress(done, total, label)`` now and then. `done` and `total` are in units of some constant time.
+        `label` names the present run.
+
+    Returns
+    -------
+    Convergence
 
     Raises
     ------
     InputError
-        Naming the field that can't be used, before anything is solved; also where a grid has too few nodes in contact.
+        Naming the field that can't be used, before any grid is solved. Also if a grid has too few nodes in contact.
     StudyLostError
-        Where the loads can't be followed to the end on a grid, which the message names; it holds the study of the
-        corners before that.
+        If a grid can't follow the loads to the end, or does not fit in memory. The message names the grid. The error
+        holds the finished part of the study.
     StudyInterrupted
-        By Ctrl-C; it holds the study of the grids that were finished, if they are three.
+        After Ctrl-C. It holds the study of the finished grids, if there are three.
     """
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
     for before, after in pairwise(counts):
         if after < LEAST_RATIO * before:
             raise InputError("nodes", f"must grow by a tenth at least to show an order, but {after} follows {before}")
-    wanted = np.size(increments) > 0
-    steps = _increasing("increments", increments, 1) if wanted else ()
+    has_increments = np.size(increments) > 0
+    steps = _increasing("increments", increments, 1) if has_increments else ()
     single = next((count for count in counts if count >= INCREMENT_NODES), counts[-1])
     if increment_nodes is not None:
         if not steps:
@@ -213,7 +229,7 @@ def _increasing(field: str, numbers: object, least: int, most: int | None = None
 
 
 class _Work:
-    """What is to be solved, and what has been."""
+    """The runs of one study, and their results."""
 
     def __init__(
         self,
@@ -235,10 +251,11 @@ class _Work:
         self.done = 0.0
         self.total = sum(_cost("path", count, 0) for count in (*counts, *self._path_apart()))
         self.total += sum(_cost("increment", self.single, count) for count in increments)
-        self.found: dict[int, Result] = {}  # of the path solver, by nodes
+        self.found: dict[int, Result] = {}  # results of the path solver, by number of nodes
         self.found_increments: list[Result] = []
 
     def study(self) -> Convergence:
+        """Solve all runs and return the study. See :func:`converge` for the errors."""
         try:
             self._follow()
         except KeyboardInterrupt:
@@ -252,16 +269,16 @@ class _Work:
         return self._convergence(complete=True)
 
     def _finished_study(self) -> Convergence | None:
-        """The study of the grids that are finished, if they are enough."""
+        """Return the study of the finished grids, or None for fewer than three."""
         enough = sum(count in self.found for count in self.counts) >= LEAST_GRIDS
         return self._convergence(complete=False) if enough else None
 
     def _path_apart(self) -> list[int]:
-        """The increment solver's grid, where it is none of the others."""
+        """Return the increment solver's number of nodes, unless the path solver has such a grid anyway."""
         return [self.single] if self.increments and self.single not in self.counts else []
 
     def _follow(self) -> None:
-        """All grids on the first arc that is wide enough for all of them."""
+        """Solve all grids on the first arc that is wide enough for all of them, then all increments."""
         common = math.gcd(*(count - 1 for count in self.counts))
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
         for arc in replace(self.task, options=self.task.options.changed(nodes=coarsest)).grids():
@@ -277,37 +294,37 @@ class _Work:
             self.found_increments.append(self._solve_grid(arc, self.single, "increment", count))
 
     def _solve_grid(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
-        """The history on one grid."""
+        """Follow the history on one grid."""
         if arc.closed:
             direction = first_direction(self.history.distinct())
             grid = Grid.circle(nodes, float(arc.theta[0]) if direction is None else direction)
         else:
             grid = arc.with_nodes(nodes)
-        what = f"{nodes} nodes" if method == "path" else f"{increments} increments"
+        label = f"{nodes} nodes" if method == "path" else f"{increments} increments"
         cost = _cost(method, nodes, increments)
 
         def progress(done: float, total: int) -> None:
             if self.progress is not None:
-                self.progress(self.done + cost * done / total, self.total, what)
+                self.progress(self.done + cost * done / total, self.total, label)
 
-        where = what if method == "path" else f"{what} a step and {nodes} nodes"
+        setting = label if method == "path" else f"{label} a step and {nodes} nodes"
         try:
             result = solve(
                 self.task.problem, self.history, method=method, increments=increments or None, grid=grid,
                 keep=self.keep, progress=progress,
             )  # fmt: skip
         except ArcError as error:
-            error.args = (f"with {where}: {error}",)
+            error.args = (f"with {setting}: {error}",)
             raise
         except SolveError as error:
-            lost = StudyLostError(f"with {where}: {error}", error.step, error.fraction, error.load, error.result)
+            lost = StudyLostError(f"with {setting}: {error}", error.step, error.fraction, error.load, error.result)
             if not self.every or error.result is None or error.step < 1:
                 raise lost from None
-            self.lost, result = self.lost or lost, error.result  # study the corners before that
+            self.lost, result = self.lost or lost, error.result  # Study the corners before.
             self.corners = range(1, error.step + 1)
             self.history = self.history[: error.step]
         except MemoryError:
-            raise StudyLostError(f"with {where}: not enough memory") from None
+            raise StudyLostError(f"with {setting}: not enough memory") from None
         for corner, state in zip(self.corners, result, strict=False):
             closed = int(np.count_nonzero(state.pressure))
             if 0 < closed < LEAST_CLOSED:
@@ -336,20 +353,26 @@ class _Work:
     def _series(
         self, spacings: Sequence[float], results: Sequence[Result], path: Result | None
     ) -> Iterator[QuantitySeries]:
-        for place, corner in enumerate(self.corners):
-            last = results[-1][place]
-            rows = [matching_values(last, result[place]) for result in results]
-            other = {} if path is None else matching_values(last, path[place])
+        """Yield the series of all quantities at all corners; `path` is the path solver's result for comparison."""
+        for index, corner in enumerate(self.corners):
+            last = results[-1][index]
+            rows = [matching_values(last, result[index]) for result in results]
+            path_values = {} if path is None else matching_values(last, path[index])
             for name, value in values(last).items():
                 if math.isfinite(value):
-                    numbers, natural = tuple(row[name] for row in rows), size(name, last)
-                    found = estimate(spacings, numbers, ROUNDING * natural)
-                    if quantity(name).kind in ("angle", "width") and found.bar <= ROUNDING * natural:
-                        # read at or between nodes that all grids have
-                        found = Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
-                    yield QuantitySeries(corner, name, numbers, found, natural, other.get(name, math.nan))
+                    numbers, natural_size = tuple(row[name] for row in rows), size(name, last)
+                    limit = estimate(spacings, numbers, ROUNDING * natural_size)
+                    if quantity(name).kind in ("angle", "width") and limit.bar <= ROUNDING * natural_size:
+                        # All grids share the nodes at which, or between which, this place was read. Thus equal values
+                        # show no order.
+                        limit = Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
+                    path_value = path_values.get(name, math.nan)
+                    yield QuantitySeries(corner, name, numbers, limit, natural_size, path_value)
 
 
 def _cost(method: Method, nodes: int, increments: int) -> float:
-    """About what a run costs: 20 increments at 201 nodes as much as 6 paths, at 401 nodes as much as 20."""
+    """Return the approximate cost of a run. A path run costs the square of its nodes.
+
+    Measured: 20 increments cost as much as 6 path runs at 201 nodes, and as much as 20 path runs at 401 nodes.
+    """
     return float(nodes**2 * (1.0 if method == "path" else 0.5 * increments))

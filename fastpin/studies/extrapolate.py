@@ -1,14 +1,15 @@
-"""What a sequence of values on finer and finer grids says of its limit: observed order, extrapolated value, error bar.
+"""The limit of a sequence of values on ever finer grids: observed order, extrapolated value, error bar.
 
 f = f0 + C h^p is fitted to all values by least squares, with weights 1/h, as in L. Eca and M. Hoekstra, *A procedure
 for the estimation of the numerical uncertainty of CFD calculations based on grid refinement studies*, J. Comput. Phys.
-262 (2014) 104-130. With three values the fit is exact: Richardson's extrapolation with the order that P. J. Roache's
-grid convergence index takes (J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009), for any refinement ratios.
+262 (2014) 104-130. With three values the fit is exact. It is then Richardson's extrapolation, for any refinement
+ratios, with the order of P. J. Roache's grid convergence index (J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009).
 
-The error bar is theirs, too. Where an order is observed: a safety factor times the distance to the limit, and the
-deviation from the fit. The factor is :data:`SAFETY`, with three values, whose fit proves nothing, :data:`SAFETY_NOISE`.
-Where none is: the latter times the range of the last values (of all of them, with Eca and Hoekstra; here coarse grids
-that have been left behind do not count). A bar is never less than the index for an order of one.
+The error bar, too, follows Eca and Hoekstra. With an observed order it is a safety factor times the distance to the
+limit, plus the deviation from the fit. The factor is :data:`~fastpin.states.error_bars.SAFETY`. With three values it is
+:data:`SAFETY_NOISE`, because an exact fit proves nothing. Without an observed order the bar is :data:`SAFETY_NOISE`
+times the range of the last values. Eca and Hoekstra take the range of all values; here the coarsest grids do not count.
+A bar is never below the grid convergence index for order one.
 """
 
 from __future__ import annotations
@@ -23,36 +24,39 @@ import scipy
 from fastpin.states.error_bars import SAFETY, pair_bar
 
 SAFETY_NOISE = 3.0
+"""Safety factor of an error bar with three values, or without an observed order."""
 
 LATEST = 3
-"""Values whose range is the error bar where no order is observed."""
+"""Number of last values. Without an observed order their range gives the error bar."""
 
 LEAST_ORDER, MOST_ORDER = 0.5, 4.0
-"""Orders outside are not believed."""
+"""Smallest and largest credible order. A fit with another order observes none."""
 
 MISFIT = 0.1
-"""Standard deviation of a fit that shows no order any more, in parts of the range of the values."""
+"""Standard deviation, in parts of the range of the values, from which on a fit observes no order."""
 
 TRUSTED_ORDER = 2.0
-"""The order of piecewise linear tractions: a larger one is reported, but limit and bar come from a fit of this one."""
+"""The order of piecewise linear tractions. A larger order is reported, but a fit of this order gives limit and bar."""
 
 Verdict = Literal["observed", "not observed", "to rounding", "not comparable"]
+"""See :class:`Estimate`."""
 
 
 class Estimate(NamedTuple):
-    """What is known of a limit.
+    """The estimated limit of a sequence of values.
 
     Attributes
     ----------
     verdict : str
-        "observed": an order is. "not observed": the values follow no power of the spacing.
-        "to rounding": all values are the same but for rounding. "not comparable": one of them is missing (NaN).
+        "observed": the values show an order. "not observed": the values follow no power of the spacing.
+        "to rounding": all values are equal up to rounding. "not comparable": a value is missing (NaN).
     order : float
-        p of C h^p; NaN unless observed.
+        The order p of C h^p. NaN unless observed.
     limit : float
-        f0; NaN unless observed. To rounding: the last value.
+        The limit f0. The last value if all values are equal up to rounding. NaN if no order is observed, or the values
+        are not comparable.
     bar : float
-        The limit lies within the last value +- so much, in some 95 of 100 cases; NaN if not comparable.
+        Error bar: in some 95 of 100 cases the limit lies within the last value +- bar. NaN if not comparable.
     """
 
     verdict: Verdict
@@ -62,15 +66,15 @@ class Estimate(NamedTuple):
 
 
 def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float = 0.0) -> Estimate:
-    """Observed order, limit and error bar of the last of a sequence of values.
+    """Estimate the observed order and the limit of a sequence of values, and the error bar of the last value.
 
     Parameters
     ----------
     spacings : sequence of float, shape (grids,)
-        Decreasing; ratios may differ. At least three.
+        At least three node distances or step sizes, decreasing. Their ratios may differ, and their unit is free.
     values : sequence of float, shape (grids,)
     rounding : float
-        Values that differ by no more than this are the same.
+        Largest difference of values that are equal up to rounding, in the unit of the values.
     """
     h, f = np.asarray(spacings, dtype=float) / spacings[-1], np.asarray(values, dtype=float)
     last = float(f[-1])
@@ -89,18 +93,21 @@ def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float
 
 
 def _fit(h: np.ndarray, f: np.ndarray) -> tuple[float, float, float]:
-    """Order, limit and standard deviation of the best fit; the order is at an end of its range where there is none."""
+    """Return order, limit and standard deviation of the best fit.
+
+    Without a best order inside the range of the search, the order is at an end of this range.
+    """
     orders = np.linspace(0.5 * LEAST_ORDER, 1.25 * MOST_ORDER, 60)
     best = int(np.argmin([_fit_of_order(h, f, order)[1] for order in orders]))
-    near = orders[max(best - 1, 0)], orders[min(best + 1, len(orders) - 1)]
+    bounds = orders[max(best - 1, 0)], orders[min(best + 1, len(orders) - 1)]
     order = float(
-        scipy.optimize.minimize_scalar(lambda p: _fit_of_order(h, f, p)[1], bounds=near, options={"xatol": 1e-6}).x
+        scipy.optimize.minimize_scalar(lambda p: _fit_of_order(h, f, p)[1], bounds=bounds, options={"xatol": 1e-6}).x
     )
     return order, *_fit_of_order(h, f, order)
 
 
 def _fit_of_order(h: np.ndarray, f: np.ndarray, order: float) -> tuple[float, float]:
-    """Limit and standard deviation of the best fit of a given order."""
+    """Return limit and standard deviation of the best fit of a given order."""
     weights = (1.0 / h) / np.sum(1.0 / h)
     powers = h**order
     power, value = weights @ powers, weights @ f

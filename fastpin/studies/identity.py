@@ -1,7 +1,7 @@
-"""What makes two runs the same: the input of a run in one form, and an id made of it and the solver's version.
+"""The identity of a run: its canonical input, and an id of this input and the version of fastpin.
 
-The order of keys, comments, names of materials and the way a number is written make no difference; every bit of a
-number does.
+The order of keys, comments, names of materials and the spelling of a number make no difference. Every bit of a number
+makes a difference.
 """
 
 from __future__ import annotations
@@ -20,14 +20,19 @@ from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.version import __version__
 
+FIRST_LOADS = 6
+"""Loads that were known first. Later ones enter an id only where they are given, so that older ids stay."""
+
 ID_LENGTH = 16
+"""Hexadecimal digits of an id."""
 
 
 def canonical(case: Case) -> dict[str, Any]:
-    """All that a run's result depends on, apart from the solver's version, as a dict that goes to JSON exactly.
+    """Return the run's complete input as a JSON-ready dict.
 
-    SI units, or those of the paper for a dimensionless problem. The load history is there as its number of corners,
-    its last corner (the loads that were ever given) and the SHA-256 of all its numbers.
+    Two runs with equal dicts and the same version of fastpin have equal results. Numbers survive JSON exactly. They are
+    in SI units, or in the units of the paper for a dimensionless problem. The load history enters as its number of
+    corners, the loads at its last corner and the SHA-256 of all its numbers. A load that is never given is left out.
     """
     problem, pair = case.problem, case.problem.pair
     return {
@@ -47,18 +52,18 @@ def canonical(case: Case) -> dict[str, Any]:
 
 
 def run_id(document: dict[str, Any], version: str = __version__) -> str:
-    """The id of a run: 16 hexadecimal digits of the SHA-256 of its canonical input and the solver's version."""
+    """Return the id of a run: 16 hexadecimal digits of the SHA-256 of its canonical input and the version."""
     text = canonical_json({"input": document, "fastpin": version})
     return hashlib.sha256(text.encode()).hexdigest()[:ID_LENGTH]
 
 
 def canonical_json(document: dict[str, Any]) -> str:
-    """JSON with sorted keys; a number has the fewest digits that give it back exactly."""
+    """Return a dict as JSON with sorted keys. A number has the fewest digits that give it back exactly."""
     return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _number(value: float) -> float:
-    return float(value) + 0.0  # -0 is 0
+    return float(value) + 0.0  # -0 becomes 0.
 
 
 def _material(material: Material) -> dict[str, Any]:
@@ -66,25 +71,27 @@ def _material(material: Material) -> dict[str, Any]:
 
 
 def _loads(history: LoadHistory) -> dict[str, Any]:
-    """The loads; one that was never given is not a load of zero."""
+    """Return the loads of a history. A load that is never given differs from a load of zero."""
     digest, last = hashlib.sha256(), np.full(len(LOADS), np.nan)
+    given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
+    width = max(FIRST_LOADS, 1 + int(np.flatnonzero(given).max(initial=0)))
     for block in history.blocks:
         if block.cycle:
             digest.update(f"{block.count} times {len(block.given)}".encode())
         if block.lengths:
             digest.update(f"cycles {block.lengths}".encode() + block.ends.astype("<i8").tobytes())
-        for _ in range(min(block.count, 2)):  # the second time as ever after
-            values = LoadHistory.from_array(block.given).values(initial=last) + 0.0  # -0 is 0
-            values[np.isnan(values)] = np.nan  # there are many bit patterns of nan
-            digest.update(np.ascontiguousarray(values, dtype="<f8").tobytes())
+        for _ in range(min(block.count, 2)):  # Every later time equals the second.
+            values = LoadHistory.from_array(block.given).values(initial=last) + 0.0  # -0 becomes 0.
+            values[np.isnan(values)] = np.nan  # NaN has many bit patterns.
+            digest.update(np.ascontiguousarray(values[:, :width], dtype="<f8").tobytes())
             last = values[-1]
     named = {name: float(value) for name, value in zip(LOADS, last, strict=True) if not math.isnan(value)}
     return {"corners": len(history), "last": named, "sha256": digest.hexdigest()}
 
 
 def _options(options: SolveOptions) -> dict[str, Any]:
-    given = options.keywords()
-    del given["shortcut"], given["error_bars"]  # the states are the same with and without
+    keywords = options.keywords()
+    del keywords["shortcut"], keywords["error_bars"]  # They change no state.
     if options.method == "path":
-        del given["increments"]
-    return given
+        del keywords["increments"]
+    return keywords

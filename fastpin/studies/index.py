@@ -1,8 +1,8 @@
-"""The index of a sweep: an SQLite file with one row a run. Only the main process writes it.
+"""The index of a sweep: an SQLite file with one row for each run. Only the main process writes it.
 
-A row is committed as soon as its run ends, so it survives a main process that is killed. The journal is SQLite's
-ordinary one: it works on the network file systems of clusters, where a write-ahead log does not, and others can read
-while a sweep runs.
+A row is committed as soon as its run ends. It survives when the main process is killed. The journal is SQLite's
+ordinary journal: it works on the network file systems of clusters, where a write-ahead log does not. Other processes
+can read the index during a sweep.
 """
 
 from __future__ import annotations
@@ -20,9 +20,16 @@ from fastpin.studies.plan import Plan, Point, Spacing
 from fastpin.version import __version__
 
 FILE = "index.sqlite"
-APPLICATION = 0x6670696E  # "fpin", in the file's header
+"""Name of the index in its directory."""
+
+APPLICATION = 0x6670696E
+"""Application id in the header of the file: "fpin"."""
+
 FORMAT_VERSION = 1
+"""Version of the tables."""
+
 WAITING, DONE, FAILED = "waiting", "done", "failed"
+"""Statuses of a run."""
 
 _RUN_COLUMNS = {
     "id": "TEXT PRIMARY KEY",
@@ -42,24 +49,24 @@ _BUSY_SECONDS = 60.0
 
 
 def has_index(directory: Path) -> bool:
-    """Whether a directory has an index; one that another process is about to make is empty, and none yet."""
+    """Whether a directory has an index. An empty file does not count: another process is creating the index."""
     path = directory / FILE
     return path.is_file() and path.stat().st_size > 0
 
 
 class Index:
-    """The index in a directory. To be used in a ``with`` statement, which closes it.
+    """The index in a directory. A ``with`` statement closes it.
 
     Parameters
     ----------
     directory : path
     create : bool
-        Make the file if there is none.
+        Create the file if there is none.
 
     Raises
     ------
     InputError
-        If the file can't be read, or is no index; the methods also if it can't be written.
+        If the file can't be read, or is no index. The methods raise it also if the file can't be written.
     """
 
     def __init__(self, directory: Path, create: bool = False) -> None:
@@ -84,7 +91,7 @@ class Index:
         self._database.close()
 
     def _check(self, create: bool) -> None:
-        """See that the file is an index; make it one if it is empty."""
+        """Check that the file is an index. Create the tables if it is empty."""
         if create and not self._one("SELECT count(*) FROM sqlite_master"):
             columns = ", ".join(f'"{name}" {kind}' for name, kind in _RUN_COLUMNS.items())
             with self._transaction():
@@ -101,10 +108,10 @@ class Index:
         if damage != "ok":
             raise sqlite3.DatabaseError(damage)
 
-    # -- what is to be run --------------------------------------------------------------------------------------
+    # -- writing --------------------------------------------------------------------------------------------------
 
     def expect(self, plan: Plan, points: Iterable[Point]) -> None:
-        """Add the points that are new, waiting, and name the values of all; what is known of them stays."""
+        """Add the new points as waiting runs, and write the values of all points. Known outcomes stay."""
         fields = list(plan.fields)
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
@@ -128,7 +135,7 @@ class Index:
             )
 
     def record(self, outcome: Outcome) -> None:
-        """Write how a run ended."""
+        """Write the outcome of a run into its row."""
         cells: dict[str, Any] = {
             "status": DONE if outcome.reason is None else FAILED,
             "reason": outcome.reason,
@@ -139,38 +146,38 @@ class Index:
             "host": outcome.host,
             "versions": json.dumps(outcome.versions),
         }
-        places = ", ".join(f'"{name}" = ?' for name in _OUTCOME_COLUMNS)
+        assignments = ", ".join(f'"{name}" = ?' for name in _OUTCOME_COLUMNS)
         with self._as_input_error():
             values = [cells[name] for name in _OUTCOME_COLUMNS]
-            self._database.execute(f"UPDATE runs SET {places} WHERE id = ?", [*values, outcome.id])
+            self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, outcome.id])
 
-    # -- what is known -------------------------------------------------------------------------------------------
+    # -- reading --------------------------------------------------------------------------------------------------
 
     @property
     def fields(self) -> dict[str, Spacing]:
-        """All fields that were ever varied here, and how they were spaced."""
+        """All fields that were ever varied in this directory, with the spacing of their values."""
         return json.loads(self.read_note("fields") or "{}")
 
     def read_note(self, name: str) -> str | None:
-        """What is kept of the whole sweep: "version", "plan" (its digest), "title", "text", "fields"."""
+        """Read a note on the whole sweep: "version", "plan" (its digest), "title", "text" or "fields"."""
         return self._one("SELECT value FROM sweep WHERE name = ?", name)
 
     def statuses(self) -> dict[str, tuple[str, str | None]]:
-        """Status ("waiting", "done", "failed") and reason of a failure, by id."""
+        """Read status ("waiting", "done", "failed") and reason of a failure, by id."""
         with self._as_input_error():
-            found = self._database.execute("SELECT id, status, reason FROM runs")
-            return {run: (status, reason) for run, status, reason in found}
+            cursor = self._database.execute("SELECT id, status, reason FROM runs")
+            return {run: (status, reason) for run, status, reason in cursor}
 
     def rows(self) -> list[dict[str, Any]]:
-        """All rows, each a dict from column to value, in the order in which they were added.
+        """Read all rows, in the order of their insertion. A row is a dict from column to value.
 
-        Lists (loads, the ends of an arc) are lists again, ``versions`` and ``input`` dicts.
+        Lists (loads, the ends of an arc) are lists again. ``versions`` and ``input`` are dicts.
         """
         with self._as_input_error():
             fields = self.fields
-            found = self._database.execute("SELECT * FROM runs ORDER BY rowid")
-            names = [column[0] for column in found.description]
-            rows = [dict(zip(names, row, strict=True)) for row in found]
+            cursor = self._database.execute("SELECT * FROM runs ORDER BY rowid")
+            names = [column[0] for column in cursor.description]
+            rows = [dict(zip(names, row, strict=True)) for row in cursor]
         for row in rows:
             for name in fields:
                 row[name] = _value(name, row[name])
@@ -179,7 +186,7 @@ class Index:
         return rows
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
-        """Take over these rows of another index of the same plan, and what is known of its sweep."""
+        """Copy the rows of these ids, and the notes, from another index of the same plan."""
         with self._as_input_error(), self._transaction():
             names = list(other.fields)
             self._add_columns(names)
@@ -187,10 +194,10 @@ class Index:
                 **{name: other.read_note(name) for name in ("version", "plan", "title", "text", "fields")}
             )
             columns = _quoted([*_RUN_COLUMNS, *names])
-            marks = ", ".join("?" * (len(_RUN_COLUMNS) + len(names)))
+            placeholders = ", ".join("?" * (len(_RUN_COLUMNS) + len(names)))
             for run in ids:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
-                self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({marks})", row)
+                self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)
 
     # -- the database --------------------------------------------------------------------------------------------
 
@@ -203,14 +210,15 @@ class Index:
     def _write_notes(self, **values: str | None) -> None:
         self._database.executemany("INSERT OR REPLACE INTO sweep VALUES (?, ?)", values.items())
 
-    def _one(self, question: str, *values: Any) -> Any:
+    def _one(self, query: str, *values: Any) -> Any:
+        """Return the single value that a query gives, or None."""
         with self._as_input_error():
-            row = self._database.execute(question, values).fetchone()
+            row = self._database.execute(query, values).fetchone()
         return row[0] if row else None
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
-        """All or nothing."""
+        """Commit the changes of the block after its end, or undo them after an error."""
         self._database.execute("BEGIN IMMEDIATE")
         try:
             yield
@@ -221,7 +229,7 @@ class Index:
 
     @contextmanager
     def _as_input_error(self) -> Iterator[None]:
-        """What SQLite complains of, in one sentence."""
+        """Raise :class:`InputError` with one sentence for an error of SQLite in the block."""
         try:
             yield
         except (sqlite3.OperationalError, sqlite3.InternalError) as error:
@@ -232,12 +240,12 @@ class Index:
 
 @contextmanager
 def lock_directory(directory: Path) -> Iterator[None]:
-    """Keep other sweeps out of a directory; the lock goes when this process ends, however it does.
+    """Keep other sweeps out of a directory during the block. The lock also ends with this process, even by a kill.
 
     Raises
     ------
     InputError
-        If another sweep is running there, or nothing can be written.
+        If another sweep is running in the directory, or the directory can't be written.
     """
     try:
         lock = sqlite3.connect(directory / "lock", timeout=0.0, isolation_level=None)
@@ -257,23 +265,29 @@ def lock_directory(directory: Path) -> Iterator[None]:
 
 
 def _quoted(names: Iterable[str]) -> str:
-    """Names of columns in SQL. A quote inside a name is doubled: an index to be merged may be foreign."""
+    """Return names of columns in SQL. A quote inside a name is doubled: a merged index may come from elsewhere."""
     return ", ".join('"' + name.replace('"', '""') + '"' for name in names)
 
 
 def _cell(value: Any) -> Any:
-    """A value of a field in SQL: a number or text as it is, a list as JSON."""
+    """Return a value of a field for SQL. A list becomes JSON; a number or text stays."""
     return json.dumps(value) if isinstance(value, list) else value
 
 
 def _value(name: str, cell: Any) -> Any:
-    """A value again; only loads, the ends of an arc and fractions of a step may be lists."""
+    """Return the value of a cell. Only loads, the ends of an arc and fractions of a step may be lists."""
     may_be_list = name.startswith("load.") or name in ("solve.arc", "solve.between")
     return json.loads(cell) if may_be_list and isinstance(cell, str) else cell
 
 
 def ensure_directory(directory: Path) -> Path:
-    """The directory, made if there is none."""
+    """Create a directory if there is none, and return it.
+
+    Raises
+    ------
+    InputError
+        If it can't be created.
+    """
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,4 +1,7 @@
-"""Key figures of a run: the few numbers of its last state, and the extremes of all, that a sweep keeps in its index."""
+"""The outcome of a run and its key figures, for the index of a sweep.
+
+Key figures are a few numbers of the last state, and the extremes of all states.
+"""
 
 from __future__ import annotations
 
@@ -31,22 +34,25 @@ KEY_FIGURES: dict[str, str] = {
     "residual": "",
     "nodes": "",
 }
-"""Names of the key figures and their kinds: a key of :func:`fastpin.report.units`, "angle" (deg), "" for a number.
+"""Names and kinds of the key figures.
+
+A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a plain number.
 
 * ``states``, ``nodes``: numbers of states and of nodes.
-* ``peak_pressure`` to ``dissipation``: of the last state, see :data:`fastpin.quantities.QUANTITIES`. ``peak_shear``
-  has its sign. Angles count from the bottom of the hole; ``contact_start`` and ``contact_stop`` are the ends of the
-  widest contact interval, ``contact_width`` and ``stick_width`` sums over all. ``dissipation`` is the total since the
-  beginning.
-* ``max_pressure``, ``max_shear``: largest peak pressure and largest magnitude of the peak shear of all states.
+* ``peak_pressure`` to ``dissipation``: quantities of the last state, see :data:`fastpin.states.QUANTITIES`.
+  ``peak_shear`` has its sign. Angles are measured from the bottom of the hole. ``contact_start`` and ``contact_stop``
+  are the ends of the widest contact interval. ``contact_width`` and ``stick_width`` are sums over all intervals.
+  ``dissipation`` is the total since the beginning of the history.
+* ``max_pressure``, ``max_shear``: largest peak pressure, and largest magnitude of the peak shear, of all states.
 * ``residual``: the largest residual of all states.
 """
 
 
 def key_figures(result: Result) -> dict[str, Any]:
-    """The key figures of a result with at least one state; None for what a contact that is open does not have.
+    """Return the key figures of a result with at least one state, by name.
 
-    Only the numbers of states and nodes are given where the history was not followed to its end.
+    Angles and widths are in degrees. None stands for a figure that an open contact does not have. A result whose
+    history was not followed to the end has only the numbers of states and nodes.
     """
     figures: dict[str, Any] = dict.fromkeys(KEY_FIGURES)
     figures |= {"states": len(result), "nodes": result.grid.size}
@@ -66,13 +72,14 @@ def key_figures(result: Result) -> dict[str, Any]:
 
 
 def _number(value: Any) -> int | float | None:
-    """A number that SQLite takes; None for NaN, the angle of a peak that is not there."""
+    """Return a number for SQLite. NaN becomes None: there is no such peak, and it has no angle."""
     if value is None or isinstance(value, int):
         return value
     return float(value) if math.isfinite(value) else None
 
 
 def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
+    """Return the ends of the widest interval, in degrees from the bottom of the hole."""
     if not intervals:
         return None, None
     return interval_from_bottom(*max(intervals, key=lambda interval: interval[1] - interval[0]))
@@ -80,23 +87,24 @@ def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended.
+    """The end of one run: key figures, or the reason of a failure.
 
     Attributes
     ----------
     id : str
+        Id of the run.
     reason : str or None
-        Why it failed; None if it did not.
+        The reason of the failure. None after success.
     figures : dict
-        Key figures (:data:`fastpin.keyfigures.KEY_FIGURES`); empty without a state.
+        Key figures, see :data:`KEY_FIGURES`. Empty without a state.
     seconds : float or None
-        Time in the solver.
+        Time in the solver, s.
     started : str or None
-        UTC, ISO 8601.
+        Start of the run in UTC, ISO 8601.
     host : str or None
         Name of the machine.
     versions : dict of str to str
-        Of fastpin, Python and the libraries.
+        Versions of fastpin, Python and the libraries.
     """
 
     id: str

@@ -1,8 +1,8 @@
-"""Plans of sweeps: which fields of a case are varied, and the runs that come of it.
+"""Plans of sweeps: the varied fields of a case, and the runs of all their values.
 
-A plan is a TOML text with a base case, a ``[grid]`` of which every combination is run, and ``[[list]]`` tables of
-fields that change together. All faults of a plan are reported at once, each with its line, and every run is checked
-before any of them is started.
+A plan is a TOML text with a base case, a ``[grid]`` and ``[[list]]`` tables. Every combination of the values in the
+grid is run. The fields of a list change together. All faults of a plan are reported at once, each with its line. Every
+run is checked before the first run starts.
 """
 
 from __future__ import annotations
@@ -32,14 +32,16 @@ MAX_RUNS = 100_000
 """Most runs of one plan."""
 
 MAX_FAULTS = 50
-"""Most faults of runs that are listed."""
+"""Most faults of runs in one message."""
 
 DIGITS = 12
-"""Significant digits of the values between the ends of a range, so that 0.3 in a range is the 0.3 of a list."""
+"""Significant digits of the values between the ends of a range. Thus 0.3 in a range equals 0.3 in a list."""
 
 Spacing = Literal["linear", "log", "list"]
+"""Spacing of the values of a field. "list": the values are listed one by one."""
+
 Row = dict[str, tuple[Place, Any]]
-"""Fields of a [[list]] block: where each stands, and its value."""
+"""Fields of a [[list]] block, each with its place in the text and its value."""
 
 _ROOT_KEYS = ("title", "case", "grid", "list")
 _RANGE_KEYS = ("from", "to", "count", "spacing")
@@ -52,11 +54,11 @@ class Point:
     Attributes
     ----------
     id : str
-        Id of the run; points with the same input share it.
+        Id of the run. Points with the same input share it.
     values : dict of str to value
-        The varied fields of this point and their values, as TOML gives them.
+        The varied fields of this point, and their values in the units of the TOML text.
     input : str
-        The canonical input, JSON (:func:`fastpin.identity.canonical`).
+        The canonical input as JSON, see :func:`fastpin.studies.identity.canonical`.
     """
 
     id: str
@@ -66,17 +68,17 @@ class Point:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be run. Made by :func:`read_plan` and :func:`parse_plan`.
+    """A plan: all points of a sweep. :func:`read_plan` and :func:`parse_plan` make it.
 
     Attributes
     ----------
     title : str
     text : str
-        The plan as it was written.
+        The TOML text of the plan.
     fields : dict of str to {"linear", "log", "list"}
-        The varied fields, and how their values are spaced; "list" where they were listed one by one.
+        The varied fields, and the spacing of their values. "list": the values are listed one by one.
     points : list of Point
-        In the order of the plan: the last field of the grid changes fastest, the [[list]] slowest.
+        All points in the order of the plan. The last field of the grid changes fastest, the [[list]] slowest.
     """
 
     title: str
@@ -87,7 +89,7 @@ class Plan:
 
     @cached_property
     def runs(self) -> dict[str, Point]:
-        """The points to be run, by their ids: of those with the same input only the first."""
+        """The runs by id: the first point of each input."""
         runs: dict[str, Point] = {}
         for point in self.points:
             runs.setdefault(point.id, point)
@@ -95,12 +97,12 @@ class Plan:
 
     @property
     def digest(self) -> str:
-        """The same for plans with the same fields and runs, however they are written."""
+        """SHA-256 of the fields and runs. Plans with the same fields and runs share it, in any spelling."""
         text = json.dumps([sorted(self.fields), sorted(self.runs)])
         return hashlib.sha256(text.encode()).hexdigest()
 
     def case(self, point: Point) -> Case:
-        """The case of one point: what :func:`fastpin.solve` needs.
+        """Return the case of one point, for :func:`fastpin.solve`.
 
         Raises
         ------
@@ -114,7 +116,10 @@ class Plan:
 
 
 def read_plan(path: str | Path) -> Plan:
-    """Read a plan file. The case file and CSV files of load histories are looked for beside it.
+    """Read a plan file.
+
+    A relative path of the case file starts in the folder of the plan. A relative path of a CSV file starts in the
+    folder of the case file, or in the folder of the plan if the base case is the built-in case.
 
     Raises
     ------
@@ -131,11 +136,12 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     Parameters
     ----------
     text : str
-        TOML.
+        The plan, TOML.
     name : str
-        What errors call the plan.
+        Name of the plan in error messages.
     folder : path
-        Where a relative path of the case file, or of a varied CSV file, starts.
+        Start of a relative path of the case file, or of a CSV file if the base case is the built-in case. With a case
+        file, a relative path of a CSV file starts in the folder of the case file.
 
     Raises
     ------
@@ -151,15 +157,15 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
 
 
 def describe_values(values: dict[str, Any]) -> str:
-    """The values of a point as text."""
+    """Return the values of a point as text."""
     return ", ".join(f"{name} = {as_toml(value)}" for name, value in values.items())
 
 
-# -- the text ------------------------------------------------------------------------------------------------
+# -- text of a plan ------------------------------------------------------------------------------------------
 
 
 def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
-    """The plan; without meaning if there are faults."""
+    """Read the plan. It has no meaning if the text has faults."""
     for key in source.root.table:
         if key not in _ROOT_KEYS:
             hint = closest(key, _ROOT_KEYS) or "; there are title, case, [grid] and [[list]]"
@@ -186,6 +192,7 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
 
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:
+    """Read the base case, and report its faults on the line of the plan's ``case``."""
     name = source.root.checked("case", string)
     try:
         if name is None:
@@ -199,10 +206,10 @@ def _base(source: CaseText, folder: Path) -> BaseCase | None:
 
 
 def _rows(source: CaseText, base: BaseCase | None) -> list[Row]:
-    """Places and values of the fields of the [[list]] blocks."""
-    given = source.root.value("list")
+    """Read places and values of the fields of the [[list]] blocks."""
+    value = source.root.value("list")
     blocks = source.blocks("list")
-    if "list" in source.root and (not isinstance(given, list) or not blocks or len(blocks) < len(given)):
+    if "list" in source.root and (not isinstance(value, list) or not blocks or len(blocks) < len(value)):
         source.report("lists are [[list]] blocks, with double brackets", "list")
         return []
     rows = []
@@ -210,14 +217,14 @@ def _rows(source: CaseText, base: BaseCase | None) -> list[Row]:
         if not block.table:
             block.report("[[list]]: gives no field")
         fields = _fields(source, base, block.table, ("list", index))
-        rows.append({name: (place, value) for place, name, value in fields})
+        rows.append({name: (place, item) for place, name, item in fields})
     return rows
 
 
 def _axes(
     source: CaseText, base: BaseCase | None, places: dict[str, Place], spacings: dict[str, Spacing]
 ) -> dict[str, list[Any]]:
-    """The values of each field of the grid."""
+    """Read the values of each field of the grid. Add the fields to `places` and `spacings`."""
     axes = {}
     for place, name, value in _fields(source, base, source.section("grid").table, ("grid",)):
         if name in places:
@@ -240,11 +247,14 @@ def _axes(
 def _fields(
     source: CaseText, base: BaseCase | None, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
 ) -> Iterator[tuple[Place, str, Any]]:
-    """Place, field and value of all keys of a table; ``contact.friction`` may be a quoted key or a table in a table."""
+    """Yield place, field and value of all keys of a table.
+
+    ``contact.friction`` may be a quoted key, or a table in a table.
+    """
     for key in table:
         here, names = (*place, key), (*parts, *key.split("."))
         value = Section(source, place, table).value(key)
-        if value is None:  # reported already
+        if value is None:  # This fault is reported already.
             continue
         if isinstance(value, dict) and (len(names) < (3 if names[0] == "load" else 2) or names[2:] in LOAD_TABLES):
             yield from _fields(source, base, value, here, names)
@@ -257,7 +267,7 @@ def _fields(
 
 
 def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
-    """What is wrong with a field's name; nothing if it is one."""
+    """Return the fault of a field's name, or None."""
     name, section = ".".join(names), names[0]
     if section not in KEYS:
         hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
@@ -281,7 +291,7 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
 
 
 def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
-    """The values of a range."""
+    """Read the values of a range, and their spacing. A range with a fault has no values."""
     section = Section(source, place, table)
     before = len(source.placed)
     for key in table:
@@ -305,32 +315,32 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
     return rounded, spacing
 
 
-# -- the runs ------------------------------------------------------------------------------------------------
+# -- runs ----------------------------------------------------------------------------------------------------
 
 
 def _points(
     source: CaseText, base: BaseCase, places: dict[str, Place], rows: list[Row], axes: dict[str, list[Any]]
 ) -> list[Point]:
-    """All points; what is wrong with their cases is reported on the line of the field, or of the case."""
+    """Make and check all points. A fault of a run is reported on the line of the field, or of the case."""
     points: list[Point] = []
     faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
     count = 0
     for row, *combination in itertools.product(rows, *axes.values()):
         values = {name: value for name, (_, value) in row.items()} | dict(zip(axes, combination, strict=True))
-        here = places | {name: place for name, (place, _) in row.items()}
+        sites = places | {name: place for name, (place, _) in row.items()}
         count += 1
         pair = conflict(values)
         if pair:
-            faults.setdefault((here[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
+            faults.setdefault((sites[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
             continue
         text, case = base.vary(values)
         for place, message in text.placed:
-            faults.setdefault(_locate_fault(base, here, values, place, message), []).append(values)
+            faults.setdefault(_locate_fault(base, sites, values, place, message), []).append(values)
         if case is not None and not text.placed:
             document = canonical(case)
             points.append(Point(run_id(document), values, canonical_json(document)))
-    for (place, message), where in itertools.islice(faults.items(), MAX_FAULTS):
-        source.report(f"{message}{_which(where, count)}", *place)
+    for (place, message), runs in itertools.islice(faults.items(), MAX_FAULTS):
+        source.report(f"{message}{_which(runs, count)}", *place)
     if len(faults) > MAX_FAULTS:
         source.report(f"and {len(faults) - MAX_FAULTS:,} more faults in the runs")
     return points
@@ -339,19 +349,20 @@ def _points(
 def _locate_fault(
     base: BaseCase, places: dict[str, Place], values: dict[str, Any], place: Place, message: str
 ) -> tuple[Place, str]:
-    """Where in the plan a fault of a run belongs, and how it reads there."""
+    """Return the place of a run's fault in the plan, and its message there."""
     parts = [str(part + 1) if isinstance(part, int) else part for part in place]
     name = ".".join(parts)
     if name in values:
         return places[name], f"{name}: {message.removeprefix(f'{parts[-1]}: ')}"
     line = base.text.line(*place)
-    mine = [known for known in values if parts and known.split(".")[0] == parts[0]]
-    if mine and (not line or line == base.text.line(*place[:1])):  # a section that the plan makes or changes
-        return places[mine[0]], f"{mine[0]}: {message}"
+    same_section = [field_name for field_name in values if parts and field_name.split(".")[0] == parts[0]]
+    if same_section and (not line or line == base.text.line(*place[:1])):  # The plan makes or changes this section.
+        return places[same_section[0]], f"{same_section[0]}: {message}"
     return ("case",), f"{base.name}{f', line {line}' if line else ''}: {message}"
 
 
-def _which(where: list[dict[str, Any]], count: int) -> str:
-    if len(where) == count:
+def _which(runs: list[dict[str, Any]], count: int) -> str:
+    """Return the end of a fault's message: the runs with this fault, unless all `count` runs have it."""
+    if len(runs) == count:
         return ""
-    return f" (in {f'{len(where)} runs, first' if len(where) > 1 else 'the run'} {describe_values(where[0])})"
+    return f" (in {f'{len(runs)} runs, first' if len(runs) > 1 else 'the run'} {describe_values(runs[0])})"

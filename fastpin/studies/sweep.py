@@ -1,11 +1,11 @@
-"""Parameter sweeps: the runs of a plan solved by many workers, with an index and the results in a directory.
+"""Parameter sweeps: many workers solve the runs of a plan. A directory holds the index and the results.
 
-    >>> import fastpin.sweep
-    >>> plan = fastpin.sweep.read_plan("plan.toml")                 # doctest: +SKIP
-    >>> summary = fastpin.sweep.run(plan, "plan")                   # doctest: +SKIP
-    >>> rows = fastpin.sweep.load("plan")                           # doctest: +SKIP
+    >>> from fastpin.studies import read_plan, sweep
+    >>> plan = read_plan("plan.toml")                               # doctest: +SKIP
+    >>> summary = sweep.run(plan, "plan")                           # doctest: +SKIP
+    >>> rows = sweep.load("plan")                                   # doctest: +SKIP
 
-What is finished is skipped, so a sweep that was stopped, killed or whose plan has grown goes on where it was.
+Finished runs are skipped. Thus a sweep continues after a stop, a kill or an extension of its plan.
 """
 
 from __future__ import annotations
@@ -32,30 +32,38 @@ from fastpin.studies.workers import DIED, BrokenError, cores, run_tasks, solve_r
 from fastpin.version import __version__
 
 RESULTS = "results"
+"""Folder of the results in the directory of a sweep."""
+
 HDF5 = b"\x89HDF\r\n\x1a\n"
+"""First bytes of an HDF5 file."""
+
 PLAN = "plan.toml"
+"""Name of the plan's copy in the directory of a sweep."""
+
 MUST_AGREE = ("states", "nodes", "peak_pressure", "max_pressure", "contact_width")
-"""Key figures in which two solutions of one run agree to :data:`AGREEMENT`, also from different machines."""
+"""Key figures that agree to :data:`AGREEMENT` in two solutions of one run, also from different machines."""
 
 AGREEMENT = 1e-6
+"""Largest relative difference of these key figures."""
 
 Progress = Callable[[int, int], None]
+"""Receives the number of ended runs and the number of all runs."""
 
 
 @dataclass(frozen=True)
 class Summary:
-    """How far a plan is.
+    """The progress of a plan.
 
     Attributes
     ----------
     done, waiting : int
-        Numbers of runs.
+        Numbers of finished and of waiting runs.
     failed : list of (Point, str)
-        Runs that failed, and why.
+        Failed runs, each with its reason.
     ended : int
-        Runs that ended in this call, done or failed.
+        Number of runs that ended in this call, done or failed.
     seconds : float
-        Time that they took together, with all workers.
+        Wall time of these runs with all workers, s.
     """
 
     done: int
@@ -66,7 +74,7 @@ class Summary:
 
     @property
     def total(self) -> int:
-        """Number of runs."""
+        """Number of all runs."""
         return self.done + self.waiting + len(self.failed)
 
 
@@ -79,38 +87,39 @@ def run(
     shard: tuple[int, int] | None = None,
     progress: Progress | None = None,
 ) -> Summary:
-    """Solve all runs of a plan that are not finished yet.
+    """Solve all unfinished runs of a plan.
 
     Parameters
     ----------
     plan : Plan
     directory : path
-        For the index (``index.sqlite``), the results (``results/ID.h5``) and a copy of the plan; made if there is
-        none. A plan that was changed may use the same one: runs that both have are not solved again.
+        Folder of the index (``index.sqlite``), the results (``results/ID.h5``) and a copy of the plan. It is created if
+        there is none. A changed plan may use the same directory: common runs are not solved again.
     executor : Executor, optional
-        Anything that has the interface of :mod:`concurrent.futures`, such as ``client.get_executor()`` of a dask
-        cluster; its workers must see the directory under the same path. Without one, processes of this machine are
-        started, each with one thread for BLAS; the function must then be called under ``if __name__ == "__main__"``.
+        An object with the interface of :mod:`concurrent.futures`, such as ``client.get_executor()`` of a dask cluster.
+        Its workers must see the directory under the same path. Without an executor the function starts processes on
+        this machine, each with one thread for BLAS. It must then be called under ``if __name__ == "__main__"``.
     workers : int, optional
-        Number of these processes; by default that of the processors that this process may use.
+        Number of these processes. By default the number of processors that this process may use.
     retry : bool
-        Also solve what failed before.
+        Also solve runs that failed before.
     shard : (int, int), optional
-        (i, n): only the i-th of n parts, i from 1 to n. Every part needs a directory of its own; see :func:`merge`.
+        (i, n): solve only the i-th of n parts, i from 1 to n. Every part needs a separate directory; see
+        :func:`merge`.
     progress : callable, optional
         Called as ``progress(ended, all)`` with numbers of runs, at the beginning and when a run ends.
 
     Returns
     -------
     Summary
-        Of all runs of the plan, or of the part.
+        The progress of the plan, or of the part.
 
     Raises
     ------
     InputError
         If an argument is out of range, another sweep runs in the directory, or its files can't be used.
     FastpinError
-        If the executor breaks. What is finished is kept.
+        If the executor breaks. Finished runs stay in the directory.
     """
     points = shard_of(plan, shard)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
@@ -122,9 +131,9 @@ def run(
             _clear(results)
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
-            before = _now(index, points, results)
-            unwanted = (DONE,) if retry else (DONE, FAILED)
-            todo = [run for run, (state, _) in before.items() if state not in unwanted]
+            statuses = _now(index, points, results)
+            skipped = (DONE,) if retry else (DONE, FAILED)
+            todo = [run for run, (state, _) in statuses.items() if state not in skipped]
             began = time.perf_counter()
             report = progress or (lambda ended, all_runs: None)
             report(0, len(todo))
@@ -136,7 +145,7 @@ def run(
 
 
 def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = None) -> Summary:
-    """How far a plan is, without running anything.
+    """Return the progress of a plan without solving a run.
 
     Raises
     ------
@@ -151,37 +160,53 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
 
 
 def load(directory: str | Path) -> list[dict[str, Any]]:
-    """All rows of the index in a directory, one a run: ``pandas.DataFrame(load(directory))`` is a table.
+    """Read all rows of the index in a directory, one for each run.
+
+    ``pandas.DataFrame(load(directory))`` makes a table of them.
 
     Returns
     -------
     list of dict
         Keys are "id", "status" ("waiting", "done", "failed"), "reason" (of a failure), "dimensionless" (1 for units of
-        the paper, 0 for SI), the key figures (:data:`fastpin.keyfigures.KEY_FIGURES`), "seconds", "started" (UTC),
-        "host", "versions" and "input" (dicts), and the varied fields, such as "contact.friction". None stands for what
-        is not known.
+        the paper, 0 for SI), the key figures (:data:`fastpin.studies.outcome.KEY_FIGURES`), "seconds", "started" (UTC),
+        "host", "versions" and "input" (dicts), and the varied fields, such as "contact.friction". None stands for an
+        unknown value.
 
     Raises
     ------
     InputError
-        If the directory holds no index, or it can't be used.
+        If the directory holds no index, or the index can't be used.
     """
     with Index(Path(directory)) as index:
         return index.rows()
 
 
 def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
-    """As :func:`load`, but one row for each point of a plan and in its order; a point not in the index is waiting."""
-    known = {row["id"]: row for row in load(directory)} if has_index(Path(directory)) else {}
-    nothing = {"status": WAITING, "reason": None}
+    """Return one row for each point of a plan, in the order of the plan, with the keys of :func:`load`.
+
+    The row of a point that is not in the index has only its status "waiting", reason, id and fields.
+
+    Raises
+    ------
+    InputError
+        If the index can't be used.
+    """
+    known_rows = {row["id"]: row for row in load(directory)} if has_index(Path(directory)) else {}
+    waiting = {"status": WAITING, "reason": None}
     return [
-        {**known.get(point.id, nothing), "id": point.id, **dict.fromkeys(plan.fields), **point.values}
+        {**known_rows.get(point.id, waiting), "id": point.id, **dict.fromkeys(plan.fields), **point.values}
         for point in plan.points
     ]
 
 
 def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
-    """The runs of one part, by id, or all: every n-th id in their order is in the same part."""
+    """Return the runs of one part by id, or all runs. Of the sorted ids, every n-th belongs to the same part.
+
+    Raises
+    ------
+    InputError
+        If `shard` is out of range.
+    """
     runs = plan.runs
     if shard is None:
         return runs
@@ -193,13 +218,13 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
     return {run: point for run, point in runs.items() if run in chosen}
 
 
-# -- running -------------------------------------------------------------------------------------------------
+# -- running and status --------------------------------------------------------------------------------------
 
 
 def _outcomes(
     plan: Plan, points: dict[str, Point], todo: list[str], results: Path, executor: Executor | None, workers: int
 ) -> Generator[Outcome, None, None]:
-    """How each of the runs ends, in the order in which they do."""
+    """Solve the runs, and yield the outcome of each run when it ends."""
 
     def submit(executor: Executor, run: str) -> Future[Outcome]:
         path = str(results / f"{run}.h5")
@@ -207,20 +232,20 @@ def _outcomes(
 
     if not todo:
         return
-    # One thread for BLAS, as in every worker, where an executor runs its tasks in this process.
-    ended = run_tasks(executor, workers, todo, submit)
-    with threadpool_limits(limits=1, user_api="blas"), closing(ended):
+    tasks = run_tasks(executor, workers, todo, submit)
+    # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
+    with threadpool_limits(limits=1, user_api="blas"), closing(tasks):
         try:
-            for run, outcome in ended:
+            for run, outcome in tasks:
                 yield _check_outcome(run, outcome, results)
         except BrokenError:
             raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
 
 def _check_outcome(run: str, outcome: Outcome | BaseException, results: Path) -> Outcome:
-    """The outcome of a run, whatever its worker returned or raised."""
+    """Return the outcome of a run. An exception of the worker, or a missing result, becomes a failure."""
     if isinstance(outcome, BaseException):
-        died = type(outcome).__name__ in ("WorkerDiedError", "KilledWorker")  # the latter is dask's
+        died = type(outcome).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
         return Outcome(run, DIED if died else f"{type(outcome).__name__}: {outcome}")
     if outcome.reason is None and not (results / f"{run}.h5").exists():
         return Outcome(run, f"the result did not arrive: {outcome.host} must see {results} under the same path")
@@ -228,16 +253,16 @@ def _check_outcome(run: str, outcome: Outcome | BaseException, results: Path) ->
 
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
-    """Status and reason of each run; one whose result is gone is waiting again."""
-    present = {path.stem for path in results.glob("[!.]*.h5") if _is_hdf5(path)}  # not what is being written
+    """Return status and reason of each run. A done run without its result file is waiting again."""
+    present = {path.stem for path in results.glob("[!.]*.h5") if _is_hdf5(path)}  # Unfinished files begin with a dot.
     waiting = WAITING, None
     known = index.statuses()
-    found = {run: known.get(run, waiting) for run in points}
-    return {run: waiting if now[0] == DONE and run not in present else now for run, now in found.items()}
+    stored = {run: known.get(run, waiting) for run in points}
+    return {run: waiting if entry[0] == DONE and run not in present else entry for run, entry in stored.items()}
 
 
 def _is_hdf5(path: Path) -> bool:
-    """Whether a file begins as a result does."""
+    """Whether a file begins with the signature of HDF5."""
     try:
         with path.open("rb") as file:
             return file.read(len(HDF5)) == HDF5
@@ -246,14 +271,14 @@ def _is_hdf5(path: Path) -> bool:
 
 
 def _summary(index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0) -> Summary:
-    now = _now(index, points, results)
-    failed = [(points[run], reason or "") for run, (state, reason) in now.items() if state == FAILED]
-    done, waiting = (sum(state == wanted for state, _ in now.values()) for wanted in (DONE, WAITING))
+    statuses = _now(index, points, results)
+    failed = [(points[run], reason or "") for run, (state, reason) in statuses.items() if state == FAILED]
+    done, waiting = (sum(state == wanted for state, _ in statuses.values()) for wanted in (DONE, WAITING))
     return Summary(done, waiting, failed, ended, seconds)
 
 
 def _check_plan_copy(directory: Path, text: str = "") -> None:
-    """The copy of a plan must not take the place of another file of the user's."""
+    """Raise :class:`InputError` if the copy of the plan would overwrite another file of the user."""
     path = directory / PLAN
     if path.exists() and not (directory / FILE).exists() and path.read_bytes() != text.encode():
         raise InputError(str(directory), f"holds another {PLAN}, but no sweep; choose another directory")
@@ -265,7 +290,7 @@ def _keep_plan(directory: Path, text: str) -> None:
 
 
 def _clear(results: Path) -> None:
-    """Remove what workers that were killed left half written."""
+    """Remove the partly written files of killed workers."""
     for path in results.glob(".*.h5"):
         path.unlink(missing_ok=True)
 
@@ -276,24 +301,26 @@ def _clear(results: Path) -> None:
 def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
     """Join the directories of the parts of one plan.
 
-    What is done anywhere is done; what failed in one part and waits in another has failed. Result files are copied.
+    A run that is done in one part is done. A run that failed in one part and waits in another part has failed. Result
+    files are copied.
 
     Parameters
     ----------
     sources : sequence of paths
+        Directories of the parts.
     directory : path
-        Made if there is none; what it holds of the same plan stays.
+        Directory of the whole. It is created if there is none. Its runs of the same plan stay.
 
     Returns
     -------
     int
-        Number of runs that are known now.
+        Number of runs in the index of `directory` now.
 
     Raises
     ------
     InputError
-        If the parts are of different plans or versions of fastpin, two results of one run disagree, or files can't be
-        used.
+        If the parts belong to different plans or versions of fastpin, two results of one run disagree, or files can't
+        be used.
     """
     target = Path(directory)
     for source in map(Path, sources):
@@ -310,7 +337,7 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
 
 
 def _check_parts(parts: Sequence[Path]) -> None:
-    """See that all parts are of one plan and agree, before anything is written."""
+    """Check, before any writing, that all parts belong to one plan and agree."""
     notes: dict[str, str | None] = {}
     done: dict[str, dict[str, Any]] = {}
     for part in parts:
@@ -327,12 +354,13 @@ def _check_parts(parts: Sequence[Path]) -> None:
 
 
 def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
-    mine = index.statuses()
+    """Copy the runs of another part, with their results, if their status there is better, or they are new here."""
+    statuses = index.statuses()
     rank = (WAITING, FAILED, DONE)
     wanted = [
         run
         for run, (state, _) in other.statuses().items()
-        if run not in mine or rank.index(state) > rank.index(mine[run][0])
+        if run not in statuses or rank.index(state) > rank.index(statuses[run][0])
     ]
     for run in wanted:
         path = source / RESULTS / f"{run}.h5"
@@ -343,8 +371,8 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
     _keep_plan(target, index.read_note("text") or "")
 
 
-def _check_agreement(one: dict[str, Any], two: dict[str, Any], source: Path) -> None:
+def _check_agreement(first_row: dict[str, Any], second_row: dict[str, Any], source: Path) -> None:
     for name in MUST_AGREE:
-        first, second = one[name], two[name]
+        first, second = first_row[name], second_row[name]
         if abs(first - second) > AGREEMENT * max(abs(first), abs(second)):
-            raise InputError(str(source), f"run {one['id']} has {name} = {second:.9g}, elsewhere {first:.9g}")
+            raise InputError(str(source), f"run {first_row['id']} has {name} = {second:.9g}, elsewhere {first:.9g}")

@@ -1,7 +1,7 @@
-"""Fields of a case, ``section.key``, set in the tables of a case file.
+"""Variation of a case: set fields, ``section.key``, in the tables of a case file.
 
-Where a case may say one thing in several ways, a field takes the place of the others: a named material that of
-moduli, Dundurs' parameters that of two materials, a file that of load blocks, and the other way round.
+A case file has several ways to give some inputs. A varied field then replaces the other ways. A named material replaces
+moduli, Dundurs' parameters replace two materials, a CSV file replaces load blocks; and the other way round.
 """
 
 from __future__ import annotations
@@ -22,7 +22,22 @@ LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 
 
 class BaseCase:
-    """The base case, ready to be varied."""
+    """The base case of a plan.
+
+    Parameters
+    ----------
+    text : str
+        The case, TOML.
+    name : str
+        Name of the case in messages.
+    folder : Path
+        Folder of the CSV files with relative paths.
+
+    Raises
+    ------
+    CaseFileError
+        With the faults of the TOML text.
+    """
 
     def __init__(self, text: str, name: str, folder: Path) -> None:
         self.name = name
@@ -34,17 +49,20 @@ class BaseCase:
 
     @property
     def load_blocks(self) -> int:
-        """Number of [[load]] blocks."""
+        """Number of [[load]] blocks of the case."""
         blocks = self.text.root.value("load")
         return len(self.text.blocks("load")) if isinstance(blocks, list) else 0
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
-        """The case with these fields; without meaning where the text has faults."""
+        """Return text and case with these values of fields. The case has no meaning if the text has faults."""
         text = self.text.with_tables(with_values(self.text.root.table, values))
-        return text, case_from(text, self._folder, self._read_loads)
+        case = case_from(text, self._folder, self._read_loads)
+        if case is not None and case.options.error_bars:
+            text.report("error_bars: are not kept by sweeps; leave them out", "solve", "error_bars")
+        return text, case
 
     def _read_loads(self, text: CaseText, folder: Path) -> LoadHistory | None:
-        """The load history; the last one is kept, because neighbours in a plan often share it."""
+        """Read the load history. The last one is remembered: neighbouring points of a plan often share it."""
         given = repr([text.root.table.get(name) for name in ("load", "history")])
         if given != self._loads[0] or self._loads[1] is None:
             self._loads = given, read_history(text, folder)
@@ -57,23 +75,23 @@ _REPLACED: dict[str, tuple[str, ...]] = {
     "nu": ("material", "rigid"),
     "rigid": ("material", "E", "nu"),
 }
-"""What each key of [pin] and [plate] replaces in its section of the base case."""
+"""Keys of the base case that each key of [pin] and [plate] replaces, in the same section."""
 
 _REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}
-"""What sections each section replaces in the base case."""
+"""Sections of the base case that each section replaces."""
 
 _FILE = "history.csv"
 
 
 def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a case with other values of some fields; `tables` stay as they are."""
+    """Return the tables of a case with other values of some fields. `tables` does not change."""
     new = {name: _copied(table) for name, table in tables.items()}
     for name, value in values.items():
         _make_room(new, name, value)
     for name, value in values.items():
         section, *rest = name.split(".")
         table = new["load"][int(rest.pop(0)) - 1] if section == "load" else new.setdefault(section, {})
-        if isinstance(table, dict) and len(rest) == 2:  # the amplitude of one load of a block
+        if isinstance(table, dict) and len(rest) == 2:  # for example the amplitude of one load of a block
             inner = table.get(rest[0])
             table[rest[0]] = {**inner, rest[1]: value} if isinstance(inner, dict) else {rest[1]: value}
         elif isinstance(table, dict):
@@ -82,13 +100,16 @@ def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any
 
 
 def conflict(values: dict[str, Any]) -> tuple[str, str] | None:
-    """Two fields of which one replaces what the other changes; the case reader finds all others."""
+    """Return two fields of which one replaces the input that the other changes, or None.
+
+    Only load blocks and a CSV file are checked here. The case reader finds all other conflicts.
+    """
     load = next((name for name in values if name.startswith("load.")), None)
     return (load, _FILE) if load and _FILE in values else None
 
 
 def other_units(tables: dict[str, Any], name: str) -> str | None:
-    """What is wrong with a field that would change the units of the base case's loads; nothing if it does not."""
+    """Return the fault of a field that would change the units of the base case's loads, or None."""
     contact = tables.get("contact")
     given = contact if isinstance(contact, dict) else {}
     if name == "contact.load_parameter" and ("hole_radius" in given or "clearance" in given):
@@ -106,17 +127,19 @@ def other_units(tables: dict[str, Any], name: str) -> str | None:
 
 
 def _copied(table: Any) -> Any:
-    """A table, or list of tables, of which keys can be set."""
+    """Return a copy of a table, or of a list of tables, whose keys can be set."""
     if isinstance(table, list):
         return [dict(item) if isinstance(item, dict) else item for item in table]
     return dict(table) if isinstance(table, dict) else table
 
 
 def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
-    """Take out of the base case what a field replaces."""
+    """Remove the inputs that a field replaces from the tables of the base case."""
     section, key = name.split(".")[0], name.split(".")[-1]
-    for other in _REPLACED_SECTIONS.get(section, ()):
-        tables.pop(other, None)
+    for replaced in _REPLACED_SECTIONS.get(section, ()):
+        tables.pop(replaced, None)
+    if name == "solve.method" and value == "path" and isinstance(tables.get("solve"), dict):
+        tables["solve"].pop("increments", None)
     if name == _FILE:
         tables.pop("load", None)
     elif section == "load" and isinstance(tables.get("history"), dict):
@@ -124,10 +147,10 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
     body = tables.get(section)
     if section not in ("pin", "plate") or not isinstance(body, dict) or (key == "rigid" and value is not True):
         return
-    named = body.get("material")
-    if key in ("E", "nu") and isinstance(named, str) and named in MATERIALS:
-        # One constant is varied, the other stays that of the material.
-        material = MATERIALS[named]
+    material_name = body.get("material")
+    if key in ("E", "nu") and isinstance(material_name, str) and material_name in MATERIALS:
+        # One constant is varied. The other constant of the material stays.
+        material = MATERIALS[material_name]
         body |= {"E": material.E, "nu": material.nu}
-    for other in _REPLACED.get(key, ()):
-        body.pop(other, None)
+    for replaced in _REPLACED.get(key, ()):
+        body.pop(replaced, None)

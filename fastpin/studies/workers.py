@@ -1,4 +1,4 @@
-"""Executors of a sweep: any of :mod:`concurrent.futures`, or a pool of processes that outlives its workers' deaths."""
+"""Workers of a sweep: an executor of :mod:`concurrent.futures`, or a pool of processes that survives their deaths."""
 
 from __future__ import annotations
 
@@ -36,15 +36,17 @@ K = TypeVar("K")
 T = TypeVar("T")
 
 DIED = "the worker process died; perhaps it needed more memory than there is"
+"""Reason of a run whose worker process died."""
+
 MOST_SUBMITTED = 1_000
-"""Tasks that an executor of others is given at a time: enough for a cluster."""
+"""Most tasks in a user's executor at a time: enough for a cluster."""
 
 Submit = Callable[[Executor, K], "Future[T]"]
-"""Hands one task to an executor."""
+"""Submits one task to an executor."""
 
 
 def cores() -> int:
-    """Number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -53,7 +55,7 @@ class WorkerDiedError(Exception):
 
 
 class BrokenError(Exception):
-    """An executor broke, or threw its tasks away; ``tasks`` were on their way."""
+    """An executor broke, or cancelled its tasks. ``tasks`` were submitted and had not ended."""
 
     def __init__(self, tasks: list[Any]) -> None:
         super().__init__("the executor broke")
@@ -61,25 +63,30 @@ class BrokenError(Exception):
 
 
 class Pool:
-    """Worker processes, started afresh (spawned) and pinned to one thread each.
+    """Worker processes, spawned, with one thread each.
 
     Parameters
     ----------
     workers : int
+        Number of processes.
+
+    Attributes
+    ----------
+    executor : ProcessPoolExecutor
 
     Raises
     ------
     FastpinError
-        If they don't start.
+        If the processes don't start.
     """
 
     def __init__(self, workers: int) -> None:
         context = multiprocessing.get_context("spawn")
         before = set(multiprocessing.active_children())
-        resource_tracker.ensure_running()  # before signals are held back: it would let them pass again
-        with _interrupts_held_back():  # a worker inherits that
+        resource_tracker.ensure_running()  # Start it before: its start would release the held signals.
+        with _interrupts_held_back():  # Workers inherit the blocked signal.
             self.executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare)
-            first, *_ = [self.executor.submit(os.getpid) for _ in range(workers)]  # each starts a process
+            first, *_ = [self.executor.submit(os.getpid) for _ in range(workers)]  # Each task starts a process.
         self._processes = set(multiprocessing.active_children()) - before
         try:
             first.result()
@@ -90,7 +97,7 @@ class Pool:
             ) from None
 
     def stop(self, busy: bool = True) -> None:
-        """End the workers, whatever they are doing."""
+        """End the workers. Busy workers are killed."""
         if busy:
             for process in self._processes:
                 process.kill()
@@ -99,7 +106,7 @@ class Pool:
 
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Ctrl-C comes after the block."""
+    """Hold Ctrl-C back until the block ends."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -113,10 +120,24 @@ def _interrupts_held_back() -> Iterator[None]:
 def run_tasks(
     executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T]
 ) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Tasks with what they return or raise, in the order in which they end.
+    """Run tasks. Yield each task with its return value or exception, in the order in which the tasks end.
 
-    Through `executor`, or without one through so many worker processes of our own. If an executor that is given breaks,
-    :class:`BrokenError` is raised.
+    Parameters
+    ----------
+    executor : Executor or None
+        Runs the tasks. None starts worker processes.
+    workers : int
+        Number of worker processes; without effect if there is an executor.
+    tasks : collection
+    submit : callable
+        Submits one task to an executor.
+
+    Raises
+    ------
+    BrokenError
+        If `executor` breaks.
+    FastpinError
+        If worker processes don't start.
     """
     if executor is not None:
         return through(executor, deque(tasks), submit)
@@ -126,27 +147,32 @@ def run_tasks(
 def through(
     executor: Executor, waiting: deque[K], submit: Submit[K, T], ahead: int = MOST_SUBMITTED
 ) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Tasks with what they return or raise, in the order in which they end, through any executor.
+    """Run tasks with any executor. Yield each task with its return value or exception when it ends.
 
-    Not more than `ahead` are on their way at a time; they leave `waiting`. Raises :class:`BrokenError`.
+    At most `ahead` tasks are submitted at a time. A submitted task leaves `waiting`.
+
+    Raises
+    ------
+    BrokenError
+        If the executor breaks. It holds the submitted tasks.
     """
     running: dict[Future[T], K] = {}
-    ended: SimpleQueue[Future[T]] = SimpleQueue()
+    ended_futures: SimpleQueue[Future[T]] = SimpleQueue()
     try:
         while waiting or running:
             while waiting and len(running) < ahead:
                 try:
                     future = submit(executor, waiting[0])
-                except RuntimeError:  # broken, or shut down
+                except RuntimeError:  # The executor is broken, or shut down.
                     raise BrokenError(list(running.values())) from None
                 running[future] = waiting.popleft()
-                future.add_done_callback(ended.put)
-            future = ended.get()
+                future.add_done_callback(ended_futures.put)
+            future = ended_futures.get()
             error = future.exception()
             if isinstance(error, BrokenExecutor):
                 raise error
             yield running.pop(future), future.result() if error is None else error
-    except (BrokenExecutor, CancelledError):  # of a task
+    except (BrokenExecutor, CancelledError):  # A task ended with it.
         raise BrokenError(list(running.values())) from None
     finally:
         for future in running:
@@ -156,10 +182,10 @@ def through(
 def through_processes(
     workers: int, tasks: Collection[K], submit: Submit[K, T], alone: bool = False
 ) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Tasks with what they return or raise, through worker processes of our own.
+    """Run tasks in worker processes. Yield each task with its return value or exception when it ends.
 
-    Where a process dies, all tasks that were on their way are tried again, each alone; one whose process dies then has
-    a :class:`WorkerDiedError`.
+    After the death of a process all submitted tasks are repeated, one task at a time (`alone`). A task whose process
+    dies again gets a :class:`WorkerDiedError`.
     """
     waiting = deque(tasks)
     while waiting:
@@ -180,8 +206,8 @@ def through_processes(
 
 
 def prepare() -> None:
-    """Make this process a worker of ours: one thread, deaf to Ctrl-C, and gone when the main process is."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process decides what an interrupt means
+    """Make this process a worker: one thread, deaf to Ctrl-C. It ends when the main process ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The main process handles interrupts.
     threading.Thread(target=_end_with_parent, daemon=True).start()
     on_one_thread()
     one_thread()
@@ -189,7 +215,7 @@ def prepare() -> None:
 
 @functools.cache
 def one_thread() -> None:
-    """One thread for every BLAS and OpenMP library of this process, from now on."""
+    """Limit every BLAS and OpenMP library of this process to one thread, from now on."""
     threadpool_limits(limits=1)
 
 
@@ -202,11 +228,16 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
         Id of the run.
     case : Case
     path : str
-        Where the result goes. Nothing is written without a state.
+        HDF5 file of the result. It is written only if there is a state.
     main_process : int
-        Process id of the sweep: its threads are not touched where the run happens in it.
+        Process id of the sweep. The threads of this process are not limited here.
     version : str
-        Of fastpin, in the sweep.
+        Version of fastpin in the sweep. Another version here is a failure.
+
+    Returns
+    -------
+    Outcome
+        Key figures and times. Every exception of the run becomes the reason of a failure.
     """
     if version != __version__:
         return Outcome(run, f"the worker has fastpin {__version__}, the sweep {version}")
@@ -228,13 +259,13 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
             store.save(result, path, error=reason, restart=False)
     except MemoryError:
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
-    except Exception as error:  # whatever goes wrong in one run is its own failure, and the others go on
+    except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
     return Outcome(run, reason, figures, seconds, started, socket.gethostname(), versions())
 
 
 def _end_with_parent() -> None:
-    """A worker waits for work for ever, also after its main process was killed."""
+    """End this worker with its main process. A worker would wait for tasks forever after a kill of the main process."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

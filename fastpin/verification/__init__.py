@@ -1,4 +1,4 @@
-"""Other ways to the same numbers, and the checks of an installation.
+"""Checks of the solver by closed forms, other methods and finite elements.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -1,6 +1,6 @@
-"""A check of an installation: what the solver finds against closed forms, other methods and what must hold.
+"""The checks of an installation: the solver against closed forms, other methods and exact properties.
 
-:func:`verify` takes seconds. docs/accuracy.md says what each row checks and where its tolerance comes from.
+:func:`verify` takes seconds. docs/accuracy.md explains each check and the source of its tolerance.
 """
 
 from __future__ import annotations
@@ -25,13 +25,16 @@ from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteE
 from fastpin.verification.sliding import solve_sliding
 
 NODES = 401
-"""Nodes of all cases but those on the nodes of finite elements."""
+"""Number of nodes of all cases, except the cases on the nodes of finite elements."""
 
 STATED = 1.2
-"""What the finite-element model's stated errors, which are "about", are multiplied by."""
+"""Factor on the stated errors of the finite-element models, which are given as "about"."""
 
 BACK = 0.4
-"""Part of Q to which a half-plane contact is unloaded at last; the largest shear stays where the border of Q was."""
+"""Part of Q to which the half-plane contact is unloaded at last.
+
+The largest shear then stays at the place of the border at full Q.
+"""
 
 TOLERANCES: dict[str, dict[str, float]] = {
     "like": {"peak N": 1e-5, "half-angle": 3e-5},
@@ -59,26 +62,25 @@ TOLERANCES: dict[str, dict[str, float]] = {
     "parts": {"differing numbers": 0.0},
     "conditions": {"largest residual": 1.4e-14},
 }
-"""Largest differences that pass, by key of the topic and quantity; "quantity, case" is for that case alone."""
+"""Largest differences that pass, by key of the topic and quantity. A key "quantity, case" holds for that case only."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One row.
+    """One check: a quantity of one case against its reference.
 
     Attributes
     ----------
     topic, case, quantity : str
-        What is compared; no quantity where the case ended in an error.
+        Names of the topic, the case and the compared quantity. The quantity is empty if the case ended in an error.
     reference, ours : float or None
-        The two values, dimensionless (R = F = beta* = 1, angles in rad); None where the difference is of whole
-        functions.
+        The two values, dimensionless (R = F = beta* = 1, angles in rad). None if whole functions are compared.
     difference, tolerance : float or None
-        Not negative, in `unit`; None where the case ended in an error.
+        The difference and the largest one that passes, >= 0, in `unit`. None if the case ended in an error.
     unit : str
-        "relative" (to the reference), or what `difference` is in parts of.
+        "relative" (to the reference), or the unit of `difference`.
     message : str
-        The error in which the case ended.
+        The error in which the case ended, else empty.
     """
 
     topic: str
@@ -98,7 +100,7 @@ class Check:
 
 
 def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
-    """Compare the solver with its references.
+    """Compare the solver of this installation with its references.
 
     Parameters
     ----------
@@ -108,7 +110,8 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
     Returns
     -------
     list of Check
-        In the order of the topics. A case that ends in an error is a row that has not passed, and the others follow.
+        The checks in the order of the topics. A case that ends in an error gives a check that has not passed; the other
+        cases still run.
     """
     solving = _Solving()
     checks: list[Check] = []
@@ -119,13 +122,13 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
         try:
             for row in rows(solving):
                 checks.append(row.check(title, name, TOLERANCES[key]))
-        except Exception as error:  # whatever goes wrong is what this installation does
+        except Exception as error:  # an error of any kind is a result of the check
             checks.append(Check(title, name, message=" ".join(f"{type(error).__name__}: {error}".split())))
     return checks
 
 
 class _Solving:
-    """The solver, and the largest residual of all the states that it has returned."""
+    """The solver with a record of its states: their number and their largest residual."""
 
     def __init__(self) -> None:
         self.states = 0
@@ -134,7 +137,8 @@ class _Solving:
     def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
         result = solve(problem, history, **{"nodes": NODES, **options})
         self.states += len(result)
-        self.largest = float(np.max([self.largest, *[one for state in result for one in state.residuals.values()]]))
+        residuals = [residual for state in result for residual in state.residuals.values()]
+        self.largest = float(np.max([self.largest, *residuals]))
         return result
 
 
@@ -165,9 +169,6 @@ def _angle(quantity: str, ours: float, reference: float) -> _Row:
 
 def _half_width(interval: tuple[float, float]) -> float:
     return 0.5 * (interval[1] - interval[0])
-
-
-# -- closed forms and other methods --------------------------------------------------------------------------
 
 
 def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, solving: _Solving) -> Rows:
@@ -217,7 +218,10 @@ def _half_plane(solving: _Solving) -> Rows:
 
 
 def _peak_shear(state: State, ratio: float, part: float) -> float:
-    """Largest shear of Cattaneo and Mindlin after unloading from Q to a part of it: where the border of +Q was."""
+    """Largest shear of Cattaneo and Mindlin after unloading from Q to `part` times Q.
+
+    It acts at the place of the border at +Q.
+    """
     half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     border = half * float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     return abs(float(cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")))
@@ -247,22 +251,20 @@ def _singular_equations_with_stress(solving: _Solving) -> Rows:
     yield _Row("(47)", residuals_away(state, 0.15)[1], "F beta*")
 
 
-# -- what must hold ------------------------------------------------------------------------------------------
-
 _FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")
 _HELD = Problem.from_load_parameter(UNLIKE, 0.5, 0.55, "centre", "fixed")
 
 
 def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
-    """Turning Q round mirrors the state: theta to -pi - theta; shear and slip change sign."""
+    """Reversing the sign of Q mirrors the state: theta becomes -pi - theta, shear and slip change sign."""
     turned = [{name: -value if name == "Q" else value for name, value in corner.items()} for corner in FRETTING]
     arc = (BOTTOM - half_arc, BOTTOM + half_arc)
-    one, two = (solving(problem, history, arc=arc) for history in (FRETTING, turned))
-    peak = max(state.peak_pressure for state in one)
-    slip = max(float(np.abs(state.slip).max()) for state in one)
+    states, mirrored = (solving(problem, history, arc=arc) for history in (FRETTING, turned))
+    peak = max(state.peak_pressure for state in states)
+    slip = max(float(np.abs(state.slip).max()) for state in states)
 
     def worst(difference: Callable[[State, State], np.ndarray]) -> float:
-        return float(np.max([np.abs(difference(here, there)) for here, there in zip(one, two, strict=True)]))
+        return float(np.max([np.abs(difference(here, there)) for here, there in zip(states, mirrored, strict=True)]))
 
     yield _Row("N", worst(lambda here, there: here.pressure - there.pressure[::-1]) / peak, "peak N")
     yield _Row("T", worst(lambda here, there: here.shear + there.shear[::-1]) / peak, "peak N")
@@ -270,7 +272,7 @@ def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
 
 
 def _energy(problem: Problem, solving: _Solving) -> Rows:
-    """The work of the loads against what is stored and dissipated, of the worst state."""
+    """Work of the loads against stored plus dissipated energy, for the state with the largest difference."""
     rows = [
         _value("work", state.work, state.energy + state.dissipation)
         for state in solving(problem, [*FRETTING, {"P": 0.5, "Q": 0.1}])
@@ -279,14 +281,14 @@ def _energy(problem: Problem, solving: _Solving) -> Rows:
 
 
 def _split(problem: Problem, solving: _Solving) -> Rows:
-    """A history cut in two, the second part going on from the first, against the whole."""
+    """A history in two parts, the second continuing from the first, against the whole history."""
     whole = solving(problem, FRETTING)
     first = solving(problem, FRETTING[:2], grid=whole.grid)
     second = solving(problem, FRETTING[2:], start=first)
     differing = sum(
-        int(np.count_nonzero(one != other))
+        int(np.count_nonzero(expected != actual))
         for here, there in zip(whole, [*first, *second], strict=True)
-        for one, other in zip(_numbers(here), _numbers(there), strict=True)
+        for expected, actual in zip(_numbers(here), _numbers(there), strict=True)
     )
     yield _Row("differing numbers", float(differing), "", 0.0, float(differing))
 
@@ -298,7 +300,7 @@ def _numbers(state: State) -> list[np.ndarray]:
 
 
 def _conditions(solving: _Solving) -> Rows:
-    """Signorini, Coulomb and equilibrium, recomputed from the matrices, of all states that were met above."""
+    """Conditions of Signorini, Coulomb and equilibrium for all states of the cases above, from the matrices."""
     largest = solving.largest if solving.states else math.nan
     yield _Row("largest residual", largest, "relative", case=f"all {solving.states} states")
 
@@ -367,4 +369,4 @@ TOPICS: dict[str, tuple[str, Cases]] = {
     ),
     "conditions": ("Contact conditions and equilibrium", {"all states": _conditions}),
 }
-"""Title of each topic and its cases by name; the keys are those of :data:`TOLERANCES`."""
+"""Title and cases (by name) of each topic. The keys are the keys of :data:`TOLERANCES`."""

@@ -1,8 +1,8 @@
-"""Closed forms against which solutions are checked.
+"""Closed forms of contact solutions, to check the solver.
 
-Lengths along the contact are angles from the direction of the load, rad; tractions are in units of F/R, and
-the load parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays
-that broadcast; numbers give a float.
+Places along the contact are angles from the direction of the load, rad. Tractions are in units of F/R. The load
+parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays that broadcast.
+Numbers give a float.
 
 Sources: A. Persson, "On the stress distribution of cylindrical elastic bodies in contact", dissertation,
 Chalmers (1964); M. Ciavarella and P. Decuzzi, "The state of stress induced by the plane frictionless
@@ -24,27 +24,30 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, numbers
 
 Branch = Literal["loading", "unloading", "reloading"]
+"""Part of a load cycle: first loading, unloading from +Q_max, reloading from -Q_max."""
+
 Values = float | np.ndarray
+"""A number, or an array if an argument is an array."""
 
 
 def persson_load_parameter(half_angle: ArrayLike, mismatch: ArrayLike = 0.0) -> Values:
-    """Load parameter at which the frictionless contact has a given half-angle.
+    """Load parameter L_p of the frictionless contact with a given half-angle.
 
-    L_p = [(a - 1) (ln(b^2 + 1) + 2 b^4) + 2] / [8 pi b^2 (b^2 + 1)],  b = tan(half_angle/2): Ciavarella and
-    Decuzzi; a = 0 is Persson's formula. Exact for alpha* = 0.
+    L_p = [(a - 1) (ln(b^2 + 1) + 2 b^4) + 2] / [8 pi b^2 (b^2 + 1)] with b = tan(half_angle/2) (Ciavarella and
+    Decuzzi). a = 0 is Persson's formula. The formula is exact for alpha* = 0.
 
     Parameters
     ----------
     half_angle : float or ndarray
         Half of the contact angle, rad, between 0 and pi.
     mismatch : float or ndarray
-        a = (E'_plate - E'_pin)/(E'_plate + E'_pin), -1 to 1, with E' = E/(1 - nu^2) in plane strain and E in
-        plane stress; the paper's first Dundurs parameter.
+        a = (E'_plate - E'_pin)/(E'_plate + E'_pin), -1 to 1: the paper's first Dundurs parameter. E' is
+        E/(1 - nu^2) in plane strain and E in plane stress.
 
     Returns
     -------
     float or ndarray
-        L_p; negative (interference) beyond the half-angle of the neat fit.
+        L_p. It is negative (an interference fit) beyond the half-angle of the neat fit.
 
     Raises
     ------
@@ -62,7 +65,7 @@ def persson_half_angle(load_parameter: ArrayLike, mismatch: ArrayLike = 0.0) -> 
     Parameters
     ----------
     load_parameter : float or ndarray
-        L_p, above (a - 1)/(4 pi), where the contact closes round the pin; 0 is the neat fit.
+        L_p, above (a - 1)/(4 pi): at this value the contact closes round the pin. 0 is the neat fit.
     mismatch : float or ndarray
         a, see :func:`persson_load_parameter`.
 
@@ -82,12 +85,14 @@ def persson_half_angle(load_parameter: ArrayLike, mismatch: ArrayLike = 0.0) -> 
             f"must be above (mismatch - 1)/(4 pi) = {limit.flat[worst]:.6g}, not {lp.flat[worst]:g}: "
             "the contact would go all round the pin",
         )
-    flat = [_half_angle(float(one), float(ratio)) for one, ratio in zip(lp.flat, a.flat, strict=True)]
+    flat = [_half_angle(float(parameter), float(ratio)) for parameter, ratio in zip(lp.flat, a.flat, strict=True)]
     return _value(np.reshape(flat, lp.shape))
 
 
 def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
-    """Pressure N R/F of the frictionless contact (Persson; for any mismatch if alpha* = 0).
+    """Pressure N R/F of the frictionless contact (Persson).
+
+    It holds for any mismatch if alpha* = 0.
 
     N R/F = (2/pi) r / [q (1 + y^2)] + ln[(q + r)/(q - r)] / [2 pi b^2 (b^2 + 1)] with b = tan(half_angle/2),
     y = tan(phi/2), r = sqrt(b^2 - y^2), q = sqrt(b^2 + 1).
@@ -102,7 +107,12 @@ def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
     Returns
     -------
     float or ndarray
-        Zero outside the contact.
+        N R/F >= 0; zero outside the contact.
+
+    Raises
+    ------
+    InputError
+        If `phi` or `half_angle` is out of range.
     """
     angle = numbers("phi", phi, -math.pi, math.pi)
     eps = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
@@ -119,6 +129,11 @@ def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
 def hertz_half_angle(load_parameter: ArrayLike) -> Values:
     """Half-angle of Hertz's contact, rad: 1/sqrt(pi L_p), the limit of large L_p.
 
+    Parameters
+    ----------
+    load_parameter : float or ndarray
+        L_p, positive.
+
     Raises
     ------
     InputError
@@ -131,6 +146,11 @@ def hertz_half_angle(load_parameter: ArrayLike) -> Values:
 def hertz_peak_pressure(load_parameter: ArrayLike) -> Values:
     """Peak pressure N R/F of Hertz's contact: 2 sqrt(L_p/pi).
 
+    Parameters
+    ----------
+    load_parameter : float or ndarray
+        L_p, positive.
+
     Raises
     ------
     InputError
@@ -141,7 +161,7 @@ def hertz_peak_pressure(load_parameter: ArrayLike) -> Values:
 
 
 def cattaneo_mindlin_stick_ratio(load_ratio: ArrayLike) -> Values:
-    """Half-width of the stick zone over that of the contact, sqrt(1 - |Q|/(mu P)).
+    """Half-width of the stick zone over the half-width of the contact, c/a = sqrt(1 - |Q|/(mu P)).
 
     Parameters
     ----------
@@ -166,36 +186,38 @@ def cattaneo_mindlin_shear(
     branch: Branch = "loading",
     eccentricity: float = 0.0,
 ) -> Values:
-    """Shear traction of like cylinders in partial slip (Cattaneo, Mindlin), in units of `peak_pressure`.
+    """Shear traction of like cylinders in partial slip (Cattaneo, Mindlin), in the unit of `peak_pressure`.
 
-    Loading: q = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x + e)^2/c^2)], c/a = sqrt(1 - Q/(mu P)).
-    From +Q_max to Q twice the same form with (Q_max - Q)/2 is taken away; from -Q_max to Q twice that with
-    (Q_max + Q)/2 is added to its negative.
+    The loading form, for the load Q, is q = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - (x + e)^2/c^2)] with
+    c/a = sqrt(1 - Q/(mu P)). Unloading from +Q_max to Q subtracts twice this form for the load (Q_max - Q)/2 from the
+    form for Q_max. Reloading from -Q_max to Q adds twice the form for (Q_max + Q)/2 to the negative form for Q_max.
 
     Parameters
     ----------
     x : float or ndarray
-        Distance from the middle of the contact, in units of `half_width`'s.
+        Distance from the middle of the contact, in the unit of `half_width`.
     half_width, peak_pressure, friction : float
         a > 0, p0 > 0 and mu >= 0.
     load_ratio : float
         Q/(mu P) now, -1 to 1; not negative on the loading branch.
     peak_ratio : float, optional
-        Q_max/(mu P), needed on the other two branches; `load_ratio` lies between its negative and itself.
+        Q_max/(mu P), 0 to 1. The unloading and reloading branches need it: `load_ratio` lies between -peak_ratio and
+        peak_ratio.
     branch : {"loading", "unloading", "reloading"}
-        First loading from 0, on the way from +Q_max to -Q_max, or back from -Q_max to +Q_max.
+        First loading from 0, unloading from +Q_max towards -Q_max, or reloading from -Q_max towards +Q_max.
     eccentricity : float
-        Shift e of the stick zone under bulk stress, loading only; see :func:`bulk_stress_eccentricity`.
+        Shift e of the stick zone under bulk stress, in the unit of `half_width`; on the loading branch only. See
+        :func:`bulk_stress_eccentricity`.
 
     Returns
     -------
     float or ndarray
-        q, with the sign of Q on first loading; zero outside the contact.
+        q, positive in the direction of a positive Q; zero outside the contact.
 
     Raises
     ------
     InputError
-        If an argument is out of range.
+        If an argument is out of range, missing on its branch, or not allowed on it.
     """
     choice("branch", branch, ("loading", "unloading", "reloading"))
     place = numbers("x", x)
@@ -222,23 +244,28 @@ def cattaneo_mindlin_shear(
 def bulk_stress_eccentricity(
     bulk_stress: float, half_width: float, peak_pressure: float, friction: float, load_ratio: float = 0.0
 ) -> float:
-    """Shift of the stick zone under a bulk stress (Nowell and Hills).
+    """Shift e of the stick zone under a bulk stress (Nowell and Hills).
 
-    e = a sigma/(4 mu p0), stick at |x + e| < c.
+    e = a sigma/(4 mu p0). The contact sticks at |x + e| < c.
 
     Parameters
     ----------
     bulk_stress : float
-        sigma, in units of `peak_pressure`'s; it rises together with Q.
+        sigma, in the unit of `peak_pressure`. It rises together with Q.
     half_width, peak_pressure, friction : float
         a, p0 and mu, positive.
     load_ratio : float
-        Q/(mu P), 0 to 1, which gives c = a sqrt(1 - Q/(mu P)).
+        Q/(mu P), 0 to 1. It gives c = a sqrt(1 - Q/(mu P)).
+
+    Returns
+    -------
+    float
+        e, in the unit of `half_width`.
 
     Raises
     ------
     InputError
-        If an argument is out of range or |e| + c exceeds a: then slip has two directions and the form fails.
+        If an argument is out of range, or |e| + c exceeds a. Then slip has two directions and the form fails.
     """
     sigma = float(numbers("bulk_stress", bulk_stress))
     a = float(numbers("half_width", half_width, 0.0, open_low=True))
@@ -251,28 +278,34 @@ def bulk_stress_eccentricity(
 
 
 def spence_stick_ratio(mu_over_beta: ArrayLike) -> Values:
-    """Stick zone over contact in the normal loading of unlike half-planes (Spence), pressure uncoupled.
+    """Width of the stick zone over the width of the contact in normal loading of unlike half-planes (Spence).
 
-    K(k)/K(k') = mu/|beta| for the modulus k = c/a, with K the complete elliptic integral of the first kind
-    and beta Dundurs' second parameter. Inverted by the nome: k = [theta_2/theta_3]^2 at exp(-pi |beta|/mu).
+    The pressure is uncoupled. K(k)/K(k') = mu/|beta| for the modulus k = c/a, where K is the complete elliptic integral
+    of the first kind and beta is Dundurs' second parameter. The nome inverts it: k = [theta_2/theta_3]^2 at
+    exp(-pi |beta|/mu).
 
     Parameters
     ----------
     mu_over_beta : float or ndarray
         mu/|beta|, not negative; ``math.inf`` (like materials) gives 1.
 
+    Returns
+    -------
+    float or ndarray
+        c/a, 0 to 1.
+
     Raises
     ------
     InputError
-        If `mu_over_beta` is negative.
+        If `mu_over_beta` is negative or NaN.
     """
     ratio = np.asarray(mu_over_beta, dtype=float)
     if np.any(np.isnan(ratio)) or np.any(ratio < 0.0):
         raise InputError("mu_over_beta", f"must not be negative, not {np.min(ratio):g}")
     with np.errstate(divide="ignore"):
         small = _modulus(np.exp(-math.pi / np.minimum(ratio, 1.0)))
-    other = _modulus(np.exp(-math.pi * np.maximum(ratio, 1.0)))
-    return _value(np.where(ratio <= 1.0, small, np.sqrt((1.0 - other) * (1.0 + other))))
+    complementary = _modulus(np.exp(-math.pi * np.maximum(ratio, 1.0)))
+    return _value(np.where(ratio <= 1.0, small, np.sqrt((1.0 - complementary) * (1.0 + complementary))))
 
 
 def _load_parameter(b: np.ndarray | float, a: np.ndarray | float) -> np.ndarray:
@@ -281,8 +314,8 @@ def _load_parameter(b: np.ndarray | float, a: np.ndarray | float) -> np.ndarray:
 
 
 def _half_angle(lp: float, a: float) -> float:
-    # L_p falls monotonically with b, like 1/(4 pi b^2) for small b
-    low = high = 0.0  # ln b
+    # L_p falls monotonically with b, for small b like 1/(4 pi b^2).
+    low = high = 0.0  # bounds of ln b
     while _load_parameter(math.exp(low), a) < lp:
         low -= 1.0
     while _load_parameter(math.exp(high), a) > lp:
@@ -293,7 +326,7 @@ def _half_angle(lp: float, a: float) -> float:
 
 
 def _partial_slip(x: np.ndarray, a: float, ratio: float, e: float) -> np.ndarray:
-    """The loading form over mu p0, for Q/(mu P) = `ratio`."""
+    """The loading form of :func:`cattaneo_mindlin_shear` over mu p0, for Q/(mu P) = `ratio`."""
     c = a * math.sqrt(1.0 - ratio)
     outer = np.sqrt(np.maximum(1.0 - np.square(x / a), 0.0))
     if c == 0.0:
@@ -307,7 +340,7 @@ def _inside(e: float, c: float, a: float, field: str = "eccentricity") -> None:
 
 
 def _modulus(nome: np.ndarray) -> np.ndarray:
-    """Elliptic modulus of a nome of at most exp(-pi): five terms give all digits."""
+    """Elliptic modulus of a nome of at most exp(-pi). Five terms of the theta series give all digits."""
     even = sum(nome ** (n * (n + 1)) for n in range(1, 5))
     square = sum(nome ** (n * n) for n in range(1, 5))
     return 4.0 * np.sqrt(nome) * np.square((1.0 + even) / (1.0 + 2.0 * square))

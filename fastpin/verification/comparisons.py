@@ -1,6 +1,7 @@
-"""What solved states are compared with, and measures of how far they are from it.
+"""Differences of solved states from closed forms and from the singular integral equations.
 
-``fastpin verify``, scripts/accuracy.py and the tests share them. Problems are dimensionless (R = F = beta* = 1).
+``fastpin verify``, scripts/accuracy.py and the tests share these measures. Problems are dimensionless
+(R = F = beta* = 1).
 """
 
 from __future__ import annotations
@@ -13,15 +14,27 @@ from fastpin.model.angles import BOTTOM
 from fastpin.states.state import State
 from fastpin.verification import closed_forms, integral_equations
 
-# -- closed forms and equations ------------------------------------------------------------------------------
-
 
 def cattaneo_mindlin(
     state: State, x: np.ndarray | float, now: float, most: float, branch: closed_forms.Branch
 ) -> np.ndarray | float:
-    """Shear traction on the pin of Cattaneo and Mindlin, at angles `x` from the bottom, under the P of a state.
+    """Cattaneo and Mindlin's shear traction T on the pin under the load P of a state, in P/R.
 
-    Q/(mu P) is `now`, and has been `most`; see :func:`fastpin.analytic.cattaneo_mindlin_shear`.
+    Parameters
+    ----------
+    state : State
+        Gives P, the load parameter and the coefficient of friction. Its bodies are like.
+    x : float or ndarray
+        Angles from the bottom of the hole, rad.
+    now, most : float
+        Q/(mu P) now, and its largest value so far.
+    branch : {"loading", "unloading", "reloading"}
+        See :func:`fastpin.verification.closed_forms.cattaneo_mindlin_shear`.
+
+    Returns
+    -------
+    float or ndarray
+        T, positive along +theta.
     """
     load_parameter = state.problem.load_parameter(state.load["P"])
     half = float(closed_forms.hertz_half_angle(load_parameter))
@@ -31,14 +44,19 @@ def cattaneo_mindlin(
 
 
 def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[float]:
-    """int |dT| over int mu N between Cattaneo-Mindlin tractions and three states: after +Q, -Q and +Q again.
+    """Differences int |dT| / int mu N of three states from Cattaneo-Mindlin shear tractions.
 
     Parameters
     ----------
     states : sequence of State
-        Of like bodies under P = F with the rotation held.
+        The states after +Q, -Q and +Q again, of like bodies under P = F with the rotation held.
     ratio : float
         Q/(mu P), 0 to 1.
+
+    Returns
+    -------
+    list of float
+        One difference for each state, >= 0, dimensionless.
     """
     branches: list[tuple[float, closed_forms.Branch]] = [
         (ratio, "loading"),
@@ -56,14 +74,20 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
 
 
 def residuals_away(state: State, margin: float) -> tuple[float, float]:
-    """Largest residuals of (46) and (47) in units of F beta*, F = P, in the contact and away from where it changes.
+    """Largest residuals of (46) and (47) inside the contact, away from its edges and borders.
 
     Parameters
     ----------
     state : State
-        Of a pin that was pressed to the bottom first; without a reversal of the load, which leaves kinks of the slip.
+        A state with one contact interval. The pin must have been pressed to the bottom first, and no load reversed: a
+        reversal leaves kinks of the slip.
     margin : float
         Least distance from contact edges and stick borders, rad.
+
+    Returns
+    -------
+    r46, r47 : float
+        In units of F beta* with F = P.
     """
     load = state.load
     equations = integral_equations.residuals(
@@ -74,5 +98,5 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
     away = (state.theta > start + margin) & (state.theta < stop - margin)
     for border in np.ravel(state.stick):
         away &= np.abs(state.theta - border) > margin
-    first, second = (float(np.abs(one[away]).max()) for one in equations)
+    first, second = (float(np.abs(residual[away]).max()) for residual in equations)
     return first, second

@@ -1,4 +1,4 @@
-"""Stored tractions of finite-element models, and distances of states from them."""
+"""Stored tractions of finite-element models, and the differences of states from them."""
 
 from __future__ import annotations
 
@@ -19,29 +19,31 @@ from fastpin.model.problem import Problem
 from fastpin.states.state import State
 
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
+"""Two equal bodies, plane strain."""
+
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+"""A titanium pin in an aluminium plate, plane strain."""
+
 FRETTING = ({"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275})
+"""Corners of a fretting history: P = F, then +Q, -Q and +Q, with Q = 0.275 F."""
 
 REFERENCE = Path(__file__).parent / "data"
-"""Where the tractions of the finite elements are."""
+"""Folder of the finite-element tractions."""
 
-_ELEMENT = math.pi / 720.0
-_NEAR = 6
-
-
-# -- finite elements -----------------------------------------------------------------------------------------
+_ELEMENT = math.pi / 720.0  # node distance of the models, rad: 1,440 nodes round the hole
+_NEAR = 6  # nodes on either side of an edge or border that "away" leaves out
 
 
 class Difference(NamedTuple):
-    """How far a state is from tractions of finite elements.
+    """Difference of a state from the tractions of finite elements.
 
     Attributes
     ----------
     normal, shear : float
-        int |dN| and int |dT| over the nodes, in parts of int N of the finite elements.
+        int |dN| and int |dT| over all nodes, in parts of int N of the finite elements.
     normal_away, shear_away : float
-        The same without six nodes on either side of each contact edge and each border of zones, of this state or an
-        earlier one.
+        The same integrals without six nodes on either side of each contact edge and each border of zones, in this state
+        and in earlier ones.
     """
 
     normal: float
@@ -52,15 +54,16 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FiniteElements:
-    """Tractions of a finite-element model and the problem that they belong to.
+    """Tractions of a finite-element model, and its problem.
 
     Attributes
     ----------
     problem : Problem
+        The problem, dimensionless (R = F = beta* = 1).
     history : tuple of dict
-        Loads, whose corners are the states.
+        Loads at the corners. The model has one state for each corner.
     grid : Grid
-        The finite elements' own nodes, in and near the contact.
+        The nodes of the finite elements in and near the contact.
     pressure, shear : ndarray, shape (states, n)
         N and T (on the pin, counter-clockwise positive), F/R.
     """
@@ -73,14 +76,16 @@ class FiniteElements:
 
     @classmethod
     def read(cls, name: str) -> FiniteElements:
-        """The model "frictionless", "monotonic" or "fretting_fixed_rotation"; reference/*.csv say what they are.
+        """Read the model "frictionless", "monotonic" or "fretting_fixed_rotation".
+
+        The comments of the files data/fem_*.csv describe the models.
 
         Raises
         ------
         InputError
             If there is no such model.
         OSError
-            If its file is not there.
+            If its file can't be read.
         """
         if name not in _MODELS:
             raise InputError("name", f"must be one of {', '.join(_MODELS)}, not {name!r}")
@@ -95,7 +100,7 @@ class FiniteElements:
         return cls(problem, FRETTING[: len(states)], Grid(theta[inside]), pressure, shear)
 
     def differences(self, states: Sequence[State]) -> list[Difference]:
-        """The differences of the states at the corners of the history, solved on these nodes."""
+        """Differences of the states at the corners of the history. The states must be solved on ``grid``."""
         found = []
         away = np.ones(self.grid.size, dtype=bool)
         for state, pressure, shear in zip(states, self.pressure, self.shear, strict=True):
@@ -103,7 +108,7 @@ class FiniteElements:
                 away[max(border - _NEAR + 1, 0) : border + _NEAR + 1] = False
             normal, tangential = np.abs(state.pressure - pressure), np.abs(state.shear - shear)
             sums = (normal.sum(), tangential.sum(), normal[away].sum(), tangential[away].sum())
-            found.append(Difference(*(float(one / pressure.sum()) for one in sums)))
+            found.append(Difference(*(float(total / pressure.sum()) for total in sums)))
         return found
 
 
@@ -116,4 +121,4 @@ _MODELS = {
         ("P", "plusQ", "minusQ", "plusQ2"),
     ),
 }
-"""Problem, half-width of the part of the hole with tractions (rad) and columns of the states, by name."""
+"""Problem, half-width of the arc of nodes that is used (rad), and column names of the states, by name of the model."""

@@ -1,8 +1,8 @@
 """Residuals of the singular integral equations (46), (47) of partial slip.
 
-The solvers work with the displacements themselves and logarithmic kernels. The paper applies the operator
-[[1, d], [-d, 1]] to them, which leaves Cauchy kernels cot((theta - xi)/2). With matrices of their own, the
-equations are an independent check of a solved state inside its contact.
+The solvers work with displacements and logarithmic kernels. The paper applies the operator [[1, d], [-d, 1]] to the
+displacements, which leaves Cauchy kernels cot((theta - xi)/2). The equations have separate matrices, so they check a
+solved state inside its contact independently.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from fastpin.model.problem import Problem
 
 
 def cauchy_matrix(grid: Grid) -> np.ndarray:
-    """Principal values of int hat_j(xi) cot((theta_i - xi)/2) dxi, shape (n, n), rows theta_i.
+    """Principal values of int hat_j(xi) cot((theta_i - xi)/2) dxi, shape (n, n), row i, column j.
 
-    The hats at the ends of an arc have no principal value at their own nodes: NaN there.
+    The hat at an end of an arc has no principal value at its own node: this entry is NaN.
     """
     left, right = grid.knots()
     out = np.empty((grid.size, grid.size))
@@ -43,32 +43,34 @@ def residuals(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Left minus right side of (46) and (47) at every node, divided by F beta*.
 
-    Both vanish, up to discretisation, where the gap is zero. At a gap h > 0 they are -h/(F beta*) and
-    h'/(F beta*). Leave out the nodes beside contact edges and borders of zones, where tractions and slip
-    have kinks. (46) needs the derivative of the slip, and a stick zone keeps the kinks that earlier borders
-    left in it: after a reversal (47) is the sharper check.
+    Both residuals vanish, up to discretisation, where the gap is zero. At a gap h > 0 they are -h/(F beta*) and
+    h'/(F beta*). Leave out the nodes beside contact edges and borders of zones: tractions and slip have kinks there.
+
+    (46) needs the derivative of the slip. A stick zone keeps the kinks that earlier borders left in the slip. So after
+    a reversal (47) is the sharper check.
 
     Parameters
     ----------
     problem : Problem
-        Materials, R, R - R_D and whether the pin's load acts at the centre (39) or as body forces (56).
+        Gives the materials, R, R - R_D and the load on the pin: at the centre (39) or as body forces (56).
     force : float
-        Reference force F, N/m, positive; the scale of the result only.
+        Reference force F, N/m, positive. It only scales the result.
     grid : Grid
+        The nodes.
     pressure, shear : array_like, shape (n,)
         N and T (on the pin, counter-clockwise positive), Pa.
     total_slip : array_like, shape (n,)
-        s of Eq. (18), m, counted from the pin at the bottom of the hole. Counted from the concentric
-        position, as in an interference fit, it is smaller by (R - R_D) cos theta.
+        Slip s of Eq. (18), m, positive along +theta, counted from the pin at the bottom of the hole. In an interference
+        fit slip counts from the concentric position; it is then smaller by (R - R_D) cos theta.
     rotation : float
-        C_omega, rad, from the same position.
+        C_omega, rad, counter-clockwise, from the same position.
     sxx, syy : float
         Remote stress, Pa.
 
     Returns
     -------
     r46, r47 : ndarray, shape (n,)
-        NaN at an end of an arc that carries traction, where the principal value does not exist.
+        Residuals of (46) and (47). NaN at an end of an arc that carries traction: there is no principal value there.
 
     Raises
     ------
@@ -88,7 +90,7 @@ def residuals(
     A = (number("sxx", sxx) + number("syy", syy)) * radius / unit
     D = (number("sxx", sxx) - number("syy", syy)) * radius / unit
 
-    # composite constants over beta*: kappa'/G of the plate, and (39) or (56)
+    # Composite constants over beta*: kappa'/G of the plate, and (39) or (56).
     alpha = pair.alpha_star / pair.beta_star
     plate = 0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star
     if problem.pin_load == "centre":
@@ -117,13 +119,13 @@ def residuals(
 
 
 def _principal_value(cauchy: np.ndarray, traction: np.ndarray) -> np.ndarray:
-    # the NaN of an end node counts only if that node carries traction
+    # Columns without traction are left out, because the NaN of an end node times zero would be NaN.
     carrying = traction != 0.0
     return cauchy[:, carrying] @ traction[carrying]
 
 
 def _derivative(values: np.ndarray, grid: Grid) -> np.ndarray:
-    """d/dtheta at the nodes, second order on any spacing; one-sided at the ends of an arc."""
+    """Derivative d/dtheta at the nodes, second order on any spacing. It is one-sided at the ends of an arc."""
     theta = grid.theta
     if not grid.closed:
         return np.gradient(values, theta, edge_order=2)

@@ -1,14 +1,16 @@
-"""Full sliding: Eq. (58) solved on its own, to many digits.
+"""Full sliding: Eq. (58) solved by Jacobi polynomials, to many digits.
 
-Where the whole contact slips in one sense, T = +-mu N, and the slip function drops out of (46) - d/dtheta (47).
-What is left, (58), is one singular integro-differential equation for the pressure on a contact whose two ends are
-unknown. It says that h + h'' = 0 in the contact, so the gap vanishes there for one choice of the pin's displacement.
+If the whole contact slips in one sense, T = +-mu N, and the slip drops out of (46) - d/dtheta (47). The result is (58):
+one singular integro-differential equation for the pressure, on a contact with two unknown ends. It says that
+h + h'' = 0 in the contact. So the gap vanishes there for one choice of the displacement of the pin.
 
-The pressure is sought as (1 - t)^r (1 + t)^l times a sum of Jacobi polynomials P_k^(r, l)(t), with t from -1 to 1
-along the contact and the exponents r + l = 1 that the dominant part of (58) demands. Its Cauchy integrals are known
-in closed form, the rest of the kernel is smooth (Gauss-Jacobi quadrature), and (58) is collocated at the zeros of
-P_m^(l, r). The ends follow from equilibrium (50). With alpha* = 0 the error falls faster than any power of the number
-of terms; otherwise the pressure has terms x^(r + 1) log x at the ends, and it falls with the fourth power.
+The pressure is (1 - t)^r (1 + t)^l times a sum of Jacobi polynomials P_k^(r, l)(t), with t from -1 to 1 along the
+contact. The dominant part of (58) determines the exponents, with r + l = 1. The Cauchy integrals of this form are known
+in closed form. The rest of the kernel is smooth and is integrated by Gauss-Jacobi quadrature. (58) is collocated at the
+zeros of P_m^(l, r). The ends follow from equilibrium (50).
+
+With alpha* = 0 the error falls faster than any power of the number of terms. Otherwise the pressure has terms
+x^(r + 1) log x at the ends, and the error falls with the fourth power of the number of terms.
 """
 
 from __future__ import annotations
@@ -30,44 +32,52 @@ from fastpin.model.checks import number, whole_number
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
 
-LOADS = ("P", "Q", "sxx", "syy")
-"""Loads of a sliding contact, as in :data:`fastpin.loading.LOADS`; its moment and rotation are results."""
+SLIDING_LOADS = ("P", "Q", "sxx", "syy")
+"""Loads of a sliding contact, as in :data:`fastpin.model.loads.LOADS`. Its moment and rotation are results."""
 
 TERMS = (16, 32, 64, 128)
-"""Numbers of terms that are tried until the last coefficients are negligible."""
+"""Numbers of terms to try, in this order, until the last coefficients are negligible."""
 
 NEGLIGIBLE = 1e-13
+"""Largest of the last three coefficients, over the largest of all, at which no more terms are tried."""
+
 LEAST_TERMS = 4
-_NARROWEST, _WIDEST = 1e-7, 0.995 * math.pi  # half of a contact that can be told from a point, and has two ends
-_MOST_STEPS = 200
-_LEAST_STEP = 1e-3
-_FAR_OFF = np.array([10.0, 10.0])
+"""Least number of Jacobi polynomials."""
+
+# Half-widths, rad: a narrower contact can't be told from a point, a wider one has no two ends.
+_NARROWEST, _WIDEST = 1e-7, 0.995 * math.pi
+_MOST_STEPS = 200  # of a continuation from one case to another
+_LEAST_STEP = 1e-3  # of a continuation, in parts of the whole way
+_FAR_OFF = np.array([10.0, 10.0])  # residuals for ends that are out of range
 
 
 @dataclass(frozen=True, eq=False)
 class Sliding:
-    """The contact of a pin that slides all over in one sense.
+    """The contact of a pin that slides in one sense over the whole contact.
 
     Attributes
     ----------
     problem : Problem
+        The problem.
     load : dict of str to float
         P and Q, N/m, sxx and syy, Pa.
     slip : int
-        Sense in which the pin slides over the plate: 1 along +theta (counter-clockwise), so that T = -mu N, or -1.
+        Sense in which the pin slides over the plate. 1 is along +theta (counter-clockwise), with T = -mu N; -1 is the
+        opposite.
     contact : (float, float)
         The two ends, rad; -pi/2 is the bottom of the hole.
     exponents : (float, float)
-        The pressure falls to zero at the two ends with these powers of the distance. They add to one, and are a half
-        each without friction or with alpha* = 0.
+        Powers of the distance with which the pressure falls to zero at the two ends. They add to one. Both are 1/2
+        without friction or with alpha* = 0.
     moment : float
-        M, N, counter-clockwise: the moment on the pin that goes with this state, -R^2 int T dtheta. A pin whose
-        rotation is held finds it in its support; a pin that rotates freely slides only under exactly this moment.
+        Moment on the pin in this state, M = -R^2 int T dtheta, N, counter-clockwise. The support of a pin whose
+        rotation is held provides it. A pin that rotates freely slides only under exactly this moment.
     coefficients : ndarray, shape (terms,)
-        Of the Jacobi polynomials, in units of F/R with F the size of the force (P, Q).
+        Coefficients of the Jacobi polynomials, in units of F/R, where F is the size of the force (P, Q).
     truncation : float
-        Largest of the last three coefficients over the largest of all. If it is not negligible (unlike bodies), N near
-        the ends is off by some ten times this part of the peak, peak and moment by much less.
+        Largest of the last three coefficients over the largest of all. For unlike bodies it may not be negligible. Then
+        the error of N near the ends is some ten times this part of the peak. The errors of peak and moment are much
+        smaller.
     """
 
     problem: Problem
@@ -80,7 +90,7 @@ class Sliding:
     truncation: float
 
     def pressure(self, theta: ArrayLike) -> np.ndarray:
-        """Contact pressure N at angles `theta`, rad, Pa; zero outside the contact."""
+        """Contact pressure N, Pa, at the angles `theta`, rad; zero outside the contact."""
         start, stop = self.contact
         angle = start + np.mod(np.asarray(theta, dtype=float) - start, 2.0 * math.pi)
         t = np.minimum((2.0 * angle - start - stop) / (stop - start), 1.0)
@@ -90,7 +100,7 @@ class Sliding:
         return unit * weight * _series(self.coefficients, right, left, t)
 
     def shear(self, theta: ArrayLike) -> np.ndarray:
-        """Shear traction T on the pin at angles `theta`, rad, Pa, positive along +theta: -slip mu N."""
+        """Shear traction T = -slip mu N on the pin, Pa, at the angles `theta`, rad; positive along +theta."""
         return -self.slip * self.problem.friction * self.pressure(theta)
 
     @property
@@ -100,7 +110,7 @@ class Sliding:
 
     @property
     def peak_pressure_angle(self) -> float:
-        """Where the largest contact pressure acts, rad."""
+        """Angle of the largest contact pressure, rad."""
         return self._peak[0]
 
     @cached_property
@@ -118,32 +128,35 @@ class Sliding:
 
 
 def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, terms: int | None = None) -> Sliding:
-    """The contact in full sliding under a given load, Eq. (58) with (50).
+    """Solve the contact in full sliding under a given load, Eq. (58) with (50).
 
-    The sense of slip is given, not found: whether a history comes to this state is for :func:`fastpin.solve` to
-    say. Without friction it is the contact itself, and `slip` does not matter.
+    The sense of slip is an input. Only :func:`fastpin.solve` can say whether a history leads to this state. Without
+    friction the solution is the contact itself, and `slip` has no effect.
 
     Parameters
     ----------
     problem : Problem
+        The problem.
     load : mapping
-        P and Q, N/m, not both zero, and the remote stresses sxx and syy, Pa; what is left out is zero.
+        P and Q, N/m, not both zero, and the remote stresses sxx and syy, Pa. A missing load is zero.
     slip : {1, -1}
         Sense in which the pin slides over the plate; 1 is counter-clockwise.
     terms : int, optional
-        Number of Jacobi polynomials, at least 4. By default doubled from 16 until the last ones are negligible.
+        Number of Jacobi polynomials, at least 4. By default it is doubled from 16, to at most 128, until the last
+        coefficients are negligible.
 
     Returns
     -------
     Sliding
+        Ends, pressure, shear traction and moment of the contact.
 
     Raises
     ------
     InputError
-        If a load is unknown or not number, no force acts, or `slip` or `terms` is out of range.
+        If a load is unknown or not a number, no force acts, or `slip` or `terms` is out of range.
     ConvergenceError
-        If no sliding contact with two ends was found: the hole closes round the pin, the contact has several parts,
-        or it is too narrow for the digits of an angle.
+        If no sliding contact with two ends was found. The hole may close round the pin, the contact may have several
+        parts, or it is too narrow for the digits of an angle.
     """
     if not isinstance(problem, Problem):
         raise InputError("problem", f"must be a Problem, not {problem!r}")
@@ -183,9 +196,11 @@ def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
     if not isinstance(load, Mapping):
         raise InputError("load", f"must map load names to numbers, not {load!r}")
     for name in load:
-        if name not in LOADS:
-            raise InputError(str(name), f"a sliding contact takes {', '.join(LOADS)}; moment and rotation are results")
-    given = {name: number(name, load.get(name, 0.0)) for name in LOADS}
+        if name not in SLIDING_LOADS:
+            raise InputError(
+                str(name), f"a sliding contact takes {', '.join(SLIDING_LOADS)}; moment and rotation are results"
+            )
+    given = {name: number(name, load.get(name, 0.0)) for name in SLIDING_LOADS}
     if given["P"] == 0.0 and given["Q"] == 0.0:
         raise InputError("P", "P and Q can't both be zero: a force must press the pin on the hole")
     return given
@@ -193,9 +208,9 @@ def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class _Case:
-    """(58) without dimensions: tractions in F/R, displacements in F beta*, F the size of the force.
+    """The numbers of (58) without dimensions: tractions in F/R, displacements in F beta*, F the size of the force.
 
-    `size` is F, N/m, `force` the direction of the force (Q, -P), and `sign` that of T = sign mu N.
+    `size` is F, N/m. `force` is the direction of the force, (Q, -P)/F. `sign` is the sign in T = sign mu N.
     """
 
     size: float
@@ -226,12 +241,12 @@ class _Case:
 
     @property
     def exponents(self) -> tuple[float, float]:
-        """Powers with which the pressure falls to zero, left and right: cot(pi r) = +-mu alpha*/(2 beta*)."""
+        """Exponents of the pressure at the left and the right end, cot(pi r) = +-mu alpha*/(2 beta*)."""
         turn = math.atan(0.5 * self.sign * self.mu * self.alpha) / math.pi
         return 0.5 + turn, 0.5 - turn
 
     def remote(self, theta: np.ndarray) -> np.ndarray:
-        """H of Eq. (58)."""
+        """The term H of Eq. (58), from the remote stress."""
         return 0.5 * self.plate * (0.5 * self.sum_stress - 3.0 * self.difference_stress * np.cos(2.0 * theta))
 
     def radial_force(self, theta: np.ndarray) -> np.ndarray:
@@ -239,7 +254,7 @@ class _Case:
         return self.force[0] * np.cos(theta) + self.force[1] * np.sin(theta)
 
     def normal_resultants(self, centre: float) -> tuple[float, float]:
-        """int N cos(xi - centre) and int N sin(xi - centre) that balance the force, (50) with T = sign mu N."""
+        """Integrals of N cos(xi - centre) and N sin(xi - centre) in equilibrium, (50) with T = sign mu N."""
         along = float(self.radial_force(np.array(centre)))
         across = float(self.radial_force(np.array(centre + 0.5 * math.pi)))
         mu = self.sign * self.mu
@@ -248,12 +263,15 @@ class _Case:
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """What does not depend on where the contact is. Rows are collocation points t_i, columns terms k or nodes j."""
+    """Polynomials and integrals that do not depend on the place of the contact.
 
-    points: np.ndarray
-    nodes: np.ndarray
-    weighted: np.ndarray  # P_k at the quadrature's nodes times its weights
-    dominant: np.ndarray
+    Rows are collocation points t_i, or quadrature nodes in ``weighted``. Columns are terms k.
+    """
+
+    points: np.ndarray  # collocation points t_i
+    nodes: np.ndarray  # quadrature nodes
+    weighted: np.ndarray  # P_k at the quadrature nodes times the quadrature weights
+    dominant: np.ndarray  # terms of the dominant part of (58)
     cauchy: np.ndarray  # polynomial part of (1/pi) PV int w P_k / (tau - t)
     local: np.ndarray  # w P_k
 
@@ -277,16 +295,16 @@ class _Basis:
 
 @dataclass(frozen=True, eq=False)
 class _Patch:
-    """The pressure on a contact with given ends, the clearance that fits, and by how much the force is off."""
+    """The solution on a contact with given ends. Its clearance and transverse force may differ from the case."""
 
-    coefficients: np.ndarray
-    clearance: float
-    unbalanced: float
+    coefficients: np.ndarray  # of the pressure
+    clearance: float  # with which these ends are a solution
+    unbalanced: float  # int N sin(xi - centre) minus its value in equilibrium
     total: float  # int N dtheta
 
 
 def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Patch:
-    """Solve (58) times -half/(2 pi) on centre +- half, with the normal force given and the clearance unknown."""
+    """Solve (58) times -half/(2 pi) on centre +- half, with given normal force and unknown clearance."""
     mu, terms = case.sign * case.mu, basis.points.size
     difference = half * (basis.points[:, None] - basis.nodes)
     kernel, slope = _smooth_cotangent(difference)
@@ -310,34 +328,35 @@ def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Patch:
 
 
 def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """cot(x/2) - 2/x and its derivative, for |x| < 2 pi."""
-    near = np.abs(x) < 1.0
+    """The function cot(x/2) - 2/x and its derivative, for |x| < 2 pi; by a power series for |x| < 1."""
+    small = np.abs(x) < 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         value = 1.0 / np.tan(0.5 * x) - 2.0 / x
         slope = 2.0 / x**2 - 0.5 / np.sin(0.5 * x) ** 2
     n = np.arange(12)
     series = -2.0 / math.pi * zeta(2.0 * n + 2.0) / (2.0 * math.pi) ** (2.0 * n + 1.0)
-    square = x[near] ** 2
-    value[near] = x[near] * np.polynomial.polynomial.polyval(square, series)
-    slope[near] = np.polynomial.polynomial.polyval(square, (2.0 * n + 1.0) * series)
+    square = x[small] ** 2
+    value[small] = x[small] * np.polynomial.polynomial.polyval(square, series)
+    slope[small] = np.polynomial.polynomial.polyval(square, (2.0 * n + 1.0) * series)
     return value, slope
 
 
 def _series(coefficients: np.ndarray, right: float, left: float, t: np.ndarray) -> np.ndarray:
+    """Sum of the Jacobi polynomials P_k^(right, left) at `t` times their coefficients."""
     k = np.arange(coefficients.size)
     return eval_jacobi(k, right, left, np.asarray(t)[..., None]) @ coefficients
 
 
 def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> tuple[float, float]:
-    """Middle and half-width of the contact: the clearance and the direction of the force come out right.
+    """Middle and half-width of the contact, with the clearance and the direction of force of the case.
 
-    Without a good start the case is approached from a loose fit (L_p = 1 at least) without remote stress: clearance
-    and stress together, or one after the other, as a contact in several parts may lie on one of the ways.
+    Without a good `start` the case is approached from a loose fit (L_p = 1 at least) without remote stress. Clearance
+    and stress change together, or one after the other: on some ways the contact would have several parts.
     """
     if start is not None:
-        found = _ends_near(case, basis, start)
-        if found is not None:
-            return found
+        ends = _ends_near(case, basis, start)
+        if ends is not None:
+            return ends
     loose = replace(case, clearance=max(case.clearance, 1.0), sum_stress=0.0, difference_stress=0.0)
     stressed = replace(case, clearance=loose.clearance)
     tight = replace(loose, clearance=case.clearance)
@@ -356,19 +375,22 @@ def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> 
 
 
 def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float]) -> tuple[float, float] | None:
-    """The contact of the case `after`, on the straight way from that of `before`, which lies near `place`."""
+    """Continue the contact from the case `before`, near `place`, to the case `after`. None if it fails.
+
+    Clearance and stresses change linearly from case to case, in steps of variable size.
+    """
     done, step = 0.0, 1.0
     for _ in range(_MOST_STEPS):
         part = done + step
-        there = replace(
+        between = replace(
             after,
             clearance=before.clearance + part * (after.clearance - before.clearance),
             sum_stress=before.sum_stress + part * (after.sum_stress - before.sum_stress),
             difference_stress=before.difference_stress + part * (after.difference_stress - before.difference_stress),
         )
-        found = _ends_near(there, basis, place)
-        if found is not None:
-            place, done = found, part
+        ends = _ends_near(between, basis, place)
+        if ends is not None:
+            place, done = ends, part
             if done >= 1.0:
                 return place
             step = min(2.0 * step, 1.0 - done)
@@ -380,9 +402,9 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
 
 
 def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[float, float] | None:
-    """Middle and half-width of the contact of a case, near `start`; None if the iteration finds none there."""
+    """Middle and half-width of the contact of a case, near `start`. None if the iteration does not converge there."""
 
-    def off(unknowns: np.ndarray) -> np.ndarray:
+    def residuals(unknowns: np.ndarray) -> np.ndarray:
         half = 2.0 * math.atan(math.exp(min(unknowns[1], 50.0)))
         if not (_NARROWEST < half < _WIDEST and abs(unknowns[0] - start[0]) < 1.0):
             return _FAR_OFF
@@ -390,18 +412,18 @@ def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[
             patch = _patch(case, basis, unknowns[0], half)
         except np.linalg.LinAlgError:
             return _FAR_OFF
-        # the clearance goes as 1/half^2 in a loose fit
+        # In a loose fit the clearance varies like 1/half^2; so its residual is scaled by half^2.
         return np.array([(patch.clearance - case.clearance) * half**2, patch.unbalanced])
 
     first = np.array([start[0], math.log(math.tan(0.5 * start[1]))])
-    found = root(off, first, method="hybr", options={"xtol": 1e-14})
-    if not np.abs(off(found.x)).max() < 1e-10:
+    solution = root(residuals, first, method="hybr", options={"xtol": 1e-14})
+    if not np.abs(residuals(solution.x)).max() < 1e-10:
         return None
-    return float(found.x[0]), 2.0 * math.atan(math.exp(found.x[1]))
+    return float(solution.x[0]), 2.0 * math.atan(math.exp(solution.x[1]))
 
 
 def _check_conditions(case: _Case, found: Sliding) -> None:
-    """Raise unless N >= 0 in the contact and h >= 0 outside of it."""
+    """Raise ConvergenceError unless N >= 0 in the contact and h >= 0 outside it."""
     start, stop = found.contact
     unit = case.size / found.problem.hole_radius
     inside = found.pressure(np.linspace(start, stop, 402)[1:-1]) / unit
@@ -418,17 +440,17 @@ def _check_conditions(case: _Case, found: Sliding) -> None:
 
 
 def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
-    """Gap outside the contact, in F beta*, from the displacements (9)-(12)."""
+    """Gap at angles `theta` outside the contact, in F beta*, from the displacements (9)-(12)."""
     start, stop = found.contact
     unit = case.size / found.problem.hole_radius
     u, weights = np.polynomial.legendre.leggauss(200)
     u, weights = 0.5 * (u + 1.0), 0.5 * weights
 
     def free(angle: np.ndarray, begin: float, end: float) -> np.ndarray:
-        """Elastic part of the gap due to the tractions from `begin` to `end`, up to a displacement of the pin.
+        """Elastic part of the gap from the tractions between `begin` and `end`, up to a displacement of the pin.
 
-        The displacement takes the terms with C/G_I and S/G_I along. The nodes gather at both ends, where pressure
-        and kernel are singular.
+        The displacement includes the terms with C/G_I and S/G_I. The quadrature nodes gather at both ends, because
+        pressure and kernel are singular there.
         """
         xi = begin + (end - begin) * u**2 * (3.0 - 2.0 * u)
         width = (end - begin) * 6.0 * u * (1.0 - u) * weights
@@ -441,6 +463,7 @@ def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
         return (elastic - (1.0 - case.plate) * pressure.sum()) / (4.0 * math.pi)
 
     def hole(angle: np.ndarray) -> np.ndarray:
+        """Part of the gap from the clearance and the remote stress."""
         remote = 0.5 * case.sum_stress + case.difference_stress * np.cos(2.0 * angle)
         return case.clearance + 0.5 * case.plate * remote
 

@@ -69,7 +69,7 @@ def test_every_commented_line_of_the_example_is_valid() -> None:
     case = parse_case(text)
     assert case.options.between == 3
     assert case.options.arc == (-3.5, 0.4)
-    increments = text.replace("# increments", "increments").replace('method = "path"     ', 'method = "increment"')
+    increments = text.replace("\n# increments", "\nincrements").replace('\nmethod = "path"', '\nmethod = "increment"')
     assert parse_case(increments).options.increments == 80
     pins = re.search(r"\[pin\].*?(?=# Instead of \[pin\])", EXAMPLE, re.DOTALL)
     assert pins

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import os
 import re
+import runpy
 import signal
-import stat
 import subprocess
 import sys
 import time
@@ -18,16 +18,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-import fastpin.paper.catalog
-import fastpin.solver.solving
+import fastpin
+from fastpin import figures, solver
 from fastpin.casefile.reader import EXAMPLE, builtin_case
 from fastpin.cli.main import main
-from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.units import scaled
-from fastpin.report.case import describe
-from fastpin.report.states import state_table
+from fastpin.paper import catalog
+from fastpin.solver import solving
 from fastpin.solver.errors import NoEquilibriumError
-from fastpin.storage.files import replacing
 from fastpin.version import __version__
 from tests.support.samples import sample_result
 
@@ -39,13 +36,16 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """The solver is replaced by a result made by hand; what it was called with is recorded."""
     calls: list[dict[str, Any]] = []
 
-    def solve(problem: object, history: object, progress: Callable[[float, int], None], **options: Any) -> object:
+    def solve(
+        problem: object, history: object, *, progress: Callable[[float, int], None], start: object, **options: Any
+    ) -> object:
+        assert start is None
         calls.append(options)
         progress(0.5, 3)
         progress(3.0, 3)
         return sample_result()
 
-    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    monkeypatch.setattr(solver, "solve", solve)
     return calls
 
 
@@ -57,7 +57,7 @@ def lost(monkeypatch: pytest.MonkeyPatch) -> NoEquilibriumError:
     def solve(*_: object, **__: object) -> object:
         raise error
 
-    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    monkeypatch.setattr(solver, "solve", solve)
     return error
 
 
@@ -77,9 +77,12 @@ def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> N
     with pytest.raises(SystemExit) as ended:
         main(["--version"])
     assert ended.value.code == 0
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert capsys.readouterr().out == f"fastpin {project['version']}\n"
-    assert __version__ == project["version"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    version = runpy.run_path(str(ROOT / "fastpin" / "version.py"))["__version__"]
+    assert capsys.readouterr().out == f"fastpin {version}\n"
+    assert __version__ == version
+    assert "version" in project["project"]["dynamic"]
+    assert project["tool"]["hatch"]["version"]["path"] == "fastpin/version.py"
 
 
 def test_check_says_what_was_understood(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,7 +138,7 @@ def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.Cap
 )
 def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], needed: list[str], case: Path) -> None:
     code = (
-        "import sys\nfrom fastpin.cli import main\n"
+        "import sys\nfrom fastpin.cli.main import main\n"
         "try:\n    main(sys.argv[1:])\nexcept SystemExit:\n    pass\n"
         "print([name for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])"
     )
@@ -154,15 +157,15 @@ def test_public_names_are_imported_when_they_are_asked_for() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout == "[]\n"
-    assert fastpin.solve is fastpin.solver.solving.solve
-    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+    assert fastpin.solve is solving.solve
+    with pytest.raises(AttributeError, match="attribute nothing"):
         _ = fastpin.nothing
 
 
 def test_help_names_the_default_of_the_figures(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["paper", "--help"])
-    assert f"number of nodes (default {fastpin.paper.catalog.NODES})" in " ".join(capsys.readouterr().out.split())
+    assert f"number of nodes (default {catalog.NODES})" in " ".join(capsys.readouterr().out.split())
 
 
 def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]) -> None:
@@ -189,9 +192,12 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
     first, second = solved[:2]
     assert first == {
         "nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5), "keep": "corners",
-        "shortcut": False,
+        "shortcut": False, "error_bars": False,
     }  # fmt: skip
     assert second["between"] == 3
+    for arc in (["--arc", "-2.5,-0.6"], ["--arc=-2.5,-0.6"]):
+        assert main(["run", *arc, str(case)]) == 0
+        assert solved[-1]["arc"] == (-2.5, -0.6)
     assert second["keep"] == "all"
     for every in (["every", "10"], ["every 10"], ["every-10"]):
         assert main(["run", "--keep", *every, str(case)]) == 0
@@ -203,8 +209,13 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
     [
         (["--nodes", "2"], "--nodes: must be a whole number"),
         (["--method", "magic"], "--method: must be"),
-        (["--increments", "0"], "--increments: must be"),
+        (["--nodes", "abc"], '--nodes: must be a whole number from 5 to 20000, not "abc"'),
+        (["--increments", "0", "--method", "increment"], "--increments: must be"),
+        (["--increments", "80"], '--increments: has no effect with method "path"'),
         (["--between", "x"], "--between: must be"),
+        (["--arc", "1"], "--arc: must be a list of two angles in rad"),
+        (["--arc", "-90,90"], "--arc: must run from a smaller to a larger angle"),
+        (["--error-bars", "-o", "a.h5"], "--error-bars: are not kept in files"),
         (["--keep", "some"], '--keep: must be "all", "corners", "cycles" or "every N"'),
         (["--keep", "every", "x"], '--keep: must be "all", "corners", "cycles" or "every N"'),
         (["--after", "3"], "--after: needs --start"),
@@ -320,7 +331,7 @@ def test_an_interrupted_run_ends_with_one_sentence(
     def solve(*_: object, **__: object) -> object:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(fastpin.solver, "solve", solve)
+    monkeypatch.setattr(solver, "solve", solve)
     assert main(["run", "--json", str(tmp_path / "a.json")]) == 130
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -334,12 +345,10 @@ def test_a_file_that_can_not_be_written_does_not_cost_the_others(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    import fastpin.figures.tractions
-
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(fastpin.figures.tractions, "plot_tractions", full)
+    monkeypatch.setattr(figures, "plot_tractions", full)
     path = tmp_path / "a.h5"
     assert main(["run", "--plot", str(tmp_path / "a.png"), "-o", str(path)]) == 1
     assert "No space left" in capsys.readouterr().err
@@ -397,7 +406,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         names.append(name)
         return directory / f"{name}.png", directory / f"{name}.csv"
 
-    monkeypatch.setattr(fastpin.paper.catalog, "make", make)
+    monkeypatch.setattr(catalog, "make", make)
     return names
 
 
@@ -453,7 +462,7 @@ def test_an_interrupted_paper_says_what_is_finished(
     assert capsys.readouterr().err == "fastpin: interrupted; no figure was finished\n"
 
 
-# -- pieces --------------------------------------------------------------------------------------------------
+# -- notes ---------------------------------------------------------------------------------------------------
 
 
 def test_values_that_are_not_in_si_units_are_noted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -463,97 +472,6 @@ def test_values_that_are_not_in_si_units_are_noted(tmp_path: Path, capsys: pytes
     assert "SI units" in capsys.readouterr().out
     assert main(["run", "--nodes", "41"]) == 0
     assert "SI units" not in capsys.readouterr().out
-
-
-def test_angles_from_the_bottom() -> None:
-    assert from_bottom(-0.5 * np.pi) == 0.0
-    assert from_bottom(0.0) == pytest.approx(90.0)
-    assert from_bottom(0.5 * np.pi) == pytest.approx(180.0)
-    assert from_bottom(np.pi) == pytest.approx(-90.0)
-    assert interval_from_bottom(0.0, np.pi) == pytest.approx((90.0, 270.0))
-
-
-@pytest.mark.parametrize(
-    ("values", "unit", "expected"),
-    [
-        ([1.2e8, -3e7], "Pa", (1e-6, "MPa")),
-        ([1e6], "Pa", (1e-6, "MPa")),
-        ([999.0], "N/m", (1.0, "N/m")),
-        ([2e-5], "m", (1e6, "um")),
-        ([0.0], "m", (1.0, "m")),
-        ([float("nan"), 1e3], "m", (1e-3, "km")),
-        ([1e-9], "F/R", (1.0, "F/R")),
-        ([1e30], "Pa", (1e-9, "GPa")),
-    ],
-)
-def test_scaled(values: list[float], unit: str, expected: tuple[float, str]) -> None:
-    factor, label = scaled(values, unit)
-    assert (factor, label) == (pytest.approx(expected[0]), expected[1])
-
-
-def test_long_tables_are_cut_in_the_middle() -> None:
-    corners = [{"P": 1e6 + k} for k in range(100)]
-    text = state_table(sample_result().problem, list(sample_result(corners)))
-    assert len(text.splitlines()) < 60
-    assert "60 more" in text
-
-
-def test_description_of_other_kinds_of_cases() -> None:
-    from fastpin.casefile.reader import parse_case
-
-    text = """
-    [dundurs]
-    alpha = 1.0
-    beta = 0.3
-    nu_pin = 0.3
-    [contact]
-    load_parameter = 0.05
-    friction = 0.4
-    rotation = "fixed"
-    hub_radius = 1.0
-    [[load]]
-    P = 1
-    [[load]]
-    P = 0
-    """
-    said = describe(parse_case(text))
-    for words in ("rigid", "load parameter 0.05", "rotation fixed at radius 1 R", "dimensionless"):
-        assert words in said
-    assert said.splitlines()[-1].split() == ["2", "0", "-"]
-
-
-def test_replacing_keeps_the_old_file_when_writing_fails(tmp_path: Path) -> None:
-    path = tmp_path / "a.txt"
-    path.write_text("old")
-
-    def fail_half_way() -> None:
-        with replacing(path) as temporary:
-            temporary.write_text("half")
-            raise RuntimeError("power cut")
-
-    with pytest.raises(RuntimeError):
-        fail_half_way()
-    assert path.read_text() == "old"
-    assert list(tmp_path.iterdir()) == [path]
-
-
-def test_replacing_follows_links_and_keeps_ordinary_permissions(tmp_path: Path) -> None:
-    real, link = tmp_path / "real.txt", tmp_path / "link.txt"
-    real.write_text("old")
-    link.symlink_to(real)
-    with replacing(link) as temporary:
-        temporary.write_text("new")
-    assert link.is_symlink()
-    assert real.read_text() == "new"
-    umask = os.umask(0)
-    os.umask(umask)
-    assert stat.S_IMODE(real.stat().st_mode) == 0o666 & ~umask
-
-
-def test_replacing_never_replaces_a_device(tmp_path: Path) -> None:
-    with replacing(os.devnull) as temporary:
-        temporary.write_text("gone")
-    assert not Path(os.devnull).is_file()
 
 
 # -- long histories ------------------------------------------------------------------------------------------

@@ -1,45 +1,26 @@
-"""The commands ``sweep`` and ``merge``: what they print, their exit codes, their tables and figures."""
+"""The commands ``sweep`` and ``merge``: what they print, their exit codes and their files."""
 
 from __future__ import annotations
 
 import csv
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-import numpy as np
 import pytest
 
-from fastpin.cli import sweep
+from fastpin.cli import sweep as sweep_command
 from fastpin.cli.main import main
-from fastpin.errors import InputError
-from fastpin.figures import sweep
-from fastpin.report import sweep
-from fastpin.report.sweep import Axis, chart, check_axes
-from fastpin.studies import sweep
-from fastpin.studies.outcome import KEY_FIGURES
-from fastpin.studies.plan import Plan
-from tests.support.plans import FRICTION, MOMENT, Inline
-
-MAP = """
-[grid]
-"contact.friction" = [0.2, 0.4]
-"contact.clearance" = { from = 1e-6, to = 1e-4, count = 3, spacing = "log" }
-[[list]]
-"pin.material" = "steel"
-[[list]]
-"pin.E" = 1e11
-"""
+from fastpin.studies import sweep, workers
+from tests.support.plans import MOMENT, Inline
 
 
 @pytest.fixture
 def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A plan file in the working directory; its runs are made in this process."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("fastpin.pool.through_processes", lambda workers, tasks, submit: inline(tasks, submit))
+    monkeypatch.setattr(workers, "through_processes", lambda _, tasks, submit: inline(tasks, submit))
     (tmp_path / "moment.toml").write_text(MOMENT)
     return Path("moment.toml")
 
@@ -47,34 +28,6 @@ def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
     for task in tasks:
         yield task, submit(Inline(), task).result()
-
-
-@pytest.fixture(scope="module")
-def plan() -> Plan:
-    return sweep.parse_plan(MAP)
-
-
-@pytest.fixture
-def rows(plan: Plan) -> list[dict[str, Any]]:
-    """Made up: the value is 100 times the friction plus the place of the clearance; one failed, one waits."""
-    rows = []
-    for index, point in enumerate(plan.points):
-        number = 100.0 * point.values["contact.friction"] + index % 3
-        row = dict.fromkeys((*plan.fields, *KEY_FIGURES, "seconds", "started", "host")) | point.values
-        row |= {"id": point.id, "status": "done", "reason": None, "dimensionless": 0}
-        rows.append(row | {"peak_pressure": 1e6 * number, "contact_start": -number, "states": 3, "seconds": 0.1})
-    rows[1] |= {"status": "failed", "reason": "lost, at last", "peak_pressure": None}
-    rows[2] = {
-        "id": rows[2]["id"],
-        "status": "waiting",
-        "reason": None,
-        **dict.fromkeys(plan.fields),
-        **plan.points[2].values,
-    }
-    return rows
-
-
-# -- commands --------------------------------------------------------------------------------------------------
 
 
 def test_a_sweep_says_what_was_done_and_what_failed(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -165,7 +118,7 @@ def test_what_can_not_be_done_is_told_before_the_runs(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(sweep, "CLUSTER_SECONDS", 0.1)
+    monkeypatch.setattr(sweep_command, "CLUSTER_SECONDS", 0.1)
     assert main(["sweep", str(path), *arguments]) == 2
     captured = capsys.readouterr()
     assert words in captured.err
@@ -222,140 +175,6 @@ def test_the_progress_bar_has_the_time_left(
         assert "{n} of {total}" in text
         return Bar()
 
-    monkeypatch.setattr(sweep, "bar", bar)
+    monkeypatch.setattr(sweep_command, "bar", bar)
     main(["sweep", str(path)])
     assert shown == [(k, 6) for k in range(7)]
-
-
-# -- figures ---------------------------------------------------------------------------------------------------
-
-
-def test_axes_are_chosen(plan: Plan) -> None:
-    others = ["pin.material", "pin.E"]
-    assert check_axes(plan, "dx", None, None) == ("contact.friction", "contact.clearance", others)
-    assert check_axes(plan, "dx", "contact.clearance", None) == (
-        "contact.clearance",
-        None,
-        ["pin.material", "pin.E", "contact.friction"],
-    )
-    assert check_axes(plan, "dx", None, "contact.friction") == ("contact.clearance", "contact.friction", others)
-    one = sweep.parse_plan(FRICTION.replace("COUNT", "3"))
-    assert check_axes(one, "seconds", None, None) == ("contact.friction", None, [])
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ('[grid]\npin.material = ["steel", "aluminium"]\n', "plot: a figure needs a field with several numbers"),
-        (
-            f"[grid]\nsolve.nodes = [41, 51]\nplate.nu = [0.1, 0.2]\nload.2.Q = {[[k, -k] for k in range(1, 20)]}\n",
-            "plot: the figure would have 19 maps, at most 12 fit; choose other axes",
-        ),
-    ],
-)
-def test_figures_that_can_not_be(text: str, words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        check_axes(sweep.parse_plan(text), "dx", None, None)
-
-
-def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    found = chart(plan, rows, "peak_pressure")
-    assert found.label == "peak pressure  [MPa]"
-    assert found.missing == 2
-    assert found.y is not None
-    assert (found.x.label, found.x.log, found.x.values.tolist()) == ("contact.friction", False, [0.2, 0.4])
-    assert (found.y.label, found.y.log) == ("contact.clearance  [um]", True)
-    assert found.y.values == pytest.approx([1.0, 10.0, 100.0])
-    (name, numbers, failed), (other, complete, none) = found.parts
-    assert (name, other) == ('pin.material = "steel"', "pin.E = 1e+11")
-    assert numbers == pytest.approx(np.array([[20.0, 40.0], [np.nan, 41.0], [np.nan, 42.0]]), nan_ok=True)
-    assert complete == pytest.approx(np.array([[20.0, 40.0], [21.0, 41.0], [22.0, 42.0]]))
-    assert failed.tolist() == [[False, False], [True, False], [False, False]]
-    assert not none.any()
-
-
-def test_numbers_of_curves(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    found = chart(plan, rows, "contact_start", "contact.clearance")
-    assert found.label == "contact start  [deg]"
-    assert found.y is None
-    assert [name.splitlines()[-1] for name, _, _ in found.parts] == [
-        "contact.friction = 0.2",
-        "contact.friction = 0.4",
-    ] * 2
-    assert found.parts[3][1].tolist() == [-40.0, -41.0, -42.0]
-
-
-def test_runs_with_different_units_have_none(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    rows[0]["dimensionless"] = 1
-    assert chart(plan, rows, "peak_pressure").label == "peak pressure"
-
-
-@pytest.mark.parametrize(
-    ("values", "log", "edges"),
-    [
-        ([1.0, 2.0, 4.0], False, [0.5, 1.5, 3.0, 5.0]),
-        ([1.0, 10.0, 100.0], True, [10**-0.5, 10**0.5, 10**1.5, 10**2.5]),
-        ([3.0], False, [1.5, 4.5]),
-        ([0.0], False, [-0.5, 0.5]),
-    ],
-)
-def test_edges_of_cells(values: list[float], log: bool, edges: list[float]) -> None:
-    assert sweep.cell_edges(Axis("", np.array(values), log)) == pytest.approx(edges)
-
-
-def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweep._draw_maps(chart(plan, rows, "peak_pressure"))
-    maps, bar = figure.axes[:2], figure.axes[-1]
-    mesh = maps[0].collections[0]
-    assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
-        [20, 40, np.nan, 41, np.nan, 42], nan_ok=True
-    )
-    assert [patch.get_hatch() for patch in maps[0].patches] == ["////", None]
-    assert maps[0].patches[0].get_xy() == pytest.approx((0.1, 10**0.5))
-    assert not list(maps[1].patches)
-    assert maps[0].get_yscale() == "log"
-    assert bar.get_ylabel() == "peak pressure  [MPa]"
-    assert mesh.get_clim() == (20.0, 42.0)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["failed", "no value"]
-
-
-def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweep._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
-    (panel,) = figure.axes
-    curve, crosses = panel.lines[:2]
-    assert curve.get_ydata() == pytest.approx([20.0, np.nan, np.nan], nan_ok=True)
-    assert crosses.get_xdata() == pytest.approx([10.0])
-    assert panel.get_xscale() == "log"
-    assert panel.get_xlabel() == "contact.clearance  [um]"
-
-
-@pytest.mark.parametrize("x", [None, "contact.clearance"])
-def test_figures_are_saved_without_a_trace(
-    plan: Plan, rows: list[dict[str, Any]], x: str | None, tmp_path: Path
-) -> None:
-    before = dict(mpl.rcParams)
-    path = tmp_path / "a.pdf"
-    sweep.plot_sweep(chart(plan, rows, "peak_pressure", x), path)
-    assert path.read_bytes().startswith(b"%PDF")
-    assert dict(mpl.rcParams) == before
-    assert os.listdir(tmp_path) == ["a.pdf"]
-
-
-def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
-    for x in (None, "contact.friction"):
-        sweep.plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
-
-
-def test_long_tables_are_cut_in_the_middle() -> None:
-    plan = sweep.parse_plan(FRICTION.replace("COUNT", "81"))
-    text = sweep.text(plan, sweep.rows(plan, Path("nowhere")))
-    assert len(text.splitlines()) == 43
-    assert "41 more" in text
-
-
-def test_a_printed_table_scales_its_units(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    names, unit, first, second, *_ = (line.split() for line in sweep.text(plan, rows).splitlines())
-    assert names[:6] == ["run", "pin.material", "pin.E", "contact.friction", "contact.clearance", "peak"]
-    assert unit[:3] == ["GPa", "um", "MPa"]
-    assert first[1:6] == ["steel", "-", "0.2", "1", "20"]
-    assert second[-1] == "failed"

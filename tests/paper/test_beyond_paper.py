@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from fastpin.model.problem import Problem
-from fastpin.paper import catalog, curves, memory, sliding_onset, tractions
+from fastpin.paper import catalog, memory, sliding_onset, tractions
+from fastpin.paper.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 
@@ -20,7 +21,7 @@ def held(load_parameter: float, friction: float) -> Problem:
 
 
 @pytest.fixture(scope="module")
-def remembered() -> list[curves.Curve]:
+def remembered() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(memory, "LOAD_PARAMETERS", (0.05, 0.2, 0.5, 2.0, 8.0))
         patch.setattr(memory, "AMPLITUDES", (0.5, 1.0, 1.25))

@@ -12,7 +12,8 @@ import pytest
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper import catalog, curves, figure10, figure13, sweep, tractions
+from fastpin.paper import catalog, figure10, figure13, sweep, tractions
+from fastpin.paper.curves import Curve, steps, traction_curve, write_csv
 from fastpin.solver.solving import solve
 from tests.support.samples import sample_result
 
@@ -28,16 +29,16 @@ DRAWN = {
 
 
 @cache
-def computed(name: str) -> list[curves.Curve]:
+def computed(name: str) -> list[Curve]:
     return catalog.script(name).compute(NODES)
 
 
-def one(curves: list[curves.Curve], **parameters: object) -> curves.Curve:
+def one(curves: list[Curve], **parameters: object) -> Curve:
     (curve,) = tractions.chosen(curves, **parameters)
     return curve
 
 
-def forces(curve: curves.Curve) -> tuple[float, float]:
+def forces(curve: Curve) -> tuple[float, float]:
     """Resultants of the tractions on the pin, upwards and to the left."""
     theta = np.radians(curve["angle_deg"] - 90.0)
     up = curve["T"] * np.cos(theta) - curve["N"] * np.sin(theta)
@@ -161,13 +162,13 @@ def test_progress_counts_up_to_one() -> None:
     reported: list[float] = []
     catalog.script(17).compute(41, reported.append)
     assert reported == [1.0]
-    assert list(curves.steps("abcd", reported.append)) == list("abcd")
+    assert list(steps("abcd", reported.append)) == list("abcd")
     assert reported[1:] == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_csv_round_trip(tmp_path: Path) -> None:
-    curves = [*computed("14"), curves.Curve({"pair": "none"}, {"N": np.array([np.nan, 1.0])})]
-    curves.write_csv(curves, tmp_path / "a.csv", ["a remark"])
+    curves = [*computed("14"), Curve({"pair": "none"}, {"N": np.array([np.nan, 1.0])})]
+    write_csv(curves, tmp_path / "a.csv", ["a remark"])
     first, *rest = (tmp_path / "a.csv").read_text().splitlines()
     assert first == "# a remark"
     rows = list(csv.DictReader(rest))
@@ -186,21 +187,21 @@ def test_csv_round_trip(tmp_path: Path) -> None:
 
 def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
     state = sample_result(closed=True, centre=0.5 * np.pi, nodes=90)[0]
-    whole = curves.traction_curve(state, 2.0)
+    whole = traction_curve(state, 2.0)
     assert whole["N"].max() == pytest.approx(0.5e8, rel=1e-2)
     assert np.ptp(whole["angle_deg"]) == pytest.approx(np.degrees(2.0), rel=0.05)
     state = sample_result(closed=True, nodes=90)[0]
     middle = np.abs(state.theta + 0.5 * np.pi) < 0.3
     state.status[middle], state.pressure[middle] = 2, 0.0
-    split = curves.traction_curve(state)
+    split = traction_curve(state)
     assert np.isnan(split["N"]).sum() == 1
     assert np.sum(split["N"] == 0.0) == 4
     state = sample_result(closed=True, nodes=90)[0]
     state.status[:], state.pressure[:] = 0, 1.0
-    assert curves.traction_curve(state)["N"].tolist() == [1.0] * 90
+    assert traction_curve(state)["N"].tolist() == [1.0] * 90
     state = sample_result()[0]
     state.status[:] = 2
-    assert curves.traction_curve(state)["N"].size == 0
+    assert traction_curve(state)["N"].size == 0
 
 
 @pytest.mark.parametrize("name", [2, 18, "0", "", "3a", "figure03"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from pathlib import Path
 
@@ -24,11 +25,36 @@ def test_links_lead_somewhere(document: Path) -> None:
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_named_tests_and_scripts_exist(document: Path) -> None:
     text = document.read_text(encoding="utf-8")
-    tests = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").glob("test_*.py"))
+    tests = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
     for name in set(re.findall(r"`(test_\w+)`", text)):
         assert f"def {name}(" in tests, name
     for name in set(re.findall(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`", text)):
         assert (ROOT / name).exists(), name
+
+
+def test_names_of_the_package_exist() -> None:
+    """In docstrings and documents, such as ``fastpin.studies.sweep.run``."""
+    files = [*sorted((ROOT / "fastpin").rglob("*.py")), *DOCUMENTS, ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+    wrong = []
+    for path in files:
+        for name in set(re.findall(r"(?<![\w./\"])fastpin(?:\.[A-Za-z_]\w*)+", path.read_text(encoding="utf-8"))):
+            if not name.endswith((".py", ".toml")) and not exists(name):
+                wrong.append(f"{path.relative_to(ROOT)}: {name}")
+    assert wrong == []
+
+
+def exists(name: str) -> bool:
+    """Whether a dotted name is a module, or an attribute of a module or class."""
+    found, parts = importlib.import_module("fastpin"), name.split(".")
+    for count, part in enumerate(parts[1:], start=2):
+        try:
+            found = getattr(found, part)
+        except AttributeError:
+            try:
+                found = importlib.import_module(".".join(parts[:count]))
+            except ImportError:
+                return False
+    return True
 
 
 def test_every_statement_of_the_paper_has_a_number_a_verdict_and_a_test() -> None:

@@ -1,4 +1,4 @@
-"""The README says what is true: its example runs, its commands exist, its map is complete."""
+"""README and CONTRIBUTING say what is true: the example runs, the commands exist, the map is complete."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.cli.main import _parser
+from fastpin.cli.options import join_words, parser
+from tests.support.layout import RANKS
 
 ROOT = Path(__file__).resolve().parents[2]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+README, CONTRIBUTING = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "CONTRIBUTING.md"))
 
 
 def test_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
@@ -22,26 +23,36 @@ def test_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_commands_exist() -> None:
-    commands = re.findall(r"^fastpin ([^#>\n]*)", README, re.MULTILINE)
+    blocks = "\n".join(re.findall(r"^```\w*\n(.*?)^```", README, re.DOTALL | re.MULTILINE))
+    commands = re.findall(r"^fastpin ([^#>\n]*)", blocks, re.MULTILINE)
     assert len(commands) > 3
     for command in commands:
-        _parser().parse_args(shlex.split(command))
+        parser().parse_args(join_words(shlex.split(command)))
 
 
-def test_map_names_every_module_and_no_other() -> None:
-    modules = {path.name for path in (ROOT / "fastpin").glob("[a-z]*.py")}
-    table = README[README.index("## Map of the package") : README.index("## Dependencies")]
-    rows = "\n".join(line.split("|")[1] for line in table.splitlines() if line.startswith("| `"))
-    assert set(re.findall(r"`(\w+\.py)`", rows)) == modules
+def test_map_names_every_folder_with_its_rank_and_no_other() -> None:
+    folders = {path.parent.name for path in (ROOT / "fastpin").glob("*/__init__.py")}
+    rows = re.findall(r"^\| (\d+) \| `(\w+)/` \|", CONTRIBUTING, re.MULTILINE)
+    assert sorted(folder for _, folder in rows) == sorted(folders)
+    assert {folder: int(rank) for rank, folder in rows} == RANKS
+
+
+def test_files_and_folders_named_in_contributing_exist() -> None:
+    places = (ROOT, ROOT / "fastpin", ROOT / "tests")
+    names = set(re.findall(r"`(\w+/(?:[\w/]+\.py)?)`", CONTRIBUTING))
+    assert len(names) > 20
+    for name in names:
+        assert any((place / name).exists() for place in places), name
 
 
 def test_every_dependency_has_its_reason() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    table = README[README.index("## Dependencies") : README.index("## Development")]
+    (table,) = re.findall(r"^## Dependencies\n(.*?)^## ", CONTRIBUTING, re.DOTALL | re.MULTILINE)
     for requirement in [*project["dependencies"], *project["optional-dependencies"]["dev"]]:
         assert re.match(r"[\w-]+", requirement)[0] in table  # type: ignore[index]
 
 
-def test_linked_files_exist() -> None:
-    for target in re.findall(r"\]\(([^):]+)\)", README):
+@pytest.mark.parametrize("text", [README, CONTRIBUTING], ids=["README", "CONTRIBUTING"])
+def test_linked_files_exist(text: str) -> None:
+    for target in re.findall(r"\]\(([^):]+)\)", text):
         assert (ROOT / target).exists(), target

@@ -81,7 +81,7 @@ def test_environment_is_made_once_and_again_when_the_dependencies_change(project
     assert log(project) == ["venv", f"pip {project}", "/> -P -m fastpin run case.toml --nodes 9"]
     assert run(project, "run", "case.toml").stderr == ""
     assert log(project) == ["/> -P -m fastpin run case.toml"]
-    with open(project / "pyproject.toml", "a") as file:
+    with (project / "pyproject.toml").open("a") as file:
         file.write("\n# changed\n")
     run(project, "run", "case.toml")
     assert log(project)[:-1] == [f"pip {project}"]
@@ -91,7 +91,7 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     run(project, "run", "x")
     log(project)
     assert run(project, "test", "-k", "a b").returncode == 0
-    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -k a b"]
+    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -n auto -k a b"]
     run(project, "run", "x")
     assert log(project) == ["/> -P -m fastpin run x"]
 

@@ -23,7 +23,9 @@ from fastpin.verification import closed_forms
 from fastpin.verification.integral_equations import residuals
 
 BOTTOM = -0.5 * math.pi
-METHODS = pytest.mark.parametrize("method", ["path", "increment"])
+METHODS = pytest.mark.parametrize(
+    "solver", [{"method": "path"}, {"method": "increment", "increments": 20}], ids=["path", "increment"]
+)
 ORDERS = [
     [{"P": 1.0}, {"sxx": 0.12, "syy": -0.08}],
     [{"sxx": 0.12}, {"P": 0.5, "syy": -0.08}, {"P": 1.0}],
@@ -50,7 +52,7 @@ def test_with_friction_the_order_matters(titanium_in_aluminium):
 
 @METHODS
 @pytest.mark.parametrize("rotation", ["free", "fixed"])
-def test_all_loads_turned_by_a_quarter(titanium_in_aluminium, method, rotation):
+def test_all_loads_turned_by_a_quarter(titanium_in_aluminium, solver, rotation):
     """P takes the place of Q and sxx that of syy: the same tractions a quarter further, at every corner."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.4, 0.4, "centre", rotation)
     history = [{"P": 1.0}, {"sxx": 0.1}, {"Q": 0.15, "syy": -0.1}, {"sxx": -0.1, "Q": -0.1}, {"P": 0.6, "syy": 0.05}]
@@ -58,7 +60,7 @@ def test_all_loads_turned_by_a_quarter(titanium_in_aluminium, method, rotation):
     for corner in history:
         names = {"P": ("Q", 1.0), "Q": ("P", -1.0), "sxx": ("syy", 1.0), "syy": ("sxx", 1.0)}
         turned.append({names[name][0]: names[name][1] * value for name, value in corner.items()})
-    options = {"nodes": 101, "method": method, "increments": 20 if method == "increment" else None}
+    options = {"nodes": 101, **solver}
     below = solve(problem, history, arc=(BOTTOM - 1.5, BOTTOM + 1.5), **options)
     beside = solve(problem, turned, arc=(-1.5, 1.5), **options)
     for one, two in zip(below, beside, strict=True):

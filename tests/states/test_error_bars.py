@@ -181,7 +181,7 @@ def test_too_few_nodes_for_error_bars(problem: Problem) -> None:
 
 
 def test_a_coarse_grid_that_loses_the_load_leaves_the_result(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    original, grids = solving._solved, []
+    original, grids = solving._follow_task, []
 
     def lost(task: Any, start: Result | None) -> Result:
         grids.append(task.grid)

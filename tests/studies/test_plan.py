@@ -218,8 +218,10 @@ def test_every_bit_of_the_input_counts(old: str, new: str) -> None:
 
 
 def test_what_is_not_used_does_not_count() -> None:
-    path = parse_case(EXAMPLE.replace("# increments = 80", "increments = 90"))
-    assert run_id(canonical(path)) == run_id(canonical(builtin_case()))
+    for line in ("shortcut = false", "error_bars = true"):
+        assert run_id(canonical(parse_case(f"{EXAMPLE}{line}\n"))) == run_id(canonical(builtin_case()))
+    with pytest.raises(CaseFileError, match="increments: has no effect"):
+        parse_case(EXAMPLE.replace("# increments = 80", "increments = 90"))
     increment = EXAMPLE.replace('method = "path"', 'method = "increment"')
     ids = {run_id(canonical(parse_case(increment.replace("# increments = 80", f"increments = {n}")))) for n in (80, 90)}
     assert len(ids) == 2
@@ -232,7 +234,7 @@ def test_another_version_of_the_solver_is_another_run() -> None:
 
 def test_ids_are_the_same_in_every_process() -> None:
     code = (
-        "from fastpin.casefile import builtin_case; from fastpin.identity import *; "
+        "from fastpin.casefile import builtin_case; from fastpin.studies.identity import *; "
         "print(run_id(canonical(builtin_case()), '1'))"
     )
     found = [

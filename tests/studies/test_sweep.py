@@ -17,12 +17,14 @@ from distributed.scheduler import KilledWorker
 import fastpin
 from fastpin.errors import FastpinError, InputError
 from fastpin.kernels import products
+from fastpin.kernels.status import OPEN
 from fastpin.model.angles import interval_from_bottom
 from fastpin.storage import store
 from fastpin.studies import outcome, sweep, workers
+from fastpin.studies.identity import run_id
 from fastpin.studies.index import FILE, lock_directory
 from fastpin.studies.outcome import KEY_FIGURES, key_figures
-from fastpin.studies.plan import Plan
+from fastpin.studies.plan import Plan, parse_plan
 from fastpin.studies.sweep import Summary
 from tests.support.plans import FRICTION, MOMENT, Inline
 from tests.support.samples import sample_result
@@ -30,7 +32,7 @@ from tests.support.samples import sample_result
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return sweep.parse_plan(MOMENT)
+    return parse_plan(MOMENT)
 
 
 @pytest.fixture(scope="module")
@@ -127,9 +129,7 @@ def test_key_figures_without_contact() -> None:
 def open_result() -> fastpin.Result:
     result = sample_result()
     nothing = np.zeros(result.grid.size)
-    state = replace(
-        result[0], pressure=nothing, shear=nothing, status=np.full(result.grid.size, fastpin.OPEN, dtype=np.int8)
-    )
+    state = replace(result[0], pressure=nothing, shear=nothing, status=np.full(result.grid.size, OPEN, dtype=np.int8))
     return fastpin.Result([state], result.problem, result.history, result.grid, "path", {}, True, None)
 
 
@@ -167,7 +167,7 @@ def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None
 
 
 def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
-    grown = sweep.parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.5]"))
+    grown = parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.5]"))
     assert sweep.status(grown, copy) == Summary(3, 3, [])
     summary = sweep.run(grown, copy, Inline())
     assert (summary.done, summary.failed, summary.ended) == (6, [], 3)
@@ -176,8 +176,8 @@ def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
 
 
 def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fastpin.studies.identity.run_id, "__defaults__", ("99",))
-    later = sweep.parse_plan(MOMENT)
+    monkeypatch.setattr(run_id, "__defaults__", ("99",))
+    later = parse_plan(MOMENT)
     assert not set(later.runs) & set(plan.runs)
     assert sweep.status(later, copy) == Summary(0, 6, [])
 
@@ -233,7 +233,7 @@ def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch:
         return solve(*arguments, **options)
 
     monkeypatch.setattr(workers, "solve", failing)
-    summary = sweep.run(sweep.parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
+    summary = sweep.run(parse_plan(FRICTION.replace("COUNT", "3")), tmp_path, Inline())
     assert [reason for _, reason in summary.failed] == ["not enough memory", "ZeroDivisionError: by nothing"]
     assert summary.done == 1
 
@@ -360,7 +360,7 @@ def test_parts_make_the_whole(plan: Plan, parts: list[Path], swept: tuple[Path, 
 
 
 def test_the_order_of_the_points_does_not_matter_to_parts(plan: Plan) -> None:
-    turned = sweep.parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.1]"))
+    turned = parse_plan(MOMENT.replace("[0.1, 0.4]", "[0.4, 0.1]"))
     for part in (1, 2, 3):
         assert set(sweep.shard_of(turned, (part, 3))) == set(sweep.shard_of(plan, (part, 3)))
 
@@ -391,7 +391,7 @@ def test_other_plans_and_versions_are_not_merged(
     name: str, words: str, copy: Path, swept: tuple[Path, Summary], tmp_path: Path
 ) -> None:
     with sweep.Index(copy) as index:
-        index._note(**{name: "another"})
+        index._write_notes(**{name: "another"})
     with pytest.raises(InputError, match=words):
         sweep.merge([swept[0], copy], tmp_path / "whole")
 

@@ -21,7 +21,7 @@ from threadpoolctl import threadpool_info
 from fastpin.cli.main import main
 from fastpin.model.case import Case
 from fastpin.studies import sweep
-from fastpin.studies.plan import Plan, Point
+from fastpin.studies.plan import Plan, Point, parse_plan, read_plan
 from fastpin.studies.workers import Pool
 from tests.support.plans import FRICTION, assert_same_as_serial
 
@@ -68,7 +68,7 @@ def test_a_worker_has_one_thread(many_threads: None) -> None:
 
 def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
     code = (
-        "from threadpoolctl import threadpool_info\nfrom fastpin.worker import one_thread\n"
+        "from threadpoolctl import threadpool_info\nfrom fastpin.studies.workers import one_thread\n"
         "one_thread()\nprint({library['num_threads'] for library in threadpool_info()})"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
@@ -76,7 +76,7 @@ def test_a_worker_of_others_has_one_thread(many_threads: None) -> None:
 
 
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
-    plan = sweep.parse_plan(FRICTION.replace("COUNT", "8"))
+    plan = parse_plan(FRICTION.replace("COUNT", "8"))
 
     victims = killer(lambda: [child.pid for child in workers(os.getpid())])
     summary = sweep.run(plan, tmp_path, workers=2, progress=victims)
@@ -85,7 +85,7 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
 
 
 def test_the_run_that_kills_its_worker_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    plan = sweep.parse_plan(FRICTION.replace("COUNT", "5"))
+    plan = parse_plan(FRICTION.replace("COUNT", "5"))
     guilty = plan.points[2]
     case = Plan.case
 
@@ -139,7 +139,7 @@ def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -
 def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
     path, directory = tmp_path / "plan.toml", tmp_path / "out"
     path.write_text(FRICTION.replace("COUNT", "41"))
-    plan = sweep.read_plan(path)
+    plan = read_plan(path)
 
     def wait_for(done: int) -> None:
         until = time.monotonic() + 60.0
@@ -178,7 +178,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
 def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 
-    plan = sweep.parse_plan(FRICTION.replace("COUNT", "12"))
+    plan = parse_plan(FRICTION.replace("COUNT", "12"))
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
         Client(cluster) as client,
@@ -199,9 +199,9 @@ def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
 def test_a_script_that_its_workers_run_again_is_told(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(
-        "import fastpin.sweep\n"
-        f"plan = fastpin.sweep.parse_plan({FRICTION.replace('COUNT', '3')!r})\n"
-        f"fastpin.sweep.run(plan, {str(tmp_path / 'out')!r}, workers=1)\n"
+        "from fastpin import studies\n"
+        f"plan = studies.parse_plan({FRICTION.replace('COUNT', '3')!r})\n"
+        f"studies.sweep.run(plan, {str(tmp_path / 'out')!r}, workers=1)\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, env=environment, check=False)

@@ -13,6 +13,7 @@ import numpy as np
 import fastpin
 from fastpin.states.state import State
 from fastpin.storage import store
+from fastpin.studies.outcome import KEY_FIGURES
 from fastpin.studies.plan import Plan
 
 FRICTION = """
@@ -31,6 +32,16 @@ title = "Moment that friction carries"
 "load.2.M" = { from = 1000.0, to = 9000.0, count = 3, spacing = "log" }
 """
 """The two largest moments are too much for the smaller friction."""
+
+MAP = """
+[grid]
+"contact.friction" = [0.2, 0.4]
+"contact.clearance" = { from = 1e-6, to = 1e-4, count = 3, spacing = "log" }
+[[list]]
+"pin.material" = "steel"
+[[list]]
+"pin.E" = 1e11
+"""
 
 
 class Inline(Executor):
@@ -55,3 +66,25 @@ def assert_same_as_serial(plan: Plan, directory: Path) -> None:
         for expected, state in zip(alone, stored, strict=True):
             for name in (item.name for item in fields(State) if item.name not in ("problem", "grid")):
                 assert np.array_equal(getattr(expected, name), getattr(state, name)), name
+
+
+def made_up_rows(plan: Plan) -> list[dict[str, Any]]:
+    """Rows of an index for the plan MAP, without any run. One failed, one waits.
+
+    The peak pressure in MPa is 100 times the friction plus the place of the clearance.
+    """
+    rows: list[dict[str, Any]] = []
+    for index, point in enumerate(plan.points):
+        number = 100.0 * point.values["contact.friction"] + index % 3
+        row = dict.fromkeys((*plan.fields, *KEY_FIGURES, "seconds", "started", "host")) | point.values
+        row |= {"id": point.id, "status": "done", "reason": None, "dimensionless": 0}
+        rows.append(row | {"peak_pressure": 1e6 * number, "contact_start": -number, "states": 3, "seconds": 0.1})
+    rows[1] |= {"status": "failed", "reason": "lost, at last", "peak_pressure": None}
+    rows[2] = {
+        "id": rows[2]["id"],
+        "status": "waiting",
+        "reason": None,
+        **dict.fromkeys(plan.fields),
+        **plan.points[2].values,
+    }
+    return rows

@@ -14,6 +14,8 @@ PI = math.pi
 RADIUS = 1.3
 THETA = np.concatenate([np.linspace(-3.1, -0.06, 40), np.linspace(0.05, 3.14, 37)])
 KOLOSOV = [1.0, 1.8, 2.2, 3.0]
+"""Kolosov's constants of the bodies that are checked."""
+
 Field = Callable[[np.ndarray], np.ndarray]
 
 

@@ -13,6 +13,7 @@ NUMBERS = ("step", "fraction", "load", "dx", "dy", "rotation", "dissipation", "w
 
 
 def q(*values: float) -> LoadHistory:
+    """Corners with these values of Q; all other loads stay as they are."""
     return LoadHistory.from_array(np.array(values)[:, None], ["Q"])
 
 
@@ -34,6 +35,7 @@ PROGRAMS = {
 
 
 def assert_same(one: Result, other: Result) -> None:
+    """Two results have the same states, to the last bit."""
     assert len(one) == len(other)
     for first, second in zip(one, other, strict=True):
         for name in FIELDS:

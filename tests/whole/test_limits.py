@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
@@ -147,9 +148,9 @@ def test_a_moment_beyond_friction_is_lost_where_statics_says(similar):
 def test_increments_lose_the_same_load(similar):
     problem = Problem.from_load_parameter(similar, 2.0, 0.3, "centre", "free")
     lost = []
-    for method in ("path", "increment"):
+    for solver in ({"method": "path"}, {"method": "increment", "increments": 60}):
         with pytest.raises((NoEquilibriumError, ConvergenceError)) as caught:
-            solve(problem, [{"P": 1.0}, {"M": 0.6}], nodes=81, method=method, increments=60)
+            solve(problem, [{"P": 1.0}, {"M": 0.6}], nodes=81, **solver)
         lost.append(caught.value.load["M"])
         assert len(caught.value.result) == 1
     assert lost[1] == pytest.approx(lost[0], rel=0.02)
@@ -203,7 +204,12 @@ def test_grids_can_be_given(similar):
     problem = Problem.from_load_parameter(similar, 0.5, 0.3, "body")
     grid = Grid.arc(BOTTOM - 1.0, BOTTOM + 1.0, 77)
     assert solve(problem, [{"P": 1.0}], grid=grid).grid is grid
-    assert solve(problem, [{"P": 1.0}], nodes=77, arc=(-3.0, 4.0)).grid.closed
+    assert solve(problem, [{"P": 1.0}], nodes=77, arc=(-3.0, 2.0 * math.pi - 3.0)).grid.closed
+    for arc in ((-3.0, 4.0), (-100.0, -80.0)):
+        with pytest.raises(InputError, match="arc: must run from a smaller to a larger angle, at most a full turn"):
+            solve(problem, [{"P": 1.0}], nodes=77, arc=arc)
+    with pytest.raises(InputError, match="arc: has no effect where a grid is given"):
+        solve(problem, [{"P": 1.0}], grid=grid, arc=(-3.0, 0.0))
 
 
 # --- what is easily lost ------------------------------------------------------------------------------------

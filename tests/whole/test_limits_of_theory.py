@@ -10,23 +10,24 @@ import pytest
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper import catalog, curves, half_plane, rigid_pin
+from fastpin.paper import catalog, half_plane, rigid_pin
+from fastpin.paper.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 
 
 @cache
-def computed(name: str) -> list[curves.Curve]:
+def computed(name: str) -> list[Curve]:
     script = catalog.script(name)
     return script.compute(script.LEAST_NODES)
 
 
-def error_curve(quantity: str) -> curves.Curve:
+def error_curve(quantity: str) -> Curve:
     (curve,) = (curve for curve in computed("half-plane") if curve.parameters["quantity"] == quantity)
     return curve
 
 
-def order(curve: curves.Curve, first: float, last: float) -> float:
+def order(curve: Curve, first: float, last: float) -> float:
     """Power of 1/L_p with which the error falls between two load parameters."""
     inside = (curve["L_p"] > 0.99 * first) & (curve["L_p"] < 1.01 * last) & np.isfinite(curve["error"])
     assert np.count_nonzero(inside) >= 3

@@ -16,6 +16,7 @@ from scripts.random_histories import NODES, outcome, random_case
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
+SOLVERS = ("path", "increment")
 HISTORY = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}]
 
 
@@ -24,8 +25,8 @@ def problem(titanium_in_aluminium):
     return Problem.from_load_parameter(titanium_in_aluminium, 0.05, 0.5, "body")
 
 
-@pytest.mark.parametrize("method", ["path", "increment"])
-def test_mirror(problem, method):
+@pytest.mark.parametrize("solver", [{"method": "path"}, {"method": "increment", "increments": 20}], ids=SOLVERS)
+def test_mirror(problem, solver):
     """Turning Q round mirrors the state: theta -> -pi - theta, T and slip and rotation change sign."""
     one, two = (
         solve(
@@ -33,8 +34,7 @@ def test_mirror(problem, method):
             [{"P": 1.0}, {"Q": s * 0.3}, {"Q": -s * 0.3}],
             nodes=101,
             arc=ARC,
-            method=method,
-            increments=20,
+            **solver,
         )
         for s in (1.0, -1.0)
     )
@@ -48,13 +48,13 @@ def test_mirror(problem, method):
         assert here.dissipation == pytest.approx(there.dissipation, rel=1e-9)
 
 
-@pytest.mark.parametrize("method", ["path", "increment"])
+@pytest.mark.parametrize("solver", [{"method": "path"}, {"method": "increment", "increments": 10}], ids=SOLVERS)
 @pytest.mark.parametrize("cut", [1, 2, 3])
-def test_a_split_history_gives_the_same_bits(problem, method, cut):
+def test_a_split_history_gives_the_same_bits(problem, solver, cut):
     history = LoadHistory(HISTORY)
-    whole = solve(problem, history, nodes=81, arc=ARC, method=method, increments=10)
-    first = solve(problem, history[:cut], nodes=81, arc=ARC, method=method, increments=10)
-    second = solve(problem, history[cut:], start=first, method=method, increments=10)
+    whole = solve(problem, history, nodes=81, arc=ARC, **solver)
+    first = solve(problem, history[:cut], nodes=81, arc=ARC, **solver)
+    second = solve(problem, history[cut:], start=first, **solver)
     for one, two in zip(whole, [*first, *second], strict=True):
         for name in ("pressure", "shear", "gap", "slip", "status"):
             assert np.array_equal(getattr(one, name), getattr(two, name))

@@ -1,0 +1,117 @@
+"""The command ``converge``: what it prints, its exit codes and its files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fastpin import studies
+from fastpin.casefile.reader import EXAMPLE
+from fastpin.cli.main import main
+from fastpin.model.materials import MaterialPair
+from fastpin.report.convergence import COLUMNS
+from fastpin.studies import convergence
+from fastpin.studies.convergence import Convergence, StudyInterrupted
+from tests.support.studies import small_problem, small_study
+
+
+@pytest.fixture(scope="module")
+def study(similar: MaterialPair) -> Convergence:
+    return small_study(small_problem(similar))
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(EXAMPLE)
+    return path
+
+
+def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--nodes", "51,101,151", "--increments", "4,8,16", "--corner", "2"]
+    files = {name: tmp_path / f"a.{name}" for name in ("csv", "json", "png")}
+    written = ["--csv", str(files["csv"]), "--json", str(files["json"]), "--plot", str(files["png"])]
+    assert main(["converge", str(case), *arguments, *written]) == 0
+    out = capsys.readouterr().out
+    assert "corner 2: P = 2.42 MN/m, Q = 726 kN/m" in out
+    lines = [line.split() for line in out.splitlines()]
+    assert ["quantity", "unit", "51", "101", "151", "order", "limit", "bar"] in lines
+    assert ["quantity", "unit", "4", "8", "16", "order", "limit", "bar", "path", "within"] in lines
+    assert ["P", "MN/m", "2.42", "2.42", "2.42", "to", "rounding", "-", "-"] in lines
+    with files["csv"].open() as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == COLUMNS
+    solvers = {(row["solver"], row["nodes"], row["increments"]) for row in rows}
+    assert solvers == {("path", count, "") for count in ("51", "101", "151")} | {
+        ("increment", "151", count) for count in ("4", "8", "16")
+    }
+    peaks = [row for row in rows if row["quantity"] == "peak_pressure"]
+    assert [row["unit"] for row in peaks] == ["Pa"] * 6
+    assert all(1.2e8 < float(row["value"]) < 1.6e8 for row in peaks)
+    assert peaks[-1]["path"] == peaks[2]["value"]
+    start = next(row for row in rows if row["quantity"] == "contact_1_start")
+    assert (start["unit"], round(float(start["value"]))) == ("deg", -49)
+    document = json.loads(files["json"].read_text())
+    assert document["complete"] is True
+    assert document["studies"][1]["quantities"][0]["path"] == float(peaks[-1]["path"])
+    assert files["png"].read_bytes().startswith(b"\x89PNG")
+
+
+def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["converge", str(case), "--nodes", "51,61,71", "--corner", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["loads"]["1"]["P"] == 2.42e6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--nodes", "101,x"], "--nodes: must be whole numbers with commas"),
+        (["--nodes", "101,201"], "--nodes: must be at least 3 numbers"),
+        (["--nodes", "11,101,201"], "--nodes: must be a whole number from 51 to 20000, not 11"),
+        (["--increments", "4,2,8"], "--increments: must increase"),
+        (["--increment-nodes", "101"], "--increment-nodes: is for the increment solver"),
+        (["--corner", "9"], "--corner: must be one of the history, 1 to 4, not 9"),
+        (["--plot", "a.docx"], "--plot: the figure's name must end in"),
+        (["--csv", "a.csv", "--json", "a.csv"], "writes the same file as"),
+        (["--csv", "no/such/place.csv"], "does not exist"),
+        (["--csv", "a.toml"], "won't overwrite the case file"),
+    ],
+)
+def test_options_are_checked_before_the_work(
+    arguments: list[str],
+    words: str,
+    case: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(convergence, "solve", None)
+    assert main(["converge", str(case), *arguments]) == 2
+    err = capsys.readouterr().err
+    assert words in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == [case]
+
+
+def test_an_interrupted_command_hands_out_what_there_is(
+    case: Path, study: Convergence, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: list[Convergence | None] = [replace(study, studies=study.studies[:1], complete=False), None]
+
+    def interrupted(*_: object) -> Convergence:
+        raise StudyInterrupted(kept.pop(0))
+
+    monkeypatch.setattr(studies, "converge", interrupted)
+    csv_file = case.parent / "a.csv"
+    assert main(["converge", str(case), "--csv", str(csv_file)]) == 130
+    captured = capsys.readouterr()
+    assert "path solver; nodes on one arc:" in captured.out
+    assert "interrupted; kept: corner 1, 2, 3 with 51, 101, 201 nodes" in captured.err
+    assert csv_file.exists()
+    assert main(["converge", str(case)]) == 130
+    assert "interrupted; less than three grids were finished" in capsys.readouterr().err

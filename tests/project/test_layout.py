@@ -1,0 +1,164 @@
+"""The rules of the layout hold, and each rule notices when it is broken."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import fastpin
+from tests.support import layout
+
+ROOT = Path(__file__).resolve().parents[2]
+
+BREAKS = {
+    "a folder without a rank": ("known_folders", "more/a.py", '"""More."""\n'),
+    "a folder inside a folder": ("known_folders", "model/inner/a.py", '"""More."""\n'),
+    "an import from a higher rank": ("one_direction", "model/grid.py", "import fastpin.solver.interrupt\n"),
+    "an import under TYPE_CHECKING": (
+        "one_direction",
+        "model/angles.py",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fastpin.solver.interrupt import SIGNALS\n",
+    ),
+    "an import from a folder of the same rank": (
+        "one_direction",
+        "states/fits.py",
+        "import fastpin.elasticity.system\n",
+    ),
+    "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),
+    "a circle of files": ("no_circles", "states/zones.py", "from fastpin.states.state import State\n"),
+    "a kernel that imports the package": ("kernels_alone", "kernels/toeplitz.py", "import fastpin.errors\n"),
+    "a kernel that calls one of another file": (
+        "kernels_alone",
+        "kernels/toeplitz.py",
+        "from fastpin.kernels.influence import clausen\n@compiled\ndef more(x):\n    return clausen(x)\n",
+    ),
+    "numba elsewhere": ("one_home", "solver/arc.py", "import numba\n"),
+    "matplotlib elsewhere": ("one_home", "report/table.py", "from matplotlib import figure\n"),
+    "h5py elsewhere": ("one_home", "studies/sweep.py", "import h5py\n"),
+    "tomllib elsewhere": ("one_home", "studies/plan.py", "import tomllib\n"),
+    "sqlite3 elsewhere": ("one_home", "storage/files.py", "import sqlite3\n"),
+    "argparse elsewhere": ("one_home", "report/case.py", "import argparse\n"),
+    "print elsewhere": ("one_home", "report/case.py", "print(1)\n"),
+    "a private name of another file": (
+        "nothing_private",
+        "states/peaks.py",
+        "from fastpin.states.zones import _alike\n",
+    ),
+    "a private attribute of a module": (
+        "nothing_private",
+        "states/peaks.py",
+        "from fastpin.states import zones\nzones._alike\n",
+    ),
+    "an import inside a function": ("imports_at_the_top", "solver/arc.py", "def more():\n    import json\n"),
+    "a long file": ("small", "solver/arc.py", "\n" * layout.MOST_LINES),
+    "a long function": ("small", "solver/arc.py", "def more():\n" + "    x = 1\n" * (layout.MOST_FUNCTION_LINES + 1)),
+    "many parameters": ("small", "solver/arc.py", "def more(a, b, c, d, e, f, g, h, i):\n    return a\n"),
+    "a folder without a sentence": ("sentences_in_folders", "model/__init__.py", None),
+}
+"""For each way to break the layout: the rule, the file, and the text that is added to it; None empties the file."""
+
+
+def test_every_rule_holds():
+    assert layout.broken(ROOT) == []
+
+
+@pytest.mark.parametrize("name", list(BREAKS))
+def test_a_broken_rule_is_noticed(name, tmp_path):
+    rule, file, text = BREAKS[name]
+    shutil.copytree(ROOT / "fastpin", tmp_path / "fastpin", ignore=shutil.ignore_patterns("__pycache__"))
+    path = tmp_path / "fastpin" / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    path.write_text("" if text is None else f"{before}\n{text}", encoding="utf-8")
+    sentences = layout.broken(tmp_path)
+    assert sentences
+    assert {sentence.split(":")[0] for sentence in sentences} == {rule}
+
+
+def test_every_rule_is_broken_once():
+    tried = {rule for rule, _, _ in BREAKS.values()}
+    assert {rule.__name__ for rule in layout.RULES} - tried == {"exceptions_used"}
+
+
+def test_an_exception_that_is_not_needed_is_noticed(monkeypatch):
+    monkeypatch.setitem(layout.UPWARD, "model/grid.py", "no reason")
+    monkeypatch.setitem(layout.LONG_FUNCTIONS, "solver/arc.py candidate_grids", "no reason")
+    monkeypatch.setitem(layout.MANY_PARAMETERS, "solver/arc.py nothing", "no reason")
+    assert len(layout.broken(ROOT)) == 3
+
+
+# -- the public face -----------------------------------------------------------------------------------------
+
+
+def stub_names(path: Path) -> list[str]:
+    """Names that an ``__init__.pyi`` makes public."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+
+
+def test_the_public_face_is_small_and_listed_once():
+    names = stub_names(ROOT / "fastpin" / "__init__.pyi")
+    assert sorted(names) == sorted(fastpin.__all__)
+    assert len(names) <= layout.MOST_PUBLIC_NAMES
+    assert dir(fastpin) == sorted(names)
+
+
+@pytest.mark.parametrize("folder", ["", *layout.RANKS])
+def test_public_names_exist_and_are_documented(folder):
+    module = fastpin if not folder else __import__(f"fastpin.{folder}", fromlist=["x"])
+    stub = ROOT / "fastpin" / folder / "__init__.pyi"
+    for name in stub_names(stub) if stub.exists() else []:
+        value = getattr(module, name)
+        if inspect.ismodule(value) or inspect.isclass(value) or inspect.isroutine(value):
+            assert inspect.getdoc(value), name
+
+
+def test_completion_shows_the_same_before_and_after_a_solve():
+    code = (
+        "import fastpin\n"
+        "before = dir(fastpin)\n"
+        "pair = fastpin.MaterialPair(fastpin.MATERIALS['steel'], fastpin.MATERIALS['aluminium'])\n"
+        "problem = fastpin.Problem.from_load_parameter(pair, 0.1, friction=0.4)\n"
+        "fastpin.solve(problem, [{'P': 1.0}], nodes=41)\n"
+        "assert dir(fastpin) == before == sorted(fastpin.__all__), dir(fastpin)\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+def test_importing_the_package_loads_nothing_heavy():
+    code = (
+        "import sys, fastpin, fastpin.cli.main\n"
+        "print([name for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'h5py', 'tqdm') if name in sys.modules])\n"
+    )
+    found = subprocess.run([sys.executable, "-c", code], check=True, timeout=60, capture_output=True, text=True)
+    assert found.stdout == "[]\n"
+
+
+# -- the tests -----------------------------------------------------------------------------------------------
+
+
+def test_tests_lie_in_the_folders_of_the_package():
+    folders = {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert folders - set(layout.RANKS) == {"project", "support", "whole"}
+
+
+def test_no_test_imports_a_test_or_changes_the_path():
+    for path in (ROOT / "tests").rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)):
+            modules = []
+            if isinstance(node, ast.Import):
+                modules = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                modules = [f"{node.module}.{alias.name}" for alias in node.names]
+            for module in modules:
+                assert not any(part.startswith("test_") for part in module.split(".")), (path, module)
+        assert "sys.path." + "insert" not in text, path
+        assert "sys.path." + "append" not in text, path
+    assert not list((ROOT / "tests" / "support").glob("test_*.py"))

@@ -1,0 +1,100 @@
+"""Tables of sweeps, and the numbers that their figures show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.report.sweep import chart, check_axes, text
+from fastpin.studies import sweep
+from fastpin.studies.plan import Plan, parse_plan
+from tests.support.plans import FRICTION, MAP, made_up_rows
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return parse_plan(MAP)
+
+
+@pytest.fixture
+def rows(plan: Plan) -> list[dict[str, Any]]:
+    return made_up_rows(plan)
+
+
+def test_axes_are_chosen(plan: Plan) -> None:
+    others = ["pin.material", "pin.E"]
+    assert check_axes(plan, "dx", None, None) == ("contact.friction", "contact.clearance", others)
+    assert check_axes(plan, "dx", "contact.clearance", None) == (
+        "contact.clearance",
+        None,
+        ["pin.material", "pin.E", "contact.friction"],
+    )
+    assert check_axes(plan, "dx", None, "contact.friction") == ("contact.clearance", "contact.friction", others)
+    one = parse_plan(FRICTION.replace("COUNT", "3"))
+    assert check_axes(one, "seconds", None, None) == ("contact.friction", None, [])
+
+
+@pytest.mark.parametrize(
+    ("written", "words"),
+    [
+        ('[grid]\npin.material = ["steel", "aluminium"]\n', "plot: a figure needs a field with several numbers"),
+        (
+            f"[grid]\nsolve.nodes = [41, 51]\nplate.nu = [0.1, 0.2]\nload.2.Q = {[[k, -k] for k in range(1, 20)]}\n",
+            "plot: the figure would have 19 maps, at most 12 fit; choose other axes",
+        ),
+    ],
+)
+def test_figures_that_can_not_be(written: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        check_axes(parse_plan(written), "dx", None, None)
+
+
+def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    found = chart(plan, rows, "peak_pressure")
+    assert found.label == "peak pressure  [MPa]"
+    assert found.missing == 2
+    assert found.y is not None
+    assert (found.x.label, found.x.log, found.x.values.tolist()) == ("contact.friction", False, [0.2, 0.4])
+    assert (found.y.label, found.y.log) == ("contact.clearance  [um]", True)
+    assert found.y.values == pytest.approx([1.0, 10.0, 100.0])
+    (name, numbers, failed), (other, complete, none) = found.parts
+    assert (name, other) == ('pin.material = "steel"', "pin.E = 1e+11")
+    assert numbers == pytest.approx(np.array([[20.0, 40.0], [np.nan, 41.0], [np.nan, 42.0]]), nan_ok=True)
+    assert complete == pytest.approx(np.array([[20.0, 40.0], [21.0, 41.0], [22.0, 42.0]]))
+    assert failed.tolist() == [[False, False], [True, False], [False, False]]
+    assert not none.any()
+
+
+def test_numbers_of_curves(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    found = chart(plan, rows, "contact_start", "contact.clearance")
+    assert found.label == "contact start  [deg]"
+    assert found.y is None
+    assert [name.splitlines()[-1] for name, _, _ in found.parts] == [
+        "contact.friction = 0.2",
+        "contact.friction = 0.4",
+    ] * 2
+    assert found.parts[3][1].tolist() == [-40.0, -41.0, -42.0]
+
+
+def test_runs_with_different_units_have_none(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    rows[0]["dimensionless"] = 1
+    assert chart(plan, rows, "peak_pressure").label == "peak pressure"
+
+
+def test_long_tables_are_cut_in_the_middle() -> None:
+    plan = parse_plan(FRICTION.replace("COUNT", "81"))
+    said = text(plan, sweep.rows(plan, Path("nowhere")))
+    assert len(said.splitlines()) == 43
+    assert "41 more" in said
+
+
+def test_a_printed_table_scales_its_units(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    names, unit, first, second, *_ = (line.split() for line in text(plan, rows).splitlines())
+    assert names[:6] == ["run", "pin.material", "pin.E", "contact.friction", "contact.clearance", "peak"]
+    assert unit[:3] == ["GPa", "um", "MPa"]
+    assert first[1:6] == ["steel", "-", "0.2", "1", "20"]
+    assert second[-1] == "failed"

@@ -1,0 +1,194 @@
+"""One value gets one sentence: in Python, in a case file, in a plan and on the command line."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import pickle
+from typing import Any
+
+import pytest
+
+import fastpin
+from fastpin.casefile.reader import parse_case
+from fastpin.cli.main import main
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.options import SolveOptions
+from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, NoEquilibriumError, SolveError
+from fastpin.studies.convergence import StudyInterrupted, StudyLostError
+from fastpin.studies.plan import parse_plan
+
+CASE: dict[str, dict[str, Any]] = {
+    "pin": {"E": 116e9, "nu": 0.32},
+    "plate": {"E": 69e9, "nu": 0.33},
+    "contact": {"hole_radius": 0.01, "clearance": 20e-6, "friction": 0.4, "pin_load": "centre"},
+    "solve": {},
+}
+
+NAN, INF = math.nan, math.inf
+
+OPTIONS: list[tuple[str, Any]] = [
+    *(("nodes", value) for value in (4, 0, -3, 20_001, 30_000, 10**6, 10.5, 1000.0, "many", NAN, INF)),
+    *(("method", value) for value in ("newton", "Path", "increments", 3, 2.5)),
+    *(("increments", value) for value in (0, -1, 2.5, 100.0, "few", NAN)),
+    *(
+        ("arc", value)
+        for value in ([0, 100], [1.0, 0.5], [0, 0], [-90, 90], [0, 1, 2], ["a", "b"], [NAN, 1.0], [0, INF], 0.5, "all")
+    ),
+    *(
+        ("between", value)
+        for value in (-1, 10_001, 1.5, "half", [0.5, 0.25], [0.0, 0.5], [0.5, 1.0], [0.5, 0.5], [NAN, 0.5], ["a", 0.5])
+    ),
+    *(("keep", value) for value in ("none", "every 0", "every -1", "every", "Cycles", "cycles", "corner", 5, 2.5)),
+]
+"""Bad values of the solver's options. "cycles" is bad because the history has none."""
+
+FIELDS: list[tuple[str, str, Any]] = [
+    *(("contact", "friction", value) for value in (-0.1, "rough", NAN, True, [0.4])),
+    *(("contact", "hole_radius", value) for value in (0, -0.01, "wide", INF)),
+    *(("contact", "clearance", value) for value in (0.01, -0.02, "none", NAN)),
+    *(("contact", "pin_load", value) for value in ("edge", "center", 1)),
+    *(("contact", "rotation", value) for value in ("loose", "Free", 0)),
+    *(("contact", "hub_radius", value) for value in (0.005, -1, "small")),
+    *(("pin", "E", value) for value in (0, -1e9, "stiff", NAN)),
+    *(("pin", "nu", value) for value in (-0.1, 0.51, "soft", True)),
+    *(("solve", "shortcut", value) for value in (1, "yes")),
+    *(("solve", "error_bars", value) for value in (0, "no")),
+]
+"""Bad values that only Python, case files and plans can have."""
+
+
+def as_toml(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(as_toml, value))}]"
+    return json.dumps(value) if isinstance(value, (str, bool)) else repr(value)
+
+
+def name_of(case: tuple) -> str:
+    return " ".join(as_toml(part) for part in case)
+
+
+def with_method(name: str) -> dict[str, str]:
+    """Increments need the increment solver."""
+    return {"method": "increment"} if name == "increments" else {}
+
+
+def case_text(section: str = "solve", **values: Any) -> str:
+    """The case as TOML, with other values in one section."""
+    sections = CASE | {section: CASE[section] | values}
+    parts = [f"[{name}]\n" + keys(table) for name, table in sections.items()]
+    return "\n".join([*parts, "[[load]]\nP = 1e6\n"])
+
+
+def keys(table: dict[str, Any]) -> str:
+    return "".join(f"{key} = {as_toml(value)}\n" for key, value in table.items())
+
+
+def build(section: str, values: dict[str, Any]) -> None:
+    """Solve the case in Python, with other values in one section."""
+    tables = CASE | {section: CASE[section] | values}
+    pair = fastpin.MaterialPair(fastpin.Material(**tables["pin"]), fastpin.Material(**tables["plate"]))
+    fastpin.solve(fastpin.Problem(pair, **tables["contact"]), [{"P": 1e6}], **tables["solve"])
+
+
+def python_reason(section: str, name: str, value: Any) -> str:
+    """The sentence that Python gives."""
+    with pytest.raises(InputError) as raised:
+        build(section, {**with_method(name), name: value})
+    assert raised.value.field == name
+    return raised.value.reason
+
+
+@pytest.mark.parametrize("case", [("solve", *one) for one in OPTIONS] + FIELDS, ids=name_of)
+def test_python_case_files_and_plans_say_the_same(case, tmp_path):
+    section, name, value = case
+    reason = python_reason(*case)
+    with pytest.raises(CaseFileError) as raised:
+        parse_case(case_text(section, **with_method(name), **{name: value}))
+    assert [text for _, text in raised.value.problems] == [f"{name}: {reason}"]
+    (tmp_path / "case.toml").write_text(case_text())
+    rows = "".join(f'"solve.{key}" = {as_toml(one)}\n' for key, one in with_method(name).items())
+    with pytest.raises(CaseFileError) as raised:
+        parse_plan(f'case = "case.toml"\n[[list]]\n{rows}"{section}.{name}" = {as_toml(value)}\n', folder=tmp_path)
+    assert [text for _, text in raised.value.problems] == [f"{section}.{name}: {reason}"]
+
+
+@pytest.mark.parametrize("case", OPTIONS, ids=name_of)
+def test_the_command_line_says_the_same(case, tmp_path, capsys):
+    name, value = case
+    reason = python_reason("solve", name, value)
+    path = tmp_path / "case.toml"
+    path.write_text(case_text())
+    text = ",".join(map(str, value)) if isinstance(value, list) else str(value)
+    options = [f"--{key}={one}" for key, one in with_method(name).items()]
+    assert main(["run", str(path), *options, f"--{name}={text}"]) == 2
+    assert capsys.readouterr().err == f"fastpin: --{name}: {reason}\n"
+
+
+def test_fifty_values_go_all_four_ways():
+    assert len(OPTIONS) >= 50
+
+
+def test_an_option_without_effect_is_refused_everywhere(tmp_path, capsys):
+    reason = 'has no effect with method "path"; leave it out, or choose "increment"'
+    with pytest.raises(InputError) as refused:
+        SolveOptions(increments=40)
+    assert refused.value.reason == reason
+    with pytest.raises(CaseFileError) as raised:
+        parse_case(case_text(increments=40))
+    assert [text for _, text in raised.value.problems] == [f"increments: {reason}"]
+    path = tmp_path / "case.toml"
+    path.write_text(case_text())
+    with pytest.raises(CaseFileError) as raised:
+        parse_plan('case = "case.toml"\n[grid]\n"solve.increments" = [40]\n', folder=tmp_path)
+    assert [text for _, text in raised.value.problems] == [f"solve.increments: {reason}"]
+    assert main(["run", str(path), "--increments", "40"]) == 2
+    assert capsys.readouterr().err == f"fastpin: --increments: {reason}\n"
+
+
+def test_another_method_on_the_command_line_drops_the_increments_of_the_file(tmp_path, capsys):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(nodes=41, method="increment", increments=5))
+    assert main(["run", str(path)]) == 0
+    assert "increment solver" in capsys.readouterr().out
+    assert main(["run", str(path), "--method", "path"]) == 0
+    assert "path solver" in capsys.readouterr().out
+
+
+def test_options_of_solve_are_those_of_the_one_object():
+    parameters = inspect.signature(fastpin.solve).parameters
+    for name, default in SolveOptions().keywords().items():
+        assert parameters[name].default == default
+    assert set(parameters) - set(SolveOptions().keywords()) == {"problem", "history", "grid", "start", "progress"}
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        InputError("nodes", "must be more"),
+        CaseFileError("case.toml", [(3, "one"), (1, "two")]),
+        SolveError("lost", 2, 0.5, {"P": 1.0}),
+        NoEquilibriumError("spins", 1, 0.25, {"M": 2.0}),
+        ConvergenceError("not settled"),
+        ArcError("cut off"),
+        StudyLostError("with 101 nodes: lost", 3),
+        Interrupted(None),
+        StudyInterrupted(None),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_errors_can_be_pickled(error):
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is type(error)
+    assert str(copy) == str(error)
+    assert copy.__dict__ == error.__dict__
+
+
+def test_an_error_with_a_result_can_be_pickled(similar):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
+    with pytest.raises(NoEquilibriumError) as raised:
+        fastpin.solve(problem, [{"P": 1.0}, {"M": 5.0}], nodes=41)
+    copy = pickle.loads(pickle.dumps(raised.value))
+    assert len(copy.result) == 1
+    assert copy.step == raised.value.step
