@@ -95,7 +95,7 @@ def draw(columns: dict[str, np.ndarray]) -> Figure:
     axes[0, 1].set_ylabel("thousand corners, MB")
     for panel in axes[0]:
         panel.set_xlabel("time  [min]")
-    style.key(figure, [("thousand corners", style.line(0)), ("size of the file, MB", style.line(1, 1))])
+    style.add_legend(figure, [("thousand corners", style.line(0)), ("size of the file, MB", style.line(1, 1))])
     return figure
 
 
@@ -111,7 +111,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.draw:
         table = np.loadtxt(RESULTS / "long.csv", delimiter=",", skiprows=1)
-        style.draw_with(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
+        style.save_drawing(draw, dict(zip(NAMES, table.T, strict=True)), FIGURE)
         return
     cases.steady_state(61)  # compiles
     with tempfile.TemporaryDirectory() as folder:
@@ -142,7 +142,7 @@ def main() -> None:
             writer = csv.writer(file)
             writer.writerow(NAMES)
             writer.writerows([f"{value:.5g}" for value in row] for row in rows)
-        style.draw_with(draw, columns, FIGURE)
+        style.save_drawing(draw, columns, FIGURE)
 
 
 if __name__ == "__main__":

@@ -250,7 +250,7 @@ def draw(stored: Stored) -> Any:
         panel.set_xlabel("nodes n")
         panel.set_ylabel(label)
         rows.append(entries)
-    style.key(figure, *rows)
+    style.add_legend(figure, *rows)
     return figure
 
 
@@ -284,7 +284,7 @@ def newest() -> Path:
 
 def save_figure(stored: Stored, path: Path) -> None:
     """Draw and save the figure."""
-    style.draw_with(draw, stored, path)
+    style.save_drawing(draw, stored, path)
 
 
 def main() -> None:

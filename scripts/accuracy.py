@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import draw_with, key, line, panels
+from fastpin.figures.style import add_legend, line, panels, save_drawing
 from fastpin.model.angles import BOTTOM
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
@@ -126,7 +126,7 @@ def reference_cases(sizes: list[int], finest: int, figure: Path | None) -> None:
             rows.append([load, SHOWN[name], *(f"{error:.1e}" for error in errors), f"{order(sizes, errors):.1f}"])
         table(["load", "quantity", *(str(nodes) for nodes in sizes), "order"], rows)
     if figure is not None:
-        draw_with(lambda errors: _drawn(sizes, errors), found, figure, 160.0)
+        save_drawing(lambda errors: _drawn(sizes, errors), found, figure, 160.0)
 
 
 def _differences(reference: Result, results: list[Result]) -> dict[tuple[str, str], list[float]]:
@@ -162,7 +162,7 @@ def _drawn(sizes: list[int], found: Errors) -> Figure:
         panel.minorticks_off()
     axes[0, 0].set_ylabel("error, rad or relative")
     axes[1, 0].set_ylabel("error, rad or relative")
-    key(
+    add_legend(
         figure,
         [(SHOWN[name], line(colour)) for colour, name in enumerate(names)],
         [*((load, line(0, dashes)) for dashes, load in enumerate(("P", "+Q", "+Q again"))), ("order 2", SECOND)],

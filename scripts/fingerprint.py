@@ -162,6 +162,12 @@ def random_options(rng: Generator, problem: Problem, cyclic: bool) -> dict[str, 
     return options
 
 
+def value_of(owner: Any, name: str) -> Any:
+    """An attribute; of a load only what acts, so that versions with other loads can be compared."""
+    value = getattr(owner, name, None)
+    return {load: force for load, force in value.items() if force != 0.0} if name == "load" and value else value
+
+
 def history_item(seed: int) -> Item:
     """Digests of a random history: of its states, of what is read, of its cycles and of how it ends."""
     rng = np.random.default_rng(seed)
@@ -173,13 +179,13 @@ def history_item(seed: int) -> Item:
         ending: list[Any] = ["solved"]
     except fastpin.FastpinError as error:
         result, lost = getattr(error, "result", None), ("step", "fraction", "load")
-        ending = [f"{type(error).__name__}: {error}", *(getattr(error, name, None) for name in lost)]
+        ending = [f"{type(error).__name__}: {error}", *(value_of(error, name) for name in lost)]
     results = [part for part in (result, getattr(result, "coarse", None)) if part is not None]
     states = [state for part in results for state in part]
     cycles = [[part.complete, part.method, *(cycle._asdict() for cycle in part.cycles)] for part in results]
     counts = [{name: part.statistics[name] for name in part.statistics if name != "seconds"} for part in results]
     return {
-        "states": digest([getattr(state, name) for name in SOLVED] for state in states),
+        "states": digest([value_of(state, name) for name in SOLVED] for state in states),
         "readings": digest([getattr(state, name) for name in READ] for state in states),
         "cycles": digest([cycles, counts, ending]),
         "number of states": len(states),

@@ -124,7 +124,7 @@ def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None
         section.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
         return None
     if len(history) > MAX_ROWS:
-        section.report(f"repeat: what is repeated has more than {MAX_ROWS:,} corners", "repeat")
+        section.report(f"repeat: more than {MAX_ROWS:,} corners can't be repeated", "repeat")
         return None
     return history.repeated(count)
 

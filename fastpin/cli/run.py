@@ -135,7 +135,7 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
             raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
     for name in ("nodes", "arc"):
         if options.start is not None and getattr(options, name) is not None:
-            raise InputError(f"--{name}", "is that of the result to go on from (--start)")
+            raise InputError(f"--{name}", "is fixed by the result to continue from (--start)")
     _check_cycles(case, options)
 
 
@@ -170,7 +170,7 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
     if start.restart is None:
         why = "its run has not finished: resume it, or say after which corner (--after)"
         if start.complete:
-            why = "it holds nothing to go on from, as the results of sweeps do"
+            why = "it holds no restart; the results of sweeps hold none"
         raise InputError("--start", f"{options.start}: {why}")
     return start
 
@@ -218,7 +218,7 @@ def _write_result(
             else f"after {_reached(result)} of {len(case.history):,} corners"
         )
         more = (
-            f"; go on with: fastpin resume {options.output}"
+            f"; continue with: fastpin resume {options.output}"
             if options.output is not None and result is not None
             else ""
         )

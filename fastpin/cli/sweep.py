@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
             summary = _run(options, plan, directory, shard)
         except KeyboardInterrupt:
             now = studies.sweep.status(plan, directory, shard)
-            kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command goes on"
+            kept = f"{now.done + len(now.failed)} of {now.total} runs are finished and kept; the same command continues"
             return fail(f"interrupted; {kept}", EXIT_INTERRUPTED)
     rows = _written(options, plan, directory)
     _print_summary(plan, directory, summary, options.status, options.retry)

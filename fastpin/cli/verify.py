@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
             "passed": code == EXIT_OK,
             "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],
         }
-        text = json.dumps(report.summary.plain(document), indent=2, allow_nan=False) + "\n"
+        text = json.dumps(report.summary.json_ready(document), indent=2, allow_nan=False) + "\n"
         if options.json == "-":
             sys.stdout.write(text)
         else:

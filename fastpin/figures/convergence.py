@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from fastpin.figures.style import Line, draw_with, key, line, panels
+from fastpin.figures.style import Line, add_legend, line, panels, save_drawing
 from fastpin.model.units import named_loads, scaled
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES
@@ -65,7 +65,7 @@ def plot_convergence(
         If the figure's format is unknown, or the file can't be written.
     """
     chosen = max(convergence.loads) if corner is None else corner
-    draw_with(lambda study: _draw(study, chosen, title), convergence, path, dpi)
+    save_drawing(lambda study: _draw(study, chosen, title), convergence, path, dpi)
 
 
 def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
@@ -90,7 +90,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     guides: list[tuple[str, Line]] = [(f"order {order}", style) for order, style in _GUIDES.items()]
     open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"}
     bar: Line = {"color": "0.3", "linestyle": "none", "marker": "_", "markersize": 9.0, "markeredgewidth": 1.6}
-    key(
+    add_legend(
         figure,
         [
             (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 4.0})

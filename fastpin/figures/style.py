@@ -94,7 +94,7 @@ def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:
     return {"color": COLOURS[colour], "linestyle": DASHES[dashes], "linewidth": width}
 
 
-def draw_with(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
+def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, dpi: float = 160.0) -> None:
     """Draw the figure of ``draw(curves)`` in the house style and save it, see :func:`draw_and_save`."""
     draw_and_save(lambda: draw(curves), path, dpi)
 
@@ -115,7 +115,7 @@ def angle_axis(panel: Axes) -> None:
     panel.xaxis.set_major_locator(MaxNLocator(nbins=7, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
 
 
-def key(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
+def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
     """Add a legend below the panels. Each of `rows` is a row of the legend: labels and their lines."""
     columns = max(len(row) for row in rows)
     entries = [[Line2D([], [], label=label, **style) for label, style in row] for row in rows]

@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from fastpin.figures.style import MAX_NAMED, Line, draw_with, key, line, panels
+from fastpin.figures.style import MAX_NAMED, Line, add_legend, line, panels, save_drawing
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
@@ -43,7 +43,7 @@ def plot_sweep(chart: Chart, path: str | Path, dpi: float = 160.0) -> None:
     InputError
         If the figure's format is unknown, or the file can't be written.
     """
-    draw_with(_draw_curves if chart.y is None else _draw_maps, chart, path, dpi)
+    save_drawing(_draw_curves if chart.y is None else _draw_maps, chart, path, dpi)
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
@@ -125,7 +125,7 @@ def _draw_curves(chart: Chart) -> Figure:
     marks = [("failed", cross)] if any(failed.any() for _, _, failed in chart.parts) else []
     named = [entry for entry in entries if entry[0]] + marks
     if named:
-        key(figure, *[named[k : k + across] for k in range(0, len(named), across)])
+        add_legend(figure, *[named[k : k + across] for k in range(0, len(named), across)])
     return figure
 
 

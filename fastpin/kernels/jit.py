@@ -48,7 +48,7 @@ def blas_address(name: str) -> int:
     return int(get_cython_function_address("scipy.linalg.cython_blas", name))
 
 
-def on_one_thread() -> None:
+def limit_to_one_thread() -> None:
     """Limit compiled code to one thread, in this process and in the processes that it starts."""
     os.environ["NUMBA_NUM_THREADS"] = "1"
     numba.config.reload_config()

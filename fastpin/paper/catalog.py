@@ -10,7 +10,6 @@ Each figure is a file of this folder with
 from __future__ import annotations
 
 import importlib
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Protocol, cast
@@ -18,8 +17,9 @@ from typing import Protocol, cast
 from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
-from fastpin.figures.style import draw_with
+from fastpin.figures.style import save_drawing
 from fastpin.model.checks import whole_number
+from fastpin.model.grid import LEAST_NODES, MAX_NODES
 from fastpin.paper.curves import Curve, Report, write_csv
 from fastpin.storage.files import check_writable
 from fastpin.version import __version__
@@ -104,7 +104,7 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None
     """
     scripts = {figure_name(name): script(name) for name in names}
     for name, needed in scripts.items():
-        if whole_number("nodes", nodes, -sys.maxsize) < needed.LEAST_NODES:
+        if whole_number("nodes", nodes, LEAST_NODES, MAX_NODES) < needed.LEAST_NODES:
             raise InputError("nodes", f"figure {name} needs at least {needed.LEAST_NODES} nodes, not {nodes}")
     folder = Path(directory)
     if folder.exists() and not folder.is_dir():
@@ -137,5 +137,5 @@ def make(
     curves = chosen.compute(nodes, progress)
     picture, numbers = _files(name, directory)
     write_csv(curves, numbers, (chosen.TITLE, f"fastpin {__version__}, {nodes} nodes", UNITS))
-    draw_with(chosen.draw, curves, picture)
+    save_drawing(chosen.draw, curves, picture)
     return picture, numbers

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import key, line, panels
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.paper.curves import Curve, Report
 from fastpin.paper.sweep import load_parameter_axis, swept
 
@@ -40,5 +40,5 @@ def draw(curves: Sequence[Curve]) -> Figure:
     contact.set_yticks(range(0, 91, 15))
     for panel in axes[0]:
         load_parameter_axis(panel)
-    key(figure, [(f"μ = {curve.parameters['mu']:g}", style) for curve, style in zip(curves, lines, strict=True)])
+    add_legend(figure, [(f"μ = {curve.parameters['mu']:g}", style) for curve, style in zip(curves, lines, strict=True)])
     return figure

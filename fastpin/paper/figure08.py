@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import key, line, panels
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.paper.curves import Curve, Report
 from fastpin.paper.sweep import load_parameter_axis, swept
 
@@ -50,7 +50,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     ratio.set_ylim(0.0, 1.03)
     for panel in axes[0]:
         load_parameter_axis(panel)
-    key(
+    add_legend(
         figure,
         [(pair, lines[pair, FRICTION[0]]) for pair in PAIRS],
         [(f"μ = {mu:g}", {**lines["Ti/Al", mu], "color": "0.35"}) for mu in FRICTION],

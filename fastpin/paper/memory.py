@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import key, line, panels
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
@@ -89,7 +89,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
         panel.set_ylim(bottom=0.0)
     memory.set_ylabel("memory:  ∫|ΔT| / ∫μN  [%]")
     transient.set_ylabel("from the steady state:  ∫|ΔT| / ∫μN  [%]")
-    key(
+    add_legend(
         figure,
         [(f"Q/(μP) = {curve.parameters['eta']:g}", line(index)) for index, curve in enumerate(curves)],
         [("first +Q", line(5)), ("first −Q", line(5, 1, 1.0))],

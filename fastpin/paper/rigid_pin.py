@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import angle_axis, key, line, panels
+from fastpin.figures.style import add_legend, angle_axis, line, panels
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import PinLoad, Problem
 from fastpin.paper.curves import Curve, Report, steps, traction_curve
@@ -94,7 +94,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     convergence.set_ylabel("difference,  ∫|ΔN|/∫N  or  ∫|ΔT|/∫N")
     convergence.legend(loc="lower left", fontsize=7.0, handlelength=2.6, labelspacing=0.3)
     grey = {"color": "0.35"}
-    key(
+    add_legend(
         figure,
         [("steel in aluminium", line(0)), ("ten times as stiff", line(1)), ("rigid", line(2))],
         [("centre load", {**line(0), **grey}), ("body load", {**line(0, 1), **grey})],

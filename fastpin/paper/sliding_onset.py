@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import key, line, panels
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Curve, Report, steps
 from fastpin.paper.tractions import PAIRS
@@ -122,5 +122,5 @@ def draw(curves: Sequence[Curve]) -> Figure:
     axes[0, 0].set_ylabel("onset of sliding  $η_s$ = Q/(μP)")
     rows[0].append(("first way, at +Q", line(5)))
     rows[1].append(("way back, at −Q", line(5, 1, 1.0)))
-    key(figure, *rows)
+    add_legend(figure, *rows)
     return figure

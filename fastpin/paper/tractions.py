@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import Line, angle_axis, key, panels
+from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import PinLoad, Problem
 from fastpin.paper.curves import Curve, Report, steps, traction_curve
@@ -91,5 +91,5 @@ def traction_figure(
             if content.quantity == "N":
                 panel.set_ylim(bottom=0.0)
     figure.align_ylabels(axes[:, 0])
-    key(figure, *legend)
+    add_legend(figure, *legend)
     return figure

@@ -15,7 +15,7 @@ from typing import Any
 
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, scaled, units
-from fastpin.report.summary import plain
+from fastpin.report.summary import json_ready
 from fastpin.report.table import table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
@@ -183,7 +183,7 @@ def _missing(value: object) -> bool:
 def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
     """Return a study as a JSON-ready dict. Unknown values are None."""
     grid = convergence.grid
-    return plain(
+    return json_ready(
         {
             "fastpin": __version__,
             "title": title,

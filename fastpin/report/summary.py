@@ -66,7 +66,7 @@ def document(
         "states": [] if result is None else [_state_summary(state) for state in result],
         "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
     }
-    return plain(found)
+    return json_ready(found)
 
 
 def _block_summary(block: Block) -> dict[str, Any]:
@@ -98,12 +98,12 @@ def _state_summary(state: State) -> dict[str, Any]:
     }
 
 
-def plain(value: Any) -> Any:
+def json_ready(value: Any) -> Any:
     """Return `value` JSON-ready: Python numbers for NumPy's, lists for tuples, None for NaN and infinity."""
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): json_ready(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
+        return [json_ready(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

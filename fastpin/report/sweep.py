@@ -163,7 +163,7 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
         if name is not None and name not in numeric:
             raise InputError(option, f"the values of {name} are not all numbers, which an axis needs")
     if y is not None and y == x:
-        raise InputError("y", f"must be another field than that of the x axis, {x}")
+        raise InputError("y", f"must differ from the field of the x axis, {x}")
     free = [name for name in numeric if len(values[name]) > 1 and name not in (x, y)]
     if x is None:
         if not free:

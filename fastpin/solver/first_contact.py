@@ -238,8 +238,8 @@ def _first_patch(
         part = min(max(part * min(max((wanted / count) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
     if best is None:
         raise ConvergenceError(
-            "no first contact was found: at the first load asked for it is narrower than the nodes can tell; use more "
-            "nodes or leave that load out"
+            "no first contact was found: at the first load the contact is narrower than the nodes can resolve; use "
+            "more nodes or leave that load out"
         )
     _, found, fraction = best
     if reaches_end(system, found):

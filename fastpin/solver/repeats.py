@@ -87,7 +87,7 @@ class Period:
     counts: dict[CycleKey, int]
 
 
-def copies(marks: dict[CycleKey, CycleEnd]) -> dict[CycleKey, CycleEnd]:
+def copied_ends(marks: dict[CycleKey, CycleEnd]) -> dict[CycleKey, CycleEnd]:
     """Copies of cycle ends. They change independently of the originals."""
     return {key: replace(mark) for key, mark in marks.items()}
 
@@ -111,7 +111,7 @@ class CornerLog:
 
     def __init__(self, history: LoadHistory, marks: dict[CycleKey, CycleEnd]) -> None:
         self.history = history
-        self.marks = copies(marks)
+        self.marks = copied_ends(marks)
         self.log: deque[CornerEntry] = deque(maxlen=max(MOST_LOGGED, history.longest_cycle))
 
     @property

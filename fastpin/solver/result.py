@@ -57,7 +57,7 @@ class Restart:
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
 
-    def elsewhere(self) -> Restart:
+    def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
         return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={})
 

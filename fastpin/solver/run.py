@@ -19,7 +19,7 @@ from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveErr
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import IncrementStepper
 from fastpin.solver.path import PathStepper
-from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copies
+from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import release, unloaded_configuration
 from fastpin.solver.result import Restart
 from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
@@ -167,7 +167,7 @@ class Run:
         """The restart from the last corner that was reached."""
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            self.repeats.copy(same_history=True), copies(self.corner_log.marks), dict(self.statistics),
+            self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
         )  # fmt: skip
 
     def _step(self, load: np.ndarray, ends_cycle: bool) -> KnownConfiguration | None:

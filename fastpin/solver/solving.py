@@ -116,7 +116,7 @@ def _follow_task(task: Task, start: Result | None) -> Result:
 def _check_halves(task: Task, start: Result | None) -> None:
     """Raise :class:`InputError` if the task can't have error bars."""
     if start is not None and (start.coarse is None or start.coarse.restart is None):
-        raise InputError("error_bars", "the result to go on from was solved without them: it has no coarse grid")
+        raise InputError("error_bars", "the result to continue from was solved without them: it has no coarse grid")
     if start is None:
         size = task.options.nodes if task.grid is None else task.grid.size
         if (size + 1) // 2 < LEAST_COARSE:

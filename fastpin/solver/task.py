@@ -119,7 +119,7 @@ class Task:
         """The reference force of the history, N/m."""
         return reference_force(self.problem, self.history.distinct())
 
-    def go_on(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+    def continue_from(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Continue the history from a corner that another run reached, on the grid of that run.
 
         Raises
@@ -139,9 +139,11 @@ class Task:
             See :meth:`follow`.
         """
         try:
-            self.go_on(recorder, start.elsewhere(), grid)
+            self.continue_from(recorder, start.for_new_history(), grid)
         except ArcError as error:
-            error.args = (f"{error}; here it is that of the result to go on from: solve that one on a wider arc",)
+            error.args = (
+                f"{error}; here the arc is fixed by the result to continue from: solve that result on a wider arc",
+            )
             raise
 
     def reach(self, start: Restart, grid: Grid) -> Restart:
@@ -204,9 +206,9 @@ def check_start(problem: Problem, start: Result) -> None:
     if not isinstance(start, Result):
         raise InputError("start", f"must be a Result, not {start!r}")
     if start.problem != problem:
-        raise InputError("start", "the result to go on from belongs to another problem")
+        raise InputError("start", "the result to continue from belongs to another problem")
     if start.restart is None:
-        raise InputError("start", "this result can't be gone on from: its file holds states only")
+        raise InputError("start", "nothing can continue from this result: its file holds states only")
 
 
 def reference_force(problem: Problem, values: np.ndarray) -> float:

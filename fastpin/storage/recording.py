@@ -113,10 +113,10 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
     writer, restart = reopen(path, progress)
     task = writer.task
     with closing_file(writer):
-        log.info("going on from corner %d of %d", restart.corner, len(task.history))
+        log.info("continuing from corner %d of %d", restart.corner, len(task.history))
         assert task.grid is not None
         try:
-            task.go_on(writer, restart, task.grid)
+            task.continue_from(writer, restart, task.grid)
         except ArcError:
             if not writer.chosen_arc:
                 raise

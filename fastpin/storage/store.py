@@ -192,7 +192,7 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tu
         raise InputError("after", f"must be a corner from 1 to {reached}, not {after}: {path} has no others")
     stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
     if "run" not in file.attrs or not stored:
-        raise InputError("after", f"{path} was not written by a run: it can't be gone on from")
+        raise InputError("after", f"{path} was not written by a run: nothing can continue from it")
     start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
     task = stored_task(file)
     return replace(task, history=history[:after], options=task.options.changed(shortcut=True), stops=frozenset()), start

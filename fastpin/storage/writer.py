@@ -344,9 +344,9 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         try:
             check_format(h5, str(path))
             if "run" not in h5.attrs:
-                raise InputError(str(path), "was not written by a run, there is nothing to go on with")
+                raise InputError(str(path), "was not written by a run: there is nothing to continue")
             if h5.attrs["complete"]:
-                raise InputError(str(path), "holds a finished run, there is nothing to go on with")
+                raise InputError(str(path), "holds a finished run: there is nothing to continue")
             task = replace(stored_task(h5), progress=progress)
             options = h5["solver"].attrs
             writer = FileRecorder(path, task, str(options["title"]))
@@ -380,7 +380,7 @@ def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Res
     except FileNotFoundError:
         pass
     except (OSError, KeyError):
-        log.warning("%s can't be read: going on from an earlier corner", checkpoint_of(path))
+        log.warning("%s can't be read: continuing from an earlier corner", checkpoint_of(path))
     restart = read_restart(file_restart)
     use(file_restart)
     return restart

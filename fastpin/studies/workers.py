@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError
-from fastpin.kernels.jit import on_one_thread
+from fastpin.kernels.jit import limit_to_one_thread
 from fastpin.kernels.products import in_one_thread
 from fastpin.model.case import Case
 from fastpin.solver.errors import SolveError
@@ -209,7 +209,7 @@ def prepare() -> None:
     """Make this process a worker: one thread, deaf to Ctrl-C. It ends when the main process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # The main process handles interrupts.
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    on_one_thread()
+    limit_to_one_thread()
     one_thread()
 
 

@@ -604,7 +604,7 @@ def test_signals_leave_a_run_that_goes_on(sign: signal.Signals, background: bool
     out, said = process.communicate(timeout=30)
     assert process.returncode == 130
     assert re.fullmatch(
-        rf"fastpin: interrupted after \d+ of 3,001 corners; go on with: fastpin resume {stored}\n", said
+        rf"fastpin: interrupted after \d+ of 3,001 corners; continue with: fastpin resume {stored}\n", said
     )
     assert "path solver, 201 nodes" in out
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("a.")] == ["a.h5"]

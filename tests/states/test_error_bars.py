@@ -168,7 +168,7 @@ def test_a_branch_has_error_bars_if_its_trunk_has(problem: Problem) -> None:
     whole = solve(problem, CORNERS, grid=trunk.grid, error_bars=True)
     assert branch[-1].error_bars == whole[-1].error_bars
     assert solve(problem, CORNERS[2:], start=trunk)[-1].error_bars is None
-    with pytest.raises(InputError, match="error_bars: the result to go on from was solved without them"):
+    with pytest.raises(InputError, match="error_bars: the result to continue from was solved without them"):
         solve(problem, CORNERS[2:], start=bare, error_bars=True)
 
 

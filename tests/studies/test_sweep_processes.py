@@ -133,7 +133,9 @@ def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -
         os.killpg(process.pid, signal.SIGINT)
         err = process.communicate(timeout=30)[1]
     assert process.returncode == 130
-    assert re.fullmatch(r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command goes on\n", err)
+    assert re.fullmatch(
+        r"fastpin: interrupted; \d+ of 41 runs are finished and kept; the same command continues\n", err
+    )
 
 
 def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
@@ -155,7 +157,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert 3 <= kept.done < 41
     assert out == ""
-    assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command goes on\n"
+    assert err == f"fastpin: interrupted; {kept.done} of 41 runs are finished and kept; the same command continues\n"
 
     with started(path, directory) as process:
         wait_for(kept.done + 3)
