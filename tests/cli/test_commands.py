@@ -416,7 +416,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         (["--figure", "4", "--figure", "2"], "--figure: there is no '2'; there are 3 to 17 of the paper, and "),
         (["--figure", "17", "--nodes", "200"], "--nodes: figure 17 needs at least 201 nodes, not 200"),
         (["--nodes", "101"], "--nodes: figure 5 needs at least 201 nodes, not 101"),
-        (["--nodes", "-1"], "--nodes: figure 3 needs at least 101 nodes, not -1"),
+        (["--nodes", "-1"], "--nodes: must be a whole number from 5 to 20000, not -1"),
         (["-o", "file"], "--output: file is a file, not a directory"),
         (["-o", "file/below"], "--output: can't make the directory file/below: Not a directory"),
         (["--figure", "4", "-o", "taken"], "figure04.csv: is a directory"),
@@ -536,7 +536,7 @@ def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pyte
             assert one[name] == other[name]
     for wrong, words in (
         (["--start", trunk, "--after", "9"], "--after: must be a corner from 1 to 4"),
-        (["--start", trunk, "--nodes", "99"], "--nodes: is that of the result to go on from"),
+        (["--start", trunk, "--nodes", "99"], "--nodes: is fixed by the result to continue from"),
         (["--start", trunk, "-o", trunk], "--output: is the file to start from"),
     ):
         assert main(["run", str(branch), *wrong]) == 2

@@ -208,7 +208,7 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
         follow(problem, history, path, nodes=61, arc=(first.theta[0], first.theta[-1]), overwrite=True)
     with pytest.raises(ArcError, match="give a wider one"):
         resume(path)
-    with pytest.raises(ArcError, match="the result to go on from"):
+    with pytest.raises(ArcError, match="the result to continue from"):
         follow(problem, [{"Q": 0.6}], tmp_path / "b.h5", start=store.load(path, after=2))
     with pytest.raises(ArcError):
         resume(tmp_path / "b.h5")
@@ -360,7 +360,7 @@ def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, p
     found = store.load(path)
     assert 25 <= len(found) <= 31
     assert not found.complete
-    with pytest.raises(InputError, match="can't be gone on from"):
+    with pytest.raises(InputError, match="nothing can continue from this result"):
         solve(problem, [{"Q": 0.1}], start=found)
     assert len(solve(problem, [{"Q": 0.1}], start=store.load(path, after=20))) == 1
 
