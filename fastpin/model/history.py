@@ -293,11 +293,11 @@ class LoadHistory:
         given = ~np.all([np.all(np.isnan(block.given), axis=0) for block in self._blocks], axis=0)
         names = ", ".join(name for name, is_given in zip(LOADS, given, strict=True) if is_given)
         parts = [
-            f"{len(block.given):,} corners" + (f" x {block.count:,}" if block.count > 1 else "")
+            _count_corners(len(block.given)) + (f" x {block.count:,}" if block.count > 1 else "")
             for block in self._blocks[:MOST_SHOWN]
         ]
         more = [f"{len(self._blocks) - MOST_SHOWN} more blocks"] * (len(self._blocks) > MOST_SHOWN)
-        return f"<LoadHistory: {len(self):,} corners of {names or 'no load'}; {' + '.join(parts + more)}>"
+        return f"<LoadHistory: {_count_corners(len(self))} of {names or 'no load'}; {' + '.join(parts + more)}>"
 
     def __add__(self, other: LoadHistory) -> LoadHistory:
         """This history followed by `other`."""
@@ -442,6 +442,10 @@ def _times(block: Block, count: int) -> np.ndarray:
 
 def _plain(given: np.ndarray) -> Block:
     return Block(given, np.zeros(len(given), dtype=np.int64))
+
+
+def _count_corners(count: int) -> str:
+    return f"{count:,} corner{'' if count == 1 else 's'}"
 
 
 def _cos_degrees(angle: float) -> float:
