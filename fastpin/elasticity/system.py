@@ -20,7 +20,7 @@ import numpy as np
 
 from fastpin.kernels import influence
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SYY, M, P, Q
+from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
 
@@ -76,12 +76,12 @@ class System:
         Maps (N, T) to the conditions of equilibrium.
     motion_rows : ndarray, shape (3, 3)
         Maps the motion of the pin to the conditions of equilibrium.
-    forces : ndarray, shape (3, 6)
+    forces : ndarray, shape (3, loads)
         Maps the loads to the conditions of equilibrium.
     weights : ndarray, shape (n,)
         Integrals of the hat functions of the nodes, rad.
     plate : float
-        Radial displacement of the hole per remote stress, Eq. (42).
+        Size R kappa'/(2 G) of the hole's displacement per remote stress, Eq. (42).
     """
 
     problem: Problem
@@ -120,6 +120,7 @@ class System:
         loads[:, Q] = point * np.r_[-cos, sin]
         loads[:, SXX] = plate * np.r_[0.5 + np.cos(2 * theta), np.sin(2 * theta)]
         loads[:, SYY] = plate * np.r_[0.5 - np.cos(2 * theta), -np.sin(2 * theta)]
+        loads[:, SXY] = 2.0 * plate * np.r_[np.sin(2 * theta), -np.cos(2 * theta)]
 
         cos_moment, sin_moment = grid.trig_moments()
         equilibrium = np.zeros((3, 2 * n))
@@ -158,7 +159,7 @@ class System:
             Pressure N, then shear traction T.
         motion : ndarray, shape (3,)
             Motion (c_x, c_y, omega) of the pin.
-        load : ndarray, shape (6,)
+        load : ndarray, shape (loads,)
         rest_gap : ndarray, shape (n,), or float
             Gap of the rigid pin in the undeformed hole.
         """

@@ -282,7 +282,7 @@ def _load_text(states: list[State], index: int, name: str) -> str:
     """Return a load with its unit as text. All loads of one kind have the same unit."""
     same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
     factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
-    symbol = {"sxx": "$σ_{xx}$", "syy": "$σ_{yy}$"}.get(name, name)
+    symbol = f"$σ_{{{name[1:]}}}$" if LOAD_KIND[name] == "traction" else name
     value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
     if states[index].load[name] == 0.0:
         return f"{symbol} = 0"

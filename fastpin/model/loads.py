@@ -16,20 +16,24 @@ LOAD_KIND = {
     "sxx": "traction",
     "syy": "traction",
     "rotation": "rotation",
+    "sxy": "traction",
 }
 """The kind of quantity of every load. The kinds are keys of :func:`fastpin.model.units.units`.
 
 * ``P``: force on the pin downwards (-y), N/m.
 * ``Q``: force on the pin along +x, N/m.
 * ``M``: moment on the pin, counter-clockwise, N (per unit thickness); only for a pin that rotates freely.
-* ``sxx``, ``syy``: remote stresses in the plate, Pa.
+* ``sxx``, ``syy``: remote normal stresses in the plate, Pa.
 * ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed.
+* ``sxy``: remote shear stress in the plate, Pa.
+
+Files hold load vectors, so a new load stands at the end.
 """
 
 LOADS = tuple(LOAD_KIND)
 """Names of the loads, in the order of every load vector."""
 
-P, Q, M, SXX, SYY, ROTATION = range(len(LOADS))
+P, Q, M, SXX, SYY, ROTATION, SXY = range(len(LOADS))
 """Places of the loads in a load vector."""
 
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")

@@ -30,7 +30,7 @@ class Configuration:
         Status of each node, see :mod:`fastpin.kernels.status`.
     motion : ndarray, shape (3,)
         Motion of the pin, (c_x, c_y, omega). It counts from ``rest``.
-    load : ndarray, shape (6,)
+    load : ndarray, shape (loads,)
         Loads in the order of :data:`fastpin.model.loads.LOADS`.
     origin : ndarray, shape (2,)
         The first ``rest`` of the history; NaN before the pin has come to rest.
@@ -103,7 +103,7 @@ def solve_statuses(
     status : ndarray, shape (n,)
     stuck_slip : ndarray, shape (n,)
         Slip that sticking nodes hold.
-    load : ndarray, shape (6,)
+    load : ndarray, shape (loads,)
         Dimensionless.
     rest_gap : ndarray, shape (n,), or float
 

@@ -43,7 +43,7 @@ def at_rest(
     system : System
     floating : Configuration
         The pin without contact. It is not changed.
-    before, after : ndarray, shape (6,)
+    before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
 
     Returns
@@ -126,7 +126,7 @@ def first_contact(
     system : System
     floating : Configuration
         The pin without contact. It is not changed.
-    before, after : ndarray, shape (6,)
+    before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
 
     Returns
@@ -156,7 +156,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     Parameters
     ----------
     system : System
-    load : ndarray, shape (6,)
+    load : ndarray, shape (loads,)
         Dimensionless. Its remote stress deforms the hole.
     angle : float
         rad.

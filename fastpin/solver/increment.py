@@ -49,7 +49,7 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Con
     system : System
     start : Configuration
         Its slip is the slip before the increment, at all nodes, open nodes too. It is not changed.
-    load : ndarray, shape (6,)
+    load : ndarray, shape (loads,)
         Dimensionless load at the end of the increment.
 
     Returns

@@ -81,7 +81,7 @@ class PathStep:
     system : System
     configuration : Configuration
         The configuration at the start of the step, in contact. It is not changed.
-    after : ndarray, shape (6,)
+    after : ndarray, shape (loads,)
         Dimensionless load at the end of the step.
     memory : TableauMemory, optional
         Memory for the tableau, for example from an earlier step.
@@ -90,7 +90,7 @@ class PathStep:
     ----------
     now : Configuration
         The present configuration.
-    before, rate : ndarray, shape (6,)
+    before, rate : ndarray, shape (loads,)
         The load at the start, and its change along the step.
     rebuilds : int
         Tableaus built from the matrices, and states computed by a factorisation. The first tableau counts too, unless

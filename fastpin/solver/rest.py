@@ -9,7 +9,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import ROTATION
+from fastpin.model.loads import ROTATION, SXX, SXY, SYY
 from fastpin.solver.configuration import Configuration, elastic_energy, resting_status, solve_statuses
 from fastpin.solver.errors import ConvergenceError
 
@@ -62,7 +62,7 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     system : System
     last : Configuration
         The configuration before. It is not changed.
-    load : ndarray, shape (6,)
+    load : ndarray, shape (loads,)
         Dimensionless.
     """
     n = system.grid.size
@@ -98,17 +98,17 @@ def put_at_rest(
 
 
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
-    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (42), and two derivatives.
+    """Gap of the unloaded, concentric pin in the hole deformed by the remote stress (T16), and two derivatives.
 
     Returns the gap and its first and second derivative at the angles `theta`, rad, dimensionless, shape (3, ...).
     """
-    _, _, _, sxx, syy, _ = load
-    mean, oval = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy)
-    double = 2.0 * np.asarray(theta)
+    sxx, syy, sxy = load[[SXX, SYY, SXY]]
+    mean, oval, diagonal = system.plate * 0.5 * (sxx + syy), system.plate * (sxx - syy), 2.0 * system.plate * sxy
+    cos, sin = np.cos(2.0 * np.asarray(theta)), np.sin(2.0 * np.asarray(theta))
     return np.array(
         [
-            system.rest_clearance + mean + oval * np.cos(double),
-            -2.0 * oval * np.sin(double),
-            -4.0 * oval * np.cos(double),
+            system.rest_clearance + mean + oval * cos + diagonal * sin,
+            -2.0 * oval * sin + 2.0 * diagonal * cos,
+            -4.0 * oval * cos - 4.0 * diagonal * sin,
         ]
     )

@@ -47,7 +47,7 @@ class Columns:
         The solvable system of the statuses.
     contact : Contact
         The configuration. The ties in it are set.
-    load_rate : ndarray, shape (6,)
+    load_rate : ndarray, shape (loads,)
         Dimensionless, per unit of the step.
     memory : TableauMemory
         Memory for the tableau. It is overwritten.

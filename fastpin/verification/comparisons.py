@@ -92,7 +92,7 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
     load = state.load
     equations = integral_equations.residuals(
         state.problem, load["P"], state.grid, state.pressure, state.shear, state.slip, state.rotation,
-        sxx=load["sxx"], syy=load["syy"],
+        sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"],
     )  # fmt: skip
     ((start, stop),) = state.contact
     away = (state.theta > start + margin) & (state.theta < stop - margin)

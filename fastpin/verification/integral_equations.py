@@ -40,6 +40,7 @@ def residuals(
     rotation: float,
     sxx: float = 0.0,
     syy: float = 0.0,
+    sxy: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Left minus right side of (46) and (47) at every node, divided by F beta*.
 
@@ -64,7 +65,7 @@ def residuals(
         fit slip counts from the concentric position; it is then smaller by (R - R_D) cos theta.
     rotation : float
         C_omega, rad, counter-clockwise, from the same position.
-    sxx, syy : float
+    sxx, syy, sxy : float
         Remote stress, Pa.
 
     Returns
@@ -88,7 +89,7 @@ def residuals(
     C_omega = number("rotation", rotation) * radius / length
     clearance = problem.clearance / length
     A = (number("sxx", sxx) + number("syy", syy)) * radius / unit
-    D = (number("sxx", sxx) - number("syy", syy)) * radius / unit
+    D = (number("sxx", sxx) - number("syy", syy) + 2j * number("sxy", sxy)) * radius / unit
 
     # Composite constants over beta*: kappa'/G of the plate, and (39) or (56).
     alpha = pair.alpha_star / pair.beta_star
@@ -109,11 +110,10 @@ def residuals(
     cauchy = cauchy_matrix(grid)
     cot_N, cot_T = _principal_value(cauchy, N), _principal_value(cauchy, T)
 
-    G_s = 0.5 * plate * (0.5 * A - D * np.cos(2.0 * theta))  # (44)
-    G_p = 0.5 * plate * D * np.sin(2.0 * theta)  # (45)
-    left_46 = -clearance * (1.0 + sin) - _derivative(s, grid) - G_s
+    G = 0.5 * plate * (0.5 * A - D * np.exp(-2j * theta))  # G_s + i G_p, (44), (45), (T16)
+    left_46 = -clearance * (1.0 + sin) - _derivative(s, grid) - G.real
     right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
-    left_47 = C_omega - s + clearance * cos - G_p
+    left_47 = C_omega - s + clearance * cos - G.imag
     right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
     return left_46 - right_46 / (4.0 * math.pi), left_47 - right_47 / (4.0 * math.pi)
 

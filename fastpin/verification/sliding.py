@@ -32,7 +32,7 @@ from fastpin.model.checks import number, whole_number
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
 
-SLIDING_LOADS = ("P", "Q", "sxx", "syy")
+SLIDING_LOADS = ("P", "Q", "sxx", "syy", "sxy")
 """Loads of a sliding contact, as in :data:`fastpin.model.loads.LOADS`. Its moment and rotation are results."""
 
 TERMS = (16, 32, 64, 128)
@@ -60,7 +60,7 @@ class Sliding:
     problem : Problem
         The problem.
     load : dict of str to float
-        P and Q, N/m, sxx and syy, Pa.
+        P and Q, N/m, sxx, syy and sxy, Pa.
     slip : int
         Sense in which the pin slides over the plate. 1 is along +theta (counter-clockwise), with T = -mu N; -1 is the
         opposite.
@@ -138,7 +138,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
     problem : Problem
         The problem.
     load : mapping
-        P and Q, N/m, not both zero, and the remote stresses sxx and syy, Pa. A missing load is zero.
+        P and Q, N/m, not both zero, and the remote stresses sxx, syy, sxy, Pa. A missing load is zero.
     slip : {1, -1}
         Sense in which the pin slides over the plate; 1 is counter-clockwise.
     terms : int, optional
@@ -218,6 +218,7 @@ class _Case:
     force: np.ndarray
     sum_stress: float
     difference_stress: float
+    shear_stress: float
     sign: float
     mu: float
     alpha: float
@@ -233,6 +234,7 @@ class _Case:
             np.array([load["Q"], -load["P"]]) / size,
             stress * (load["sxx"] + load["syy"]),
             stress * (load["sxx"] - load["syy"]),
+            stress * load["sxy"],
             sign,
             problem.friction,
             pair.alpha_star / pair.beta_star,
@@ -247,7 +249,9 @@ class _Case:
 
     def remote(self, theta: np.ndarray) -> np.ndarray:
         """The term H of Eq. (58), from the remote stress."""
-        return 0.5 * self.plate * (0.5 * self.sum_stress - 3.0 * self.difference_stress * np.cos(2.0 * theta))
+        cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
+        oval = 3.0 * self.difference_stress * cos + 6.0 * self.shear_stress * sin
+        return 0.5 * self.plate * (0.5 * self.sum_stress - oval)
 
     def radial_force(self, theta: np.ndarray) -> np.ndarray:
         """Component of the force along the outward normal at `theta`."""
@@ -357,7 +361,8 @@ def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> 
         ends = _ends_near(case, basis, start)
         if ends is not None:
             return ends
-    loose = replace(case, clearance=max(case.clearance, 1.0), sum_stress=0.0, difference_stress=0.0)
+    unstressed = replace(case, sum_stress=0.0, difference_stress=0.0, shear_stress=0.0)
+    loose = replace(unstressed, clearance=max(case.clearance, 1.0))
     stressed = replace(case, clearance=loose.clearance)
     tight = replace(loose, clearance=case.clearance)
     direction = math.atan2(case.force[1], case.force[0]) + math.atan(case.sign * case.mu)
@@ -387,6 +392,7 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
             clearance=before.clearance + part * (after.clearance - before.clearance),
             sum_stress=before.sum_stress + part * (after.sum_stress - before.sum_stress),
             difference_stress=before.difference_stress + part * (after.difference_stress - before.difference_stress),
+            shear_stress=before.shear_stress + part * (after.shear_stress - before.shear_stress),
         )
         ends = _ends_near(between, basis, place)
         if ends is not None:
@@ -464,7 +470,8 @@ def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
 
     def hole(angle: np.ndarray) -> np.ndarray:
         """Part of the gap from the clearance and the remote stress."""
-        remote = 0.5 * case.sum_stress + case.difference_stress * np.cos(2.0 * angle)
+        cos, sin = np.cos(2.0 * angle), np.sin(2.0 * angle)
+        remote = 0.5 * case.sum_stress + case.difference_stress * cos + 2.0 * case.shear_stress * sin
         return case.clearance + 0.5 * case.plate * remote
 
     touching = np.array([start, 0.5 * (start + stop), stop])

@@ -16,6 +16,7 @@ from fastpin.kernels import exchange
 from fastpin.kernels.exchange import CHUNK, WIDTH, Contact, Tableau
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import unknowns as solver_unknowns
 from fastpin.solver.configuration import solve_statuses, worst_residual
@@ -54,8 +55,7 @@ def system(titanium_in_aluminium):
 
 
 def loads(**values):
-    names = ("P", "Q", "M", "sxx", "syy", "rotation")
-    return np.array([values.get(name, 0.0) for name in names])
+    return np.array([values.get(name, 0.0) for name in LOADS])
 
 
 # --- exchange steps -----------------------------------------------------------------------------------------
@@ -220,7 +220,7 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
 def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeypatch):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
     system = System.build(problem, Grid.arc(BOTTOM - 1.6, BOTTOM + 1.55, 201), 1.0)
-    first, _ = first_contact(system, unloaded_configuration(system), np.zeros(6), loads(P=1.0))
+    first, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
     expected = PathStep(system, first, loads(P=1.0)).follow(1.0)
     original = Columns.refresh
 
@@ -312,7 +312,7 @@ def naive_path(system, start, after):
 
 
 def test_path_agrees_with_the_naive_solver(system):
-    first, _ = first_contact(system, unloaded_configuration(system), np.zeros(6), loads(P=1.0))
+    first, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
     fast = naive = first
     for target in (loads(P=1.0), loads(P=1.0, Q=0.35), loads(P=1.0, Q=-0.35)):
         step = PathStep(system, fast, target)

@@ -118,16 +118,16 @@ def manufactured_errors(problem, grid, start, stop):
     bump = np.maximum(1.0 - x * x, 0.0) ** 2.5
     N, T = bump * (1.0 + 0.3 * x), bump * np.sin(2.0 * x + 0.4)
     radial, tangential = displacements(problem, grid, N, T)
-    cx, delta, omega, sxx, syy = 0.31, 0.73, 0.17, 0.4, -0.25  # lengths in F beta*, stresses in F/R
+    cx, delta, omega, sxx, syy, sxy = 0.31, 0.73, 0.17, 0.4, -0.25, 0.15  # lengths in F beta*, stresses in F/R
     plate = 0.25 * (pair.plate_kolosov + 1.0) * pair.plate_compliance
-    remote_r = plate * (0.5 * (sxx + syy) + (sxx - syy) * np.cos(2.0 * theta))  # (42)
-    remote_t = -plate * (sxx - syy) * np.sin(2.0 * theta)
+    oval = (sxx - syy + 2j * sxy) * np.exp(-2j * theta)
+    remote_r, remote_t = plate * (0.5 * (sxx + syy) + oval.real), plate * oval.imag  # (42), (T16)
     cos, sin = np.cos(theta), np.sin(theta)
     gap = problem.clearance / length * (1.0 + sin) - cx * cos + delta * sin + (radial + remote_r) / pair.beta_star
     slip = omega - delta * cos - cx * sin - (tangential + remote_t) / pair.beta_star
     r46, r47 = residuals(
         problem, force, grid, N * force / radius, T * force / radius, slip * length, omega * length / radius,
-        sxx * force / radius, syy * force / radius,
+        *np.array([sxx, syy, sxy]) * force / radius,
     )  # fmt: skip
     inside = np.abs(x) < 0.9
     gap_rate = np.gradient(gap, theta, edge_order=2)

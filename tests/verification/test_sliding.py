@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
@@ -107,7 +108,7 @@ def test_a_free_pin_spins_at_its_moment(slip):
 def test_the_gap_vanishes_with_the_kernels_of_the_solver(pair, slip):
     """h of the full displacement equations (9)-(12), with remote stress, at second order in the node distance."""
     problem = Problem.from_load_parameter(pair, 0.4, 0.5, "body")
-    load = {"P": 0.8, "Q": 0.6, "sxx": 0.1, "syy": 0.07}
+    load = {"P": 0.8, "Q": 0.6, "sxx": 0.1, "syy": 0.07, "sxy": -0.06}
     found = solve_sliding(problem, load, slip)
     start, stop = found.contact
     errors = []
@@ -116,7 +117,7 @@ def test_the_gap_vanishes_with_the_kernels_of_the_solver(pair, slip):
         theta = 0.5 * (start + stop) - 0.5 * (stop - start) * np.cos(u)
         system = System.build(problem, Grid(theta), 1.0)
         tractions = np.r_[found.pressure(theta), found.shear(theta)]
-        vector = np.array([load["P"], load["Q"], 0.0, load["sxx"], load["syy"], 0.0])
+        vector = np.array([load.get(name, 0.0) for name in LOADS])
         gap = system.displacement(tractions, np.zeros(3), vector, system.rest_clearance)[:nodes]
         motion = np.column_stack([np.cos(theta), np.sin(theta)])
         rest = gap - motion @ np.linalg.lstsq(motion, gap, rcond=None)[0]
@@ -144,8 +145,8 @@ def test_equilibrium(slip):
 @PAIRS
 def test_mirror_image(pair):
     problem = Problem.from_load_parameter(pair, 0.2, 0.5)
-    one = solve_sliding(problem, {"P": 1.0, "Q": 0.4, "sxx": 0.1}, 1)
-    two = solve_sliding(problem, {"P": 1.0, "Q": -0.4, "sxx": 0.1}, -1)
+    one = solve_sliding(problem, {"P": 1.0, "Q": 0.4, "sxx": 0.1, "sxy": 0.07}, 1)
+    two = solve_sliding(problem, {"P": 1.0, "Q": -0.4, "sxx": 0.1, "sxy": -0.07}, -1)
     assert [-math.pi - x for x in two.contact[::-1]] == pytest.approx(one.contact, abs=1e-12)
     x = np.linspace(*one.contact, 31)[1:-1]
     assert two.pressure(-math.pi - x) == pytest.approx(one.pressure(x), abs=1e-10)
@@ -154,10 +155,10 @@ def test_mirror_image(pair):
 
 
 def test_turned_round_with_load_and_stress():
-    """Everything turned by 90 degrees: P takes the place of Q, syy that of sxx."""
+    """Everything turned by 90 degrees: P takes the place of Q, syy that of sxx, sxy changes sign."""
     problem = Problem.from_load_parameter(TITANIUM_ALUMINIUM, 0.2, 0.5)
-    one = solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.1, "syy": -0.05}, 1)
-    two = solve_sliding(problem, {"P": -0.3, "Q": 1.0, "sxx": -0.05, "syy": 0.1}, 1)
+    one = solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.1, "syy": -0.05, "sxy": 0.04}, 1)
+    two = solve_sliding(problem, {"P": -0.3, "Q": 1.0, "sxx": -0.05, "syy": 0.1, "sxy": -0.04}, 1)
     assert np.array(two.contact) - 0.5 * math.pi == pytest.approx(one.contact, abs=1e-12)
     assert two.peak_pressure == pytest.approx(one.peak_pressure, rel=1e-12)
 
@@ -280,5 +281,5 @@ def test_a_contact_in_several_parts_is_refused():
 def test_result_is_a_record():
     found = solve_sliding(Problem.from_load_parameter(SIMILAR, 0.1, 0.4), {"P": 1.0})
     assert isinstance(found, Sliding)
-    assert found.load == {"P": 1.0, "Q": 0.0, "sxx": 0.0, "syy": 0.0}
+    assert found.load == {"P": 1.0, "Q": 0.0, "sxx": 0.0, "syy": 0.0, "sxy": 0.0}
     assert found.truncation < 1e-13

@@ -58,28 +58,28 @@ def test_surfaces_do_not_move_on_average(kappa):
 
 @pytest.mark.parametrize("kappa", KOLOSOV)
 def test_remote_stress(kappa):
-    sxx, syy, a = 0.7, -0.4, RADIUS
-    A, D = sxx + syy, sxx - syy
+    sxx, syy, sxy, a = 0.7, -0.4, 0.3, RADIUS
+    A, D = sxx + syy, sxx - syy + 2j * sxy
 
     problem = Potentials(
         kappa,
         lambda z: 0.25 * A * z + 0.5 * D * a**2 / z,
         lambda z: 0.25 * A - 0.5 * D * a**2 / z**2,
         lambda z: D * a**2 / z**3,
-        lambda z: -0.5 * D * (z - a**4 / z**3) - 0.5 * A * a**2 / z,
-        lambda z: -0.5 * D * (1.0 + 3.0 * a**4 / z**4) + 0.5 * A * a**2 / z**2,
+        lambda z: -0.5 * (D.conjugate() * z - D * a**4 / z**3) - 0.5 * A * a**2 / z,
+        lambda z: -0.5 * (D.conjugate() + 3.0 * D * a**4 / z**4) + 0.5 * A * a**2 / z**2,
     )
     edge = a * np.exp(1j * THETA)
     assert np.abs(problem.traction(edge, edge / a)).max() < 1e-14
     far = 1e4 * np.exp(1j * THETA)
-    assert problem.traction(far, 1.0 + 0.0j) == pytest.approx(sxx, abs=1e-6)
-    assert problem.traction(far, 1j) == pytest.approx(1j * syy, abs=1e-6)
+    assert problem.traction(far, 1.0 + 0.0j) == pytest.approx(sxx + 1j * sxy, abs=1e-6)
+    assert problem.traction(far, 1j) == pytest.approx(sxy + 1j * syy, abs=1e-6)
     # 2G (v_r + i v_theta), (T16): Eq. (42) with the half on A that its print lacks
     moved = problem.displacement(edge) * np.exp(-1j * THETA)
     expected = a * 0.5 * (kappa + 1.0) * (0.5 * A + D * np.exp(-2j * THETA))
     np.testing.assert_allclose(moved, expected, atol=1e-14)
     hoop = 4.0 * np.real(problem.Omega_1(edge))
-    np.testing.assert_allclose(hoop, A - 2.0 * D * np.cos(2.0 * THETA), atol=1e-14)
+    np.testing.assert_allclose(hoop, A - 2.0 * np.real(D * np.exp(-2j * THETA)), atol=1e-14)
 
 
 @pytest.mark.parametrize("kappa", KOLOSOV)
