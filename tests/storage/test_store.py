@@ -15,6 +15,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
@@ -216,3 +217,25 @@ def test_other_programs_may_have_the_file_open(tmp_path: Path) -> None:
     save(sample_result(), path)
     with h5py.File(path, "r"):
         assert len(load(path)) == 3
+
+
+def test_a_file_with_fewer_loads_is_read_and_continued(tmp_path):
+    """A version before the last load wrote load vectors without it, at the same places."""
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    problem = Problem.from_load_parameter(pair, 0.3, 0.4)
+    whole = solve(problem, [{"P": 1.0}, {"Q": 0.1, "sxx": 0.01}, {"Q": -0.1}], nodes=61)
+    first = solve(problem, whole.history[:2], grid=whole.grid)
+    path = tmp_path / "a.h5"
+    save(first, path)
+    with h5py.File(path, "r+") as file:
+        for name in ("states/loads", "history/corners", "restart/latest/load", "restart/latest/configurations/load"):
+            shorter, attributes = file[name][()][..., :-1], dict(file[name].attrs)
+            del file[name]
+            file[name] = shorter
+            file[name].attrs.update({key: value for key, value in attributes.items() if key != "DIMENSION_LIST"})
+    stored = load(path)
+    assert [state.load for state in stored] == [state.load for state in first]
+    assert np.array_equal(stored.history.values(), first.history.values())
+    last = solve(problem, whole.history[2:], start=stored)[-1]
+    assert np.array_equal(last.shear, whole[-1].shear)
+    assert last.load == whole[-1].load
