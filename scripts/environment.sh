@@ -83,6 +83,7 @@ prepare() {
     if ! is_current "$kind"; then # another process may have done it during the wait
         make_environment
         [[ $kind == dev ]] && what="$root[dev]"
+        say "installing the dependencies; this takes up to a minute"
         log=$("$python" -m pip install --quiet --disable-pip-version-check --no-input --editable "$what" 2>&1) ||
             { printf '%s\n' "$log" >&2; fail "installing the dependencies failed (above)."; }
         stamp=$(fingerprint)

@@ -47,6 +47,10 @@ def run(options: argparse.Namespace) -> int:
     _check_outputs(options)
     _check_combination(case, options)
     start = _start(options)
+    if start is not None and start.grid.size != case.options.nodes:
+        print(
+            f"note: the {start.grid.size} nodes of {options.start} are used, not {case.options.nodes}", file=sys.stderr
+        )
     saved = _corners(len(case.history), options.save_after)
     keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
     solved: list[solver.Result] = []
@@ -77,7 +81,21 @@ def show(options: argparse.Namespace) -> int:
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
-    return _write_stored(case, options, None)
+    code = _write_stored(case, options, None)
+    if options.json != "-":
+        _note_unfinished(case, options.output)
+    return code
+
+
+def _note_unfinished(case: Case, path: Path) -> None:
+    """Say that a stored run has not come to its end, how far it is, and how to continue it."""
+    last = storage.load(path, states=slice(-1, None))
+    if last.complete:
+        return
+    reached = f"{last[0].step + 1:,}" if len(last) else "0"
+    reason = storage.stored_error(path)
+    why = f" ({reason})" if reason else ""
+    print(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}; continue with: fastpin resume {path}")
 
 
 def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:

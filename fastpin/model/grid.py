@@ -16,7 +16,7 @@ MAX_NODES = 20_000
 """Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest grid."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Grid:
     """Nodes on an arc of the hole or on the whole circle.
 
@@ -46,6 +46,10 @@ class Grid:
             raise InputError("theta", "nodes must span less than a full turn")
         theta.setflags(write=False)
         object.__setattr__(self, "theta", theta)
+
+    def __repr__(self) -> str:
+        where = "on the circle" if self.closed else f"from {self.theta[0]:.6g} to {self.theta[-1]:.6g} rad"
+        return f"<Grid: {self.size} nodes {where}>"
 
     @classmethod
     def arc(cls, start: float, stop: float, nodes: int) -> Grid:

@@ -297,7 +297,8 @@ class LoadHistory:
             for block in self._blocks[:MOST_SHOWN]
         ]
         more = [f"{len(self._blocks) - MOST_SHOWN} more blocks"] * (len(self._blocks) > MOST_SHOWN)
-        return f"<LoadHistory: {_count_corners(len(self))} of {names or 'no load'}; {' + '.join(parts + more)}>"
+        blocks = f"; {' + '.join(parts + more)}" if len(self._blocks) > 1 or self._blocks[0].count > 1 else ""
+        return f"<LoadHistory: {_count_corners(len(self))} of {names or 'no load'}{blocks}>"
 
     def __add__(self, other: LoadHistory) -> LoadHistory:
         """This history followed by `other`."""

@@ -59,6 +59,8 @@ def load_index(name: object, where: str) -> int:
 
 def check_corner(field: str, loads: Corner) -> None:
     """Raise :class:`InputError` if a load is unknown, or its value is not a finite number."""
+    if not isinstance(loads, Mapping):
+        raise InputError(field, f"must map load names to numbers, not {loads!r}")
     for name, value in loads.items():
         load_index(name, field)
         number(f"{name} of {field}", value)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Restart:
     """Everything from which a run continues at a corner, to the same bits.
 
@@ -56,6 +56,9 @@ class Restart:
     repeats: Repeats
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
+
+    def __repr__(self) -> str:
+        return f"<Restart: corner {self.corner}>"
 
     def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
@@ -107,14 +110,20 @@ class Result(Sequence[State]):
             states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
         return replace(self, states=states, coarse=coarse)
 
-    def plot(self, path: str | Path | None = None, **options: Any) -> Any:
-        """Draw the tractions of all states, and return the matplotlib figure.
+    def plot(self, path: str | Path | None = None, states: slice | Sequence[int] = slice(None), **options: Any) -> Any:
+        """Draw the tractions, and return the matplotlib figure.
 
-        See :func:`fastpin.plot_tractions`, which takes the same options.
+        Parameters
+        ----------
+        path, **options
+            See :func:`fastpin.plot_tractions`.
+        states : slice or sequence of int
+            The states to draw, by their places in the result; all unless given.
         """
         import fastpin
 
-        return fastpin.plot_tractions(self, path, **options)
+        chosen = self.states[states] if isinstance(states, slice) else [self.states[place] for place in states]
+        return fastpin.plot_tractions(chosen, path, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 file; see :func:`fastpin.save`."""

@@ -20,7 +20,7 @@ from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress, Run
-from fastpin.solver.task import Task, as_history, check_grid, check_start
+from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import LEAST_COARSE
 from fastpin.states.state import State
@@ -52,8 +52,22 @@ def solve(
     problem : Problem
     history : LoadHistory or sequence of dicts
         Corners of the loads. Between corners the loads are linear. It starts from no load, or where `start` ended.
-    nodes, method, increments, arc, between, keep, shortcut, error_bars
-        See :class:`fastpin.SolveOptions`.
+    nodes : int
+        Number of nodes, 5 to 20,000.
+    method : {"path", "increment"}
+        "path" is exact in load. "increment" takes implicit load increments, as the paper does.
+    increments : int, optional
+        Increments a step, only with ``method="increment"``; 80 unless given.
+    arc : (float, float), optional
+        Start and end angle of the nodes, rad; the bottom is -pi/2. Chosen by the solver unless given.
+    between : int or sequence of float
+        States inside each step: their number, or increasing fractions of the step.
+    keep : str
+        States to keep: "all", "corners", "cycles" or "every N" (corners). The last state is always kept.
+    shortcut : bool
+        Take the states of a periodic contact from the period before. They have the same bits.
+    error_bars : bool
+        Also solve on a grid with half the intervals. Every state then has error bars.
     grid : Grid, optional
         A ready grid, for example a graded one. `nodes` is then not used, and `arc` is not allowed.
     start : Result, optional
@@ -87,7 +101,7 @@ def solve(
         nodes=nodes, method=method, increments=increments, arc=arc, between=between, keep=keep, shortcut=shortcut,
         error_bars=error_bars,
     )  # fmt: skip
-    check_grid(options, grid)
+    check_options(options, grid)
     if start is not None:
         check_start(problem, start)
     task = Task(problem, as_history(history), options, grid, progress)

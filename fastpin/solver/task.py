@@ -68,6 +68,8 @@ class Task:
                 raise InputError("grid", f"must be a Grid, not {self.grid!r}")
             if self.problem.clearance < 0.0 and not self.grid.closed:
                 raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
+        if self.progress is not None and not callable(self.progress):
+            raise InputError("progress", f"must be a callable, not {self.progress!r}")
         check_loads(self.problem, self.history)
         check_arc(self.problem, self.options)
         check_keep(self.history, self.options)
@@ -195,8 +197,10 @@ def as_history(history: LoadHistory | Sequence[dict[str, float]]) -> LoadHistory
     return LoadHistory(history)
 
 
-def check_grid(options: SolveOptions, grid: Grid | None) -> None:
-    """Raise :class:`InputError` if an arc is given together with a grid."""
+def check_options(options: SolveOptions, grid: Grid | None) -> None:
+    """Raise :class:`InputError` if an arc is given together with a grid; log a warning of states that are not kept."""
+    if options.between and not options.keep_rule.inside:
+        log.warning('between has no effect with keep = "%s": states inside steps are not kept', options.keep)
     if grid is not None and options.arc is not None:
         raise InputError("arc", "has no effect where a grid is given; leave it out")
 

@@ -4,6 +4,7 @@ from .layout import versions as versions
 from .recording import record as record
 from .recording import resume as resume
 from .recording import stored_case as stored_case
+from .recording import stored_error as stored_error
 from .store import load as load
 from .store import save as save
 from .store import state_count as state_count

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 from fastpin.errors import InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import closest, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -16,7 +17,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
-from fastpin.solver.task import Task, as_history, check_grid, check_start
+from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_history, read_options, read_problem
 from fastpin.storage.store import open_result
@@ -73,8 +74,9 @@ def record(
     if start is not None:
         check_start(problem, start)
     save_corners = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
+    _check_names(options)
     solve_options = SolveOptions(**options)
-    check_grid(solve_options, grid)
+    check_options(solve_options, grid)
     if solve_options.error_bars:
         raise InputError("error_bars", "are not kept in files; leave them out, or solve without a file")
     task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
@@ -123,6 +125,19 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
             task.follow(writer, beyond=task.grid)
 
 
+def stored_error(path: str | Path) -> str | None:
+    """Return the message of the error that ended a stored run early; None if no error did.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(Path(path)) as file:
+        error = file.attrs.get("error")
+        return None if error is None else str(error)
+
+
 def stored_case(path: str | Path) -> Case:
     """Read the case of a stored result: problem, history, options and title.
 
@@ -134,3 +149,11 @@ def stored_case(path: str | Path) -> Case:
     with open_result(Path(path)) as file:
         title = str(file["solver"].attrs.get("title", ""))
         return Case(read_problem(file), read_history(file), read_options(file), title)
+
+
+def _check_names(options: Mapping[str, Any]) -> None:
+    """Raise :class:`TypeError`, as Python does, if an option of :func:`record` is unknown."""
+    known = [field.name for field in fields(SolveOptions)]
+    for name in options:
+        if name not in known:
+            raise TypeError(f"record() got an unexpected keyword argument {name!r}{closest(name, known)}")

@@ -150,7 +150,7 @@ class FileRecorder:
         if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
             return
         reason = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
-        raise InputError(str(self.path), f"{reason} (--overwrite replaces it)")
+        raise InputError(str(self.path), f"{reason} (overwrite replaces it)")
 
     # -- calls of the run ----------------------------------------------------------------------------------------
 

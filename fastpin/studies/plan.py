@@ -12,7 +12,7 @@ import itertools
 import json
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -66,7 +66,7 @@ class Point:
     input: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Plan:
     """A plan: all points of a sweep. :func:`read_plan` and :func:`parse_plan` make it.
 
@@ -85,7 +85,10 @@ class Plan:
     text: str
     fields: dict[str, Spacing]
     points: list[Point]
-    _base: BaseCase = field(repr=False)
+    _base: BaseCase
+
+    def __repr__(self) -> str:
+        return f"<Plan: {len(self.points):,} points of {', '.join(self.fields)}>"
 
     @cached_property
     def runs(self) -> dict[str, Point]:

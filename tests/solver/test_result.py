@@ -67,6 +67,12 @@ def test_a_result_draws_and_stores_itself(result, tmp_path):
     assert np.array_equal(stored[-1].pressure, result[-1].pressure)
 
 
+def test_chosen_states_are_drawn(result):
+    figure = result.plot(states=[0, -1])
+    assert len(figure.axes) == 3
+    assert len(result.plot(states=slice(1, 3)).axes) == 3
+
+
 def test_a_result_and_its_file_give_the_same_dataset(result, tmp_path):
     pytest.importorskip("xarray")
     result.save(tmp_path / "a.h5")

@@ -192,3 +192,14 @@ def test_an_error_with_a_result_can_be_pickled(similar):
     copy = pickle.loads(pickle.dumps(raised.value))
     assert len(copy.result) == 1
     assert copy.step == raised.value.step
+
+
+def test_a_wrong_class_is_refused(similar, tmp_path):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
+    with pytest.raises(InputError, match="progress: must be a callable, not True"):
+        fastpin.solve(problem, [{"P": 1.0}], progress=True)
+    with pytest.raises(InputError, match="amplitude: must map load names to numbers"):
+        fastpin.LoadHistory.cycles({"P": 1.0}, [{"Q": 0.1}], 10)
+    with pytest.raises(TypeError, match=r"record\(\) got an unexpected keyword argument 'node', did you mean"):
+        fastpin.record(problem, [{"P": 1.0}], tmp_path / "a.h5", node=61)
+    assert not (tmp_path / "a.h5").exists()
