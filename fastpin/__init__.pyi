@@ -1,9 +1,7 @@
 from . import casefile as casefile
-from . import elasticity as elasticity
+from . import errors as errors
 from . import figures as figures
-from . import kernels as kernels
 from . import model as model
-from . import paper as paper
 from . import report as report
 from . import solver as solver
 from . import states as states
@@ -11,6 +9,7 @@ from . import storage as storage
 from . import studies as studies
 from . import verification as verification
 from .casefile.reader import read_case as read_case
+from .errors import CaseFileError as CaseFileError
 from .errors import FastpinError as FastpinError
 from .errors import InputError as InputError
 from .figures.convergence import plot_convergence as plot_convergence
@@ -25,7 +24,9 @@ from .model.materials import Material as Material
 from .model.materials import MaterialPair as MaterialPair
 from .model.options import SolveOptions as SolveOptions
 from .model.problem import Problem as Problem
+from .solver.errors import ArcError as ArcError
 from .solver.errors import ConvergenceError as ConvergenceError
+from .solver.errors import Interrupted as Interrupted
 from .solver.errors import NoEquilibriumError as NoEquilibriumError
 from .solver.errors import SolveError as SolveError
 from .solver.result import Result as Result

@@ -9,12 +9,9 @@ import numpy as np
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, number, string, whole_number
-from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.history import MAX_CORNERS, LoadHistory, check_loads
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-
-MAX_CORNERS = 100_000_000
-"""Largest number of corners of a history, repeats included."""
 
 MAX_ROWS = 10_000_000
 """Largest number of corners of a repeated block. They are held in memory."""
@@ -137,14 +134,11 @@ def _harmonic(block: Section) -> LoadHistory | None:
     if mean is None or amplitude is None or phase is None:
         return None
     try:
-        history = LoadHistory.harmonic(mean, amplitude, phase, count, points)
+        return LoadHistory.harmonic(mean, amplitude, phase, count, points)
     except InputError as error:
-        block.report(str(error), error.field)
+        key = "repeat" if error.field == "count" else error.field
+        block.report(f"{key}: {error.reason}", key)
         return None
-    if len(history) > MAX_CORNERS:
-        block.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
-        return None
-    return history
 
 
 def _loads(block: Section, name: str) -> dict[str, float] | None:

@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
             raise InputError(f"--{option}" if known else error.field, error.reason) from None
     if study is None:
         return fail(f"{trouble}; less than three grids were finished", code)
-    return _hand_out(study, options, case.title) or (code and fail(f"{trouble}; {_describe_kept(study)}", code))
+    return _write_study(study, options, case.title) or (code and fail(f"{trouble}; {_describe_kept(study)}", code))
 
 
 def _describe_kept(study: studies.convergence.Convergence) -> str:
@@ -69,7 +69,7 @@ def _numbers(option: str, text: str) -> list[int]:
         raise InputError(option, f"must be whole numbers with commas, such as 101,201,401, not {text!r}") from None
 
 
-def _hand_out(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:
+def _write_study(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:
     """Write the files, then print the tables. Printing comes last: the reader of the output may close it early."""
     document = json.dumps(report.convergence.document(study, title), indent=2, allow_nan=False) + "\n"
 

@@ -6,11 +6,17 @@ Each command names a file of this folder, and the function of that file that car
 from __future__ import annotations
 
 import argparse
+import contextlib
 import re
 from pathlib import Path
 from typing import Any
 
 from fastpin.version import __version__
+
+EXIT_CODES = (
+    "Exit codes: 0; 1 if loads could not be followed to their end, a run or a check failed, or a file could not be "
+    "written; 2 for wrong input; 130 after Ctrl-C."
+)
 
 DEFAULT_KEY_FIGURE = "peak_pressure"
 """The key figure in the figure of a sweep, unless another one is chosen."""
@@ -21,7 +27,7 @@ def parser() -> argparse.ArgumentParser:
     root = argparse.ArgumentParser(
         prog="fastpin",
         description="Frictional contact of an elastic pin in the hole of an elastic plate.",
-        epilog="Start with: fastpin example > case.toml; fastpin run case.toml",
+        epilog=f"Start with: fastpin example > case.toml; fastpin run case.toml. {EXIT_CODES}",
         allow_abbrev=False,
     )
     root.add_argument("--version", action="version", version=f"fastpin {__version__}")
@@ -53,6 +59,14 @@ def join_words(arguments: list[str]) -> list[str]:
     return joined
 
 
+def literal(text: str) -> int | float | str:
+    """The number that a text stands for, or the text. The checks of the value come later, as for case files."""
+    for kind in (int, float):
+        with contextlib.suppress(ValueError):
+            return kind(text)
+    return text
+
+
 def _command(commands: Any, name: str, file: str, function: str, text: str) -> argparse.ArgumentParser:
     """Add a command that `function` of `file` carries out. `text` is its help."""
     command: argparse.ArgumentParser = commands.add_parser(name, help=text, allow_abbrev=False)
@@ -72,30 +86,49 @@ def add_run(commands: Any) -> None:
     run = _command(commands, "run", "run", "run", "solve a case and print its states")
     run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
     _add_outputs(run)
-    run.add_argument("-o", "--output", metavar="FILE", type=Path, help="write all states to an HDF5 file as they come")
+    run.add_argument(
+        "-o", "--output", metavar="FILE", type=Path, help="write each kept state to an HDF5 file when it is solved"
+    )
     run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
     run.add_argument(
-        "--keep", metavar="WHICH", help="states to keep: all, corners, cycles or every N corners (default all)"
+        "--keep",
+        metavar="WHICH",
+        help='states to keep: all, corners, cycles (end of each cycle) or "every N" corners (default all)',
     )
     run.add_argument("--nodes", metavar="N", help="number of nodes, 5 to 20000")
     run.add_argument("--method", help="path or increment")
     run.add_argument("--increments", metavar="N", help="increments a step (only with --method increment)")
-    run.add_argument("--arc", metavar="A,B", help="first and last angle of the nodes, rad; the bottom is -1.5708")
     run.add_argument(
-        "--between", metavar="N", help="more states inside every step: how many, or fractions such as 0.25,0.5"
+        "--arc", metavar="A,B", help="first and last angle of the nodes, rad, such as -3.0,-0.2; the bottom is -1.5708"
     )
     run.add_argument(
-        "--no-shortcut", dest="shortcut", action="store_false", default=None, help="solve repeated cycles again"
+        "--between", metavar="N", help="states inside every step: a number, or fractions of the step such as 0.25,0.5"
+    )
+    run.add_argument(
+        "--no-shortcut",
+        dest="shortcut",
+        action="store_false",
+        default=None,
+        help="also solve cycles whose result is known; slower, same result",
     )
     run.add_argument(
         "--error-bars",
-        action="store_true",
+        action=argparse.BooleanOptionalAction,
         default=None,
-        help="also solve on half as many intervals, for error bars (not with -o)",
+        help="solve a second time on a grid with half the intervals, for error bars (not with -o or --start)",
     )
     run.add_argument("--start", metavar="FILE", type=Path, help="continue from the end of this result, with new loads")
-    run.add_argument("--after", metavar="N", type=int, help="with --start: continue from its corner N instead")
-    run.add_argument("--save-after", metavar="N,N", help="with -o: corners from which later runs can start at once")
+    run.add_argument(
+        "--after",
+        metavar="N",
+        type=literal,
+        help="with --start: continue from corner N of that result, not from its end",
+    )
+    run.add_argument(
+        "--save-after",
+        metavar="N,N",
+        help="with -o: corners at which a restart is stored; a later run starts there without delay",
+    )
 
 
 def add_stored_commands(commands: Any) -> None:
@@ -123,11 +156,14 @@ def add_converge(commands: Any) -> None:
     converge.add_argument(
         "--increment-nodes",
         metavar="N",
-        type=int,
-        help="number of nodes for the increment solver (default: the first of --nodes that is at least 201)",
+        type=literal,
+        help="number of nodes for the increment solver (default: the first of --nodes from 201 on, or else the last)",
     )
     converge.add_argument(
-        "--corner", metavar="K", type=int, help="corner to study (default: all corners of up to six, else the last one)"
+        "--corner",
+        metavar="K",
+        type=literal,
+        help="corner to study (default: all corners if there are at most six, otherwise the last)",
     )
     converge.add_argument("--csv", metavar="FILE", type=Path, help="write all values, orders, limits and error bars")
     _add_json(converge, "write the study as JSON")
@@ -141,17 +177,21 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument(
         "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
     )
-    sweep.add_argument("--status", action="store_true", help="report progress; run nothing")
-    sweep.add_argument("--retry", action="store_true", help="also run again all failed runs")
-    sweep.add_argument("--workers", metavar="N", type=int, help="worker processes (default: one for each processor)")
+    sweep.add_argument("--status", action="store_true", help="report the progress; solve nothing")
+    sweep.add_argument("--retry", action="store_true", help="also solve failed runs again")
+    sweep.add_argument(
+        "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
+    )
     sweep.add_argument("--dask", metavar="ADDRESS", help="use the workers of a dask scheduler")
-    sweep.add_argument("--shard", metavar="I/N", help="only the I-th of N parts, each in a directory of its own")
+    sweep.add_argument(
+        "--shard", metavar="I/N", help="solve only the I-th of N parts; each part needs a directory of its own"
+    )
     sweep.add_argument(
         "--table",
         metavar="FILE",
         nargs="?",
         const="-",
-        help="parameters and key figures: as CSV, or printed where FILE is left out",
+        help="print the table of fields and key figures, or write it to FILE as CSV",
     )
     sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one key figure (png, pdf or svg)")
     sweep.add_argument("--value", metavar="NAME", help=f"key figure to plot (default {DEFAULT_KEY_FIGURE})")
@@ -171,9 +211,9 @@ def add_paper(commands: Any) -> None:
         metavar="NAME",
         action="append",
         help="a figure's number, 3 to 17, or one of four more: memory, sliding-onset, half-plane, rigid-pin "
-        "(may be repeated; default: all of the paper)",
+        "(repeat the option for several figures; default: figures 3 to 17)",
     )
-    paper.add_argument("--nodes", type=int, help="number of nodes (default 400)")
+    paper.add_argument("--nodes", type=literal, help="number of nodes (default 400)")
     paper.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
@@ -209,5 +249,5 @@ def _add_json(command: argparse.ArgumentParser, text: str) -> None:
         metavar="FILE",
         nargs="?",
         const="-",
-        help=f"{text}; without FILE, or with -, to standard output instead of the table",
+        help=f"{text}; without FILE, or with -: print it, and no table",
     )

@@ -7,11 +7,12 @@ import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from fastpin import casefile, figures, report, solver, storage
+from fastpin.cli.options import literal
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
@@ -53,6 +54,8 @@ def run(options: argparse.Namespace) -> int:
         )
     saved = _corners(len(case.history), options.save_after)
     keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
+    if start is not None:
+        keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
     with bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
@@ -119,21 +122,16 @@ def _with_options(case: Case, options: argparse.Namespace) -> Case:
 
 
 def _value(text: object, may_be_list: bool) -> Any:
-    """Convert the text of an option to a number or a list of numbers. Other texts stay as they are."""
+    """The value that an option's text stands for: a number, a list of numbers, or the text itself."""
     if not isinstance(text, str):
         return text
     if may_be_list and "," in text:
-        return [_value(part.strip(), False) for part in text.split(",")]
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text
+        return [literal(part.strip()) for part in text.split(",")]
+    return literal(text)
 
 
 @contextlib.contextmanager
-def _as_options(options: argparse.Namespace) -> Any:
+def _as_options(options: argparse.Namespace) -> Iterator[None]:
     """Name the option instead of the solver's field in errors raised within, if the command line has the option."""
     try:
         yield

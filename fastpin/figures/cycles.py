@@ -14,6 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
 from fastpin.figures.style import MAX_NAMED, draw_and_save, fitted_legend, line
+from fastpin.model.checks import as_toml
 from fastpin.model.units import scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import consecutive_cycles
@@ -45,6 +46,8 @@ def plot_cycles(
     InputError
         If there are no cycles, or the figure's format is unknown.
     """
+    if not isinstance(result, Result):
+        raise InputError("result", f"must be a Result, not {as_toml(result)}")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
     return draw_and_save(lambda: _draw_cycles(result, title, width), path, dpi)

@@ -22,6 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.errors import InputError
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, draw_and_save, fitted_legend, spread
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import acting_loads, scaled, units
 from fastpin.states.quantities import load_point
@@ -71,7 +72,12 @@ def plot_tractions(
     InputError
         If there is no state, the figure's format is unknown, or the file can't be written.
     """
-    drawn = [states] if isinstance(states, State) else list(states)
+    drawn = [states] if isinstance(states, State) else states
+    if not isinstance(drawn, Sequence) or not all(isinstance(state, State) for state in drawn):
+        raise InputError("states", f"must be states or a result, not {as_toml(states)}")
+    if any(not np.array_equal(state.theta, drawn[0].theta) for state in drawn):
+        raise InputError("states", "must all be on one grid")
+    drawn = list(drawn)
     if not drawn:
         raise InputError("states", "there is no state to plot")
     if len(drawn) > MAX_LINES:

@@ -20,7 +20,7 @@ LONGEST_TEXT = 60
 
 def number(field: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
     """Check a finite number from `least` to `most`, and return it as a float."""
-    if isinstance(value, (bool, np.bool_, str, bytes)) or np.ndim(value) > 0:  # type: ignore[arg-type]
+    if isinstance(value, (bool, np.bool_, str, bytes, Sequence, Mapping)) or bool(getattr(value, "ndim", False)):
         raise InputError(field, f"must be a number, not {as_toml(value)}")
     try:
         converted = float(value)  # type: ignore[arg-type]
@@ -79,7 +79,7 @@ def numbers(
     """Check finite numbers from `low` to `high`, and return them as a float array. An open end is itself excluded."""
     try:
         array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(field, f"must be a number, not {as_toml(values)}") from None
     bad = ~np.isfinite(array)
     bad |= array <= low if open_low else array < low
@@ -97,11 +97,13 @@ def numbers(
 
 def as_toml(value: object) -> str:
     """A value as text, in the notation of case files. Long values are cut short."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
     if isinstance(value, (bool, np.bool_)):
         return str(value).lower()
     if isinstance(value, Mapping):
         return "a table"
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if isinstance(value, (list, tuple)):
         return "a list" if len(value) > 6 else f"[{', '.join(as_toml(item) for item in value)}]"
     if isinstance(value, str):
         return f'"{_cut(value)}"'

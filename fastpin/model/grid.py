@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
-from fastpin.model.checks import number, whole_number
+from fastpin.model.checks import number, numbers, true_or_false, whole_number
 
 LEAST_NODES = 5
 MAX_NODES = 20_000
@@ -37,15 +38,21 @@ class Grid:
     closed: bool = False
 
     def __post_init__(self) -> None:
-        theta = np.array(self.theta, dtype=float)
-        if theta.ndim != 1 or theta.size < LEAST_NODES:
-            raise InputError("nodes", f"must be at least {LEAST_NODES}, not {theta.size}")
+        theta = numbers("theta", self.theta).copy()
+        if theta.ndim != 1:
+            raise InputError("theta", f"must have the shape (nodes,), not {theta.shape}")
+        whole_number("nodes", theta.size, LEAST_NODES, MAX_NODES)
         if not np.all(np.isfinite(theta)) or np.any(np.diff(theta) <= 0.0):
             raise InputError("theta", "node angles must be finite and strictly increasing")
         if theta[-1] - theta[0] >= 2.0 * math.pi:
             raise InputError("theta", "nodes must span less than a full turn")
         theta.setflags(write=False)
         object.__setattr__(self, "theta", theta)
+        object.__setattr__(self, "closed", true_or_false("closed", self.closed))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.theta.setflags(write=False)  # a copy through pickle could be written to
 
     def __repr__(self) -> str:
         where = "on the circle" if self.closed else f"from {self.theta[0]:.6g} to {self.theta[-1]:.6g} rad"

@@ -17,13 +17,16 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import number, whole_number
+from fastpin.model.checks import as_toml, number, whole_number
 from fastpin.model.history_csv import read_corners
 from fastpin.model.loads import LOADS, Corner, check_corner, load_index
 from fastpin.model.problem import Problem
 
 POINTS = 24
 """Default number of corners in a cycle of loads that are out of phase."""
+
+MAX_CORNERS = 100_000_000
+"""Corners of a history, at most."""
 
 MOST_POINTS = 100_000
 """Most corners in a harmonic cycle."""
@@ -122,10 +125,12 @@ class LoadHistory:
     """
 
     def __init__(self, corners: Iterable[Corner]) -> None:
+        if not isinstance(corners, Iterable):
+            raise InputError("history", f"must be a sequence of corners, not {as_toml(corners)}")
         rows = []
         for index, corner in enumerate(corners):
             if not isinstance(corner, Mapping):
-                raise InputError("history", f"corner {index + 1} must map load names to numbers, not {corner!r}")
+                raise InputError("history", f"corner {index + 1} must map load names to numbers, not {as_toml(corner)}")
             row = np.full(len(LOADS), np.nan)
             for name, value in corner.items():
                 row[load_index(name, f"corner {index + 1}")] = number(f"{name} of corner {index + 1}", value)
@@ -152,8 +157,9 @@ class LoadHistory:
     @classmethod
     def monotonic(cls, steps: int = 1, **loads: float) -> LoadHistory:
         """Proportional loading from zero to `loads`, with `steps` equally spaced corners."""
-        whole_number("steps", steps, 1)
-        return cls({k: v * (i + 1) / steps for k, v in loads.items()} for i in range(steps))
+        steps = whole_number("steps", steps, 1, MAX_CORNERS)
+        last = check_corner("the last corner", loads)
+        return cls({k: v * (i + 1) / steps for k, v in last.items()} for i in range(steps))
 
     @classmethod
     def cycles(
@@ -173,11 +179,10 @@ class LoadHistory:
         return_to_mean : bool
             Whether to append the mean load as a last corner.
         """
-        whole_number("count", count, 1)
-        if start not in (1, -1):
-            raise InputError("start", f"must be 1 or -1, not {start!r}")
-        check_corner("mean", mean)
-        check_corner("amplitude", amplitude)
+        count = whole_number("count", count, 1)
+        if number("start", start) not in (1.0, -1.0):
+            raise InputError("start", f"must be 1 or -1, not {as_toml(start)}")
+        mean, amplitude = check_corner("mean", mean), check_corner("amplitude", amplitude)
         plus = {k: mean.get(k, 0.0) + start * v for k, v in amplitude.items()}
         minus = {k: mean.get(k, 0.0) - start * v for k, v in amplitude.items()}
         history = cls([mean, plus]) + cls([minus, plus]).repeated(count)
@@ -204,10 +209,9 @@ class LoadHistory:
             extremes, between which all loads are proportional. Otherwise the default is :data:`POINTS`, and the path is
             a polygon inscribed in the ellipse.
         """
-        whole_number("count", count, 1)
-        phase = {} if phase is None else phase
-        for field, loads in (("mean", mean), ("amplitude", amplitude), ("phase", phase)):
-            check_corner(field, loads)
+        count = whole_number("count", count, 1)
+        mean, amplitude = check_corner("mean", mean), check_corner("amplitude", amplitude)
+        phase = check_corner("phase", {} if phase is None else phase)
         if not amplitude:
             raise InputError("amplitude", "must give at least one load")
         for name in phase:
@@ -238,7 +242,10 @@ class LoadHistory:
             If a load is unknown or named twice, the shape does not fit, a value is infinite or there are no corners.
         """
         columns = [load_index(name, "loads") for name in loads]
-        array = np.asarray(corners, dtype=float)
+        try:
+            array = np.asarray(corners, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError("corners", f"must be an array of numbers, not {as_toml(corners)}") from None
         if len(set(columns)) < len(columns):
             raise InputError("loads", "a load is named twice")
         if array.ndim != 2 or array.shape[1] != len(columns):
@@ -276,7 +283,9 @@ class LoadHistory:
         Cycles may lie inside other cycles. Where several cycles end at one corner, the history knows only the innermost
         and the outermost of them.
         """
-        whole_number("count", count, 1)
+        count = whole_number("count", count, 1)
+        if len(self) * count > MAX_CORNERS:
+            raise InputError("count", f"the history would have more than {MAX_CORNERS:,} corners")
         given = np.vstack([_times(block, block.count) for block in self._blocks])
         ends: list[np.ndarray] = []
         lengths: tuple[int, ...] = ()

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import closest, number
+from fastpin.model.checks import as_toml, closest, number
 
 LOAD_KIND = {
     "P": "force",
@@ -57,13 +57,11 @@ def load_index(name: object, where: str) -> int:
     raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")
 
 
-def check_corner(field: str, loads: Corner) -> None:
-    """Raise :class:`InputError` if a load is unknown, or its value is not a finite number."""
+def check_corner(field: str, loads: Corner) -> dict[str, float]:
+    """Return `loads` as numbers, or raise :class:`InputError` if a load is unknown or its value no finite number."""
     if not isinstance(loads, Mapping):
-        raise InputError(field, f"must map load names to numbers, not {loads!r}")
-    for name, value in loads.items():
-        load_index(name, field)
-        number(f"{name} of {field}", value)
+        raise InputError(field, f"must map load names to numbers, not {as_toml(loads)}")
+    return {LOADS[load_index(name, field)]: number(f"{name} of {field}", value) for name, value in loads.items()}
 
 
 def named_load(vector: np.ndarray) -> dict[str, float]:

@@ -16,6 +16,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, number
 
@@ -50,7 +52,8 @@ class Material:
     name: str = ""
 
     def __post_init__(self) -> None:
-        modulus = self.E if math.inf == self.E else number("E", self.E)
+        rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
+        modulus = self.E if rigid else number("E", self.E)
         if modulus <= 0.0:
             raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
         ratio = number("nu", self.nu)
@@ -178,14 +181,16 @@ class MaterialPair:
         if a == -1.0:
             if abs(minus) > 1e-12 * scale:
                 needed = -sign * 0.5 * (k_pin - 1.0) * inverse_g_pin / scale
-                raise InputError("beta", f"a rigid plate (alpha {alpha:g}) requires beta = {needed:.6g}")
+                raise InputError("beta", f"a rigid plate (alpha {sign * a:g}) requires beta = {needed:.6g}")
             return cls(pin, Material.rigid(), plane)
         nu = -1.0
         if inverse_g > 0.0:
             kolosov = plus / inverse_g - 1.0
             nu = (3.0 - kolosov) / 4.0 if plane == "strain" else (3.0 - kolosov) / (1.0 + kolosov)
         if not -1e-12 <= nu <= 0.5 + 1e-12:
-            raise InputError("beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {alpha:g}, beta {beta:g}")
+            raise InputError(
+                "beta", f"no plate with Poisson's ratio in [0, 0.5] gives alpha {sign * a:g}, beta {sign * b:g}"
+            )
         return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
 
     def scaled(self, beta_star: float) -> MaterialPair:

@@ -60,7 +60,8 @@ class KeepRule:
     every: int = 1
 
     def __post_init__(self) -> None:
-        if self.which not in KEEP_WORDS or self.every < 1 or (self.every > 1 and self.which != "corners"):
+        whole_number("keep", self.every, 1)
+        if self.which not in KEEP_WORDS or (self.every > 1 and self.which != "corners"):
             raise InputError("keep", f"{self.which!r} of every {self.every} corners is no choice of states")
 
     @classmethod
@@ -115,7 +116,7 @@ class SolveOptions:
         Start and end angle of the arc, rad (the bottom is -pi/2). By default a coarse run chooses the arc. A length
         of 2 pi means the whole circle.
     between : int or sequence of float
-        States inside each step: the number of equally spaced states, or increasing fractions of the step.
+        States inside each step: the number of equally spaced states, or one or more increasing fractions of the step.
     keep : str
         States that are kept: "all", "corners", "cycles" (where a cycle of the history ends) or "every N" (corners).
         The last state is always kept.
@@ -206,7 +207,7 @@ def _checked_increments(value: object, method: str) -> int | None:
 def _checked_arc(value: object) -> tuple[float, float] | None:
     if value is None:
         return None
-    if not isinstance(value, (list, tuple, np.ndarray)) or len(value) != 2:
+    if not isinstance(value, (list, tuple, np.ndarray)) or getattr(value, "ndim", 1) != 1 or len(value) != 2:
         raise InputError("arc", f"must be a list of two angles in rad, [start, stop], not {as_toml(value)}")
     start, stop = (number("arc", angle) for angle in value)
     if not 0.0 < stop - start < MOST_TURN:
@@ -218,14 +219,14 @@ def _checked_arc(value: object) -> tuple[float, float] | None:
 def _checked_between(value: object) -> int | tuple[float, ...]:
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         return whole_number("between", value, 0, MOST_BETWEEN)
-    wrong = InputError(
-        "between", f"must be a whole number, or a list of increasing fractions between 0 and 1, not {as_toml(value)}"
-    )
-    if not isinstance(value, (list, tuple, np.ndarray)):
+    allowed = "a whole number, or increasing fractions between 0 and 1"
+    wrong = InputError("between", f"must be {allowed}, not {as_toml(value)}")
+    items = [value] if isinstance(value, (float, np.floating)) else value
+    if not isinstance(items, (list, tuple, np.ndarray)) or getattr(items, "ndim", 1) != 1 or len(items) > MOST_BETWEEN:
         raise wrong
-    last = 0.0
-    for item in value:
-        if isinstance(item, bool) or not isinstance(item, (int, float)) or not last < item < 1.0:
+    fractions: list[float] = []
+    for item in items:
+        if not isinstance(item, (float, np.floating)) or not (fractions or [0.0])[-1] < item < 1.0:
             raise wrong
-        last = item
-    return tuple(float(item) for item in value)
+        fractions.append(float(item))
+    return tuple(fractions)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, number
+from fastpin.model.checks import choice, number, true_or_false
 from fastpin.model.materials import MaterialPair
 
 PinLoad = Literal["centre", "body"]
@@ -87,6 +87,7 @@ class Problem:
         object.__setattr__(self, "hole_radius", radius)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
+        object.__setattr__(self, "dimensionless", true_or_false("dimensionless", self.dimensionless))
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"

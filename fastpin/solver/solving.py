@@ -75,7 +75,8 @@ def solve(
         on that grid, bit for bit. If the contact will reach further than before, give the first part a wider `arc`.
         With `error_bars`, `start` must have error bars too.
     progress : callable, optional
-        Called as ``progress(done_steps, all_steps)`` now and then.
+        Called as ``progress(done_steps, all_steps)`` now and then. It starts anew for each arc that is tried, and for
+        the coarse grid of error bars.
 
     Returns
     -------
@@ -101,7 +102,7 @@ def solve(
         nodes=nodes, method=method, increments=increments, arc=arc, between=between, keep=keep, shortcut=shortcut,
         error_bars=error_bars,
     )  # fmt: skip
-    check_options(options, grid)
+    check_options(options, grid, start)
     if start is not None:
         check_start(problem, start)
     task = Task(problem, as_history(history), options, grid, progress)

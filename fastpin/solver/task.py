@@ -16,6 +16,7 @@ from threadpoolctl import ThreadpoolController
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.case import check_arc, check_keep
+from fastpin.model.checks import as_toml
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import REMOTE, M, P, Q
@@ -28,6 +29,10 @@ from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Progress, Recorder, Run
 
 log = logging.getLogger(__name__)
+
+LEAST_LOAD = 1e-100
+MOST_LOAD = 1e100
+"""Limits of the largest load of a history, in parts of R/beta*. Squares of such loads are still numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +66,15 @@ class Task:
 
     def __post_init__(self) -> None:
         if not isinstance(self.problem, Problem):
-            raise InputError("problem", f"must be a Problem, not {self.problem!r}")
+            raise InputError("problem", f"must be a Problem, not {as_toml(self.problem)}")
         object.__setattr__(self, "history", as_history(self.history))
         if self.grid is not None:
             if not isinstance(self.grid, Grid):
-                raise InputError("grid", f"must be a Grid, not {self.grid!r}")
+                raise InputError("grid", f"must be a Grid, not {as_toml(self.grid)}")
             if self.problem.clearance < 0.0 and not self.grid.closed:
                 raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
         if self.progress is not None and not callable(self.progress):
-            raise InputError("progress", f"must be a callable, not {self.progress!r}")
+            raise InputError("progress", f"must be a callable, not {as_toml(self.progress)}")
         check_loads(self.problem, self.history)
         check_arc(self.problem, self.options)
         check_keep(self.history, self.options)
@@ -193,22 +198,25 @@ def as_history(history: LoadHistory | Sequence[dict[str, float]]) -> LoadHistory
     if isinstance(history, LoadHistory):
         return history
     if not isinstance(history, Sequence):
-        raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {history!r}")
+        raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {as_toml(history)}")
     return LoadHistory(history)
 
 
-def check_options(options: SolveOptions, grid: Grid | None) -> None:
+def check_options(options: SolveOptions, grid: Grid | None, start: Result | None) -> None:
     """Raise :class:`InputError` if an arc is given together with a grid; log a warning of states that are not kept."""
     if options.between and not options.keep_rule.inside:
         log.warning('between has no effect with keep = "%s": states inside steps are not kept', options.keep)
     if grid is not None and options.arc is not None:
         raise InputError("arc", "has no effect where a grid is given; leave it out")
+    for name, value in (("grid", grid), ("arc", options.arc)):
+        if start is not None and value is not None:
+            raise InputError(name, "has no effect with start: the grid is the one of that result; leave it out")
 
 
 def check_start(problem: Problem, start: Result) -> None:
     """Raise :class:`InputError` if another solution of `problem` can't continue from a result."""
     if not isinstance(start, Result):
-        raise InputError("start", f"must be a Result, not {start!r}")
+        raise InputError("start", f"must be a Result, not {as_toml(start)}")
     if start.problem != problem:
         raise InputError("start", "the result to continue from belongs to another problem")
     if start.restart is None:
@@ -228,6 +236,11 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     remote = float(np.abs(values[:, REMOTE]).max()) * radius
     unit = radius / problem.pair.beta_star
     largest = max(pin, moment) or remote or unit
+    if not LEAST_LOAD <= largest / unit <= MOST_LOAD:
+        raise InputError(
+            "history",
+            f"the largest load must lie between {LEAST_LOAD:g} and {MOST_LOAD:g} times R/beta* = {unit:g} N/m",
+        )
     return unit * 2.0 ** math.ceil(math.log2(largest / unit))
 
 

@@ -193,6 +193,9 @@ class ErrorBars(Mapping[str, float]):
     def _bars(self) -> dict[str, float]:
         return bars(self._state, self.coarse)
 
+    def __repr__(self) -> str:
+        return f"<ErrorBars: from {self.coarse.grid.size} nodes>"
+
     def __getitem__(self, name: str) -> float:
         return self._bars[name]
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -82,6 +83,11 @@ class State:
     problem: Problem
     grid: Grid
     error_bars: Mapping[str, float] | None = None
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for array in (self.theta, self.pressure, self.shear, self.gap, self.slip, self.status):
+            array.setflags(write=False)  # a copy through pickle could be written to
 
     def __repr__(self) -> str:
         unit = units(self.problem)["traction"]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 
 from fastpin.errors import InputError
+from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOADS
 from fastpin.model.units import units
 from fastpin.solver.result import Result
@@ -82,7 +83,8 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
         second = "theta" if name in NODE_FIELDS else inner.get(name)
         dimensions = ["state"] if second is None else ["state", second]
         label = ", ".join(load_units(result.problem)) if name == "loads" else unit.get(FIELD_KINDS.get(name, ""), "")
-        values = values.reshape(len(result), -1) if second is not None else values
+        if second is not None:
+            values = values.reshape(len(result), len(variables[second][1]))
         variables[name] = dimensions, values, {"units": label}
     return variables, {"complete": result.complete, "method": result.method}
 
@@ -97,12 +99,14 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
     Raises
     ------
     InputError
-        If pandas is not installed.
+        If pandas is not installed, or `result` is none.
     """
     try:
         import pandas
     except ImportError:
         raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
+    if not isinstance(result, Result):
+        raise InputError("result", f"must be a Result, not {as_toml(result)}")
     unit = {**units(result.problem), "angle": "rad", "width": "rad"}
     named = dict(zip(LOADS, load_units(result.problem), strict=True))
     rows = [
@@ -115,7 +119,8 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
         }
         for state in result
     ]
-    frame = pandas.DataFrame(rows)
+    columns = ["load_point", "step", "fraction", *(f"load_{name}" for name in LOADS), *QUANTITIES]
+    frame = pandas.DataFrame(rows, columns=columns)
     frame.attrs["units"] = {
         **{f"load_{name}": label for name, label in named.items()},
         **{name: unit[each.kind] for name, each in QUANTITIES.items()},

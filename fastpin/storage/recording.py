@@ -9,7 +9,7 @@ from typing import Any, Unpack
 
 from fastpin.errors import InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import closest, whole_number
+from fastpin.model.checks import closest, string, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -39,9 +39,10 @@ def record(
 ) -> None:
     """Follow a load history as :func:`fastpin.solve`, and write the states to an HDF5 file.
 
-    A state is safe in the file a tenth of a second after it is solved. A killed process does not lose it. Memory does
-    not grow with the history. :func:`resume` continues a run that has ended early, to the same bits as an uninterrupted
-    run. :func:`fastpin.load` reads the file, also during the run.
+    A state is safe in the file 0.1 s after it is solved, or when the run reaches the next state or corner, if that is
+    later. A killed process does not lose a safe state. Memory does not grow with the history. :func:`resume` continues
+    a run that has ended early, to the same bits as an uninterrupted run. :func:`fastpin.load` reads the file, also
+    during the run.
 
     Parameters
     ----------
@@ -71,12 +72,13 @@ def record(
     """
     path = Path(path)
     check_writable(path)
+    string("title", title)
     if start is not None:
         check_start(problem, start)
     save_corners = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
     _check_names(options)
     solve_options = SolveOptions(**options)
-    check_options(solve_options, grid)
+    check_options(solve_options, grid, start)
     if solve_options.error_bars:
         raise InputError("error_bars", "are not kept in files; leave them out, or solve without a file")
     task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import as_toml, whole_number
 from fastpin.model.history import LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
@@ -64,6 +64,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         If `path` can't be written, holds an unfinished run, or another run is writing to it. Also if a state of the
         result is on another grid.
     """
+    if not isinstance(result, Result):
+        raise InputError("result", f"must be a Result, not {as_toml(result)}")
     check_writable(path)
     check_free(Path(path))
     if is_unfinished(Path(path)):
@@ -106,6 +108,10 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         If the file can't be read, was cut short, or is no result of fastpin. Also if it has no such corner or state.
     """
     path = Path(path)
+    if not isinstance(states, slice) and not all(
+        isinstance(state, (int, np.integer)) for state in np.atleast_1d(states)
+    ):
+        raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
     with open_result(path) as file:
         problem, grid, history = read_problem(file), read_grid(file), read_history(file)
         complete, restart, task = bool(file.attrs["complete"]), None, None

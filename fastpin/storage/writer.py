@@ -175,7 +175,13 @@ class FileRecorder:
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task, system = self.task, run.system
         extra = {"title": self._title, "arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
-        write_head(self._h5, task.problem, task.history, system.grid, {**option_attributes(task.options), **extra})
+        write_head(
+            self._h5,
+            task.problem,
+            task.history,
+            system.grid,
+            {**option_attributes(task.options), "nodes": system.grid.size, **extra},
+        )
         self._h5.attrs["run"] = self._name
         for name in ("start", "latest"):
             self._write_restart(self._h5.create_group(f"restart/{name}"))

@@ -63,3 +63,35 @@ def test_states_inside_steps_that_are_not_kept_are_warned_of(case, capsys):
     assert 'between has no effect with keep = "corners"' in capsys.readouterr().err
     assert main(["run", str(case), "--between", "3"]) == 0
     assert "between" not in capsys.readouterr().err
+
+
+def test_one_fraction_of_a_step(case, capsys):
+    assert main(["run", str(case), "--between", "0.25"]) == 0
+    points = [line.split()[0] for line in capsys.readouterr().out.splitlines()[2:-1]]
+    assert points == ["0.25", "1", "1.25", "2", "2.25", "3"]
+
+
+def test_error_bars_of_a_case_file_can_be_switched_off(case, tmp_path, capsys):
+    case.write_text(case.read_text().replace("nodes = 61", "nodes = 101\nerror_bars = true"))
+    assert main(["run", str(case)]) == 0
+    assert "+-" in capsys.readouterr().out
+    assert main(["run", str(case), "-o", str(tmp_path / "a.h5")]) == 2
+    assert "error_bars: are not kept in files" in capsys.readouterr().err
+    assert main(["run", str(case), "-o", str(tmp_path / "a.h5"), "--no-error-bars"]) == 0
+    assert "+-" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (["converge", "CASE", "--corner", "1.5"], "--corner: must be a whole number of at least 1, not 1.5"),
+        (
+            ["converge", "CASE", "--increments", "5,10,20", "--increment-nodes", "abc"],
+            '--increment-nodes: must be a whole number from 51 to 20000, not "abc"',
+        ),
+        (["paper", "--nodes", "abc"], '--nodes: must be a whole number from 5 to 20000, not "abc"'),
+    ],
+)
+def test_whole_numbers_are_checked_in_one_place(case, capsys, command, message):
+    assert main([str(case) if word == "CASE" else word for word in command]) == 2
+    assert capsys.readouterr().err == f"fastpin: {message}\n"

@@ -152,3 +152,22 @@ def test_another_solver_is_one_class(result, monkeypatch):
     assert all(np.array_equal(a.pressure, b.pressure) for a, b in zip(other, result, strict=True))
     assert isinstance(made[-1], Handing)
     assert {"begin", "advance", "leave"} == set(made[-1].calls)
+
+
+def test_a_result_without_states_is_exported(similar):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
+    with pytest.raises(fastpin.NoEquilibriumError) as raised:
+        fastpin.solve(problem, [{"P": 1.0, "M": 1.0}], nodes=51)
+    empty = raised.value.result
+    assert len(empty) == 0
+    assert dict(empty.to_xarray().sizes) == {"state": 0, "theta": 51, "load_name": 7, "residual_name": 4}
+    frame = empty.to_dataframe()
+    assert len(frame) == 0
+    assert "peak_pressure" in frame.columns
+
+
+def test_arrays_of_a_copy_can_not_be_written_to(result):
+    other = pickle.loads(pickle.dumps(result))
+    for array in (other[0].pressure, other[0].status, other[0].theta, other.grid.theta):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1

@@ -8,6 +8,7 @@ import math
 import pickle
 from typing import Any
 
+import numpy as np
 import pytest
 
 import fastpin
@@ -196,10 +197,76 @@ def test_an_error_with_a_result_can_be_pickled(similar):
 
 def test_a_wrong_class_is_refused(similar, tmp_path):
     problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
-    with pytest.raises(InputError, match="progress: must be a callable, not True"):
+    with pytest.raises(InputError, match="progress: must be a callable, not true"):
         fastpin.solve(problem, [{"P": 1.0}], progress=True)
     with pytest.raises(InputError, match="amplitude: must map load names to numbers"):
         fastpin.LoadHistory.cycles({"P": 1.0}, [{"Q": 0.1}], 10)
     with pytest.raises(TypeError, match=r"record\(\) got an unexpected keyword argument 'node', did you mean"):
         fastpin.record(problem, [{"P": 1.0}], tmp_path / "a.h5", node=61)
     assert not (tmp_path / "a.h5").exists()
+
+
+RAGGED = [[1.0], [1.0, 2.0]]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: SolveOptions(nodes=np.array(3)),
+        lambda: SolveOptions(keep=np.array("all")),
+        lambda: SolveOptions(between=np.array(0.5)),
+        lambda: SolveOptions(between=RAGGED),
+        lambda: SolveOptions(arc=np.array(3.0)),
+        lambda: SolveOptions(arc=(RAGGED, 1.0)),
+        lambda: fastpin.Material(np.array([1.0, 2.0]), 0.3),
+        lambda: fastpin.Material(RAGGED, 0.3),
+        lambda: fastpin.Material(10**400, 0.3),
+        lambda: fastpin.LoadHistory(5),
+        lambda: fastpin.LoadHistory(None),
+        lambda: fastpin.LoadHistory.monotonic(P="x"),
+        lambda: fastpin.LoadHistory.monotonic(P=True),
+        lambda: fastpin.LoadHistory.cycles(None, {"Q": 1.0}),
+        lambda: fastpin.LoadHistory.cycles({"P": 1.0}, {"Q": 1.0}, start=np.array([1, 2])),
+        lambda: fastpin.LoadHistory.harmonic({"P": 1.0}, {"Q": 1.0}, phase=3),
+        lambda: fastpin.LoadHistory.from_array("abc"),
+        lambda: fastpin.LoadHistory([{"P": 1.0}]).repeated(10**30),
+        lambda: fastpin.Grid("abc"),
+        lambda: fastpin.Grid([10**400]),
+        lambda: fastpin.Grid(np.ones((3, 3))),
+        lambda: fastpin.Grid(np.linspace(-3.0, 0.0, 20_001)),
+        lambda: fastpin.Grid(np.linspace(-3.0, 0.0, 20), closed="no"),
+        lambda: fastpin.save(None, "a.h5"),
+        lambda: fastpin.storage.to_dataframe(None),
+        lambda: fastpin.plot_tractions(None),
+        lambda: fastpin.plot_tractions("abc"),
+        lambda: fastpin.plot_cycles(5),
+    ],
+)
+def test_values_of_odd_classes_are_refused(call):
+    with pytest.raises(InputError) as raised:
+        call()
+    assert len(str(raised.value)) < 300
+
+
+@pytest.mark.parametrize("force", [1e308, 5e-324])
+def test_loads_beyond_all_scales_are_refused(similar, force):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.1)
+    with pytest.raises(InputError, match="history: the largest load must lie between 1e-100 and 1e"):
+        fastpin.solve(problem, [{"P": force}], nodes=41)
+
+
+def test_numpy_numbers_are_options():
+    options = SolveOptions(
+        nodes=np.int64(61), between=np.array([0.25, 0.5], np.float32), arc=np.array([-3.0, -0.5]), shortcut=np.True_
+    )
+    assert options == SolveOptions(nodes=61, between=(0.25, 0.5), arc=(-3.0, -0.5), shortcut=True)
+    assert SolveOptions(between=0.5).fractions.tolist() == [0.5, 1.0]
+    assert type(options.shortcut) is bool
+
+
+def test_a_grid_or_an_arc_beside_a_start_is_refused(similar):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.4)
+    first = fastpin.solve(problem, [{"P": 1.0}], nodes=41)
+    for given in ({"arc": (-3.0, 0.0)}, {"grid": first.grid}):
+        with pytest.raises(InputError, match="has no effect with start"):
+            fastpin.solve(problem, [{"Q": 0.1}], start=first, **given)
