@@ -111,6 +111,7 @@ class System:
         influence.fill_operator(theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
+        cos_double, sin_double = np.cos(2 * theta), np.sin(2 * theta)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
         share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
         point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
@@ -118,9 +119,9 @@ class System:
         loads = np.zeros((2 * n, len(LOADS)))
         loads[:, P] = point * np.r_[sin, cos]
         loads[:, Q] = point * np.r_[-cos, sin]
-        loads[:, SXX] = plate * np.r_[0.5 + np.cos(2 * theta), np.sin(2 * theta)]
-        loads[:, SYY] = plate * np.r_[0.5 - np.cos(2 * theta), -np.sin(2 * theta)]
-        loads[:, SXY] = 2.0 * plate * np.r_[np.sin(2 * theta), -np.cos(2 * theta)]
+        loads[:, SXX] = plate * np.r_[0.5 + cos_double, sin_double]
+        loads[:, SYY] = plate * np.r_[0.5 - cos_double, -sin_double]
+        loads[:, SXY] = 2.0 * plate * np.r_[sin_double, -cos_double]
 
         cos_moment, sin_moment = grid.trig_moments()
         equilibrium = np.zeros((3, 2 * n))
