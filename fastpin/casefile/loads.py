@@ -117,13 +117,14 @@ def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None
     count = section.checked("repeat", whole_number, 1)
     if count is None or history is None:
         return history
-    if len(history) * count > MAX_CORNERS:
-        section.report(f"repeat: the history has more than {MAX_CORNERS:,} corners", "repeat")
-        return None
-    if len(history) > MAX_ROWS:
+    if len(history) > MAX_ROWS and len(history) * count <= MAX_CORNERS:  # beyond both limits the second is reported
         section.report(f"repeat: more than {MAX_ROWS:,} corners can't be repeated", "repeat")
         return None
-    return history.repeated(count)
+    try:
+        return history.repeated(count)
+    except InputError as error:
+        section.report(f"repeat: {error.reason}", "repeat")
+        return None
 
 
 def _harmonic(block: Section) -> LoadHistory | None:

@@ -285,7 +285,7 @@ class LoadHistory:
         """
         count = whole_number("count", count, 1)
         if len(self) * count > MAX_CORNERS:
-            raise InputError("count", f"the history would have more than {MAX_CORNERS:,} corners")
+            raise InputError("count", f"the history has more than {MAX_CORNERS:,} corners")
         given = np.vstack([_times(block, block.count) for block in self._blocks])
         ends: list[np.ndarray] = []
         lengths: tuple[int, ...] = ()
