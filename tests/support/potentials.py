@@ -151,7 +151,10 @@ def printed(name, theta, kappa):
 
 
 def rigid_part(difference, z):
-    """Translation (complex), rotation and what is left of a displacement field, by least squares."""
+    """Fit a rigid motion to a displacement field by least squares.
+
+    Return its translation (complex), its rotation, and the largest error of the fit.
+    """
     columns = np.array([np.ones_like(z), 1j * np.ones_like(z), 1j * z]).T
     system = np.concatenate([columns.real, columns.imag])
     data = np.concatenate([difference.real, difference.imag])
