@@ -183,7 +183,9 @@ def history_item(seed: int) -> Item:
     results = [part for part in (result, getattr(result, "coarse", None)) if part is not None]
     states = [state for part in results for state in part]
     cycles = [[part.complete, part.method, *(cycle._asdict() for cycle in part.cycles)] for part in results]
-    counts = [{name: part.statistics[name] for name in part.statistics if name != "seconds"} for part in results]
+    counts = [
+        {name: count for name, count in part.statistics.items() if count and name != "seconds"} for part in results
+    ]
     return {
         "states": digest([value_of(state, name) for name in SOLVED] for state in states),
         "readings": digest([getattr(state, name) for name in READ] for state in states),

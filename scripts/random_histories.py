@@ -1,6 +1,6 @@
 """Random histories: does the path solver return a wrong state, raise an error, or hang?
 
-``python scripts/random_histories.py [--count 1000] [--first 0]`` solves `count` random problems with fixed seeds on
+``python -m scripts.random_histories [--count 1000] [--first 0]`` solves `count` random problems with fixed seeds on
 small grids. It checks every state independently of the solver's own residuals, and prints every error raised.
 """
 
@@ -14,53 +14,10 @@ import numpy as np
 from tqdm import tqdm
 
 from fastpin.errors import FastpinError
-from fastpin.model.history import LoadHistory
-from fastpin.model.materials import Material, MaterialPair
-from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-
-NODES = 81
-
-
-def random_case(seed: int) -> tuple[Problem, LoadHistory]:
-    """A random problem and a random history of up to six corners.
-
-    L_p is 1e-4 to 2.5, friction 0.02 to 1.2, the stiffness ratio 1/30 to 30, nu 0 to 0.49, with both planes, both pin
-    loads and both rotations. Q goes up to 1.2 mu P. Half of the free centre-loaded pins have a moment, up to the
-    largest that friction at a point can carry. One case of five has remote stress, one of five returns to no load.
-    """
-    rng = np.random.default_rng(seed)
-    ratio = 30.0 ** rng.uniform(-1.0, 1.0)
-    pair = MaterialPair(
-        Material(1.0, rng.uniform(0.0, 0.49)),
-        Material(ratio, rng.uniform(0.0, 0.49)),
-        "strain" if rng.random() < 0.5 else "stress",
-    )
-    load_parameter = 10.0 ** rng.uniform(-4.0, np.log10(2.5))
-    friction = rng.uniform(0.02, 1.2)
-    pin_load = "body" if rng.random() < 0.5 else "centre"
-    rotation = "fixed" if pin_load == "centre" and rng.random() < 0.5 else "free"
-    problem = Problem.from_load_parameter(pair, load_parameter, friction, pin_load, rotation)
-    with_moment = pin_load == "centre" and rotation == "free" and rng.random() < 0.5
-    with_stress = rng.random() < 0.2
-    back_to_zero = rng.random() < 0.2
-    corners = []
-    for _ in range(int(rng.integers(1, 7))):
-        pull = rng.uniform(0.2, 1.0)
-        corner = {"P": pull, "Q": pull * friction * rng.uniform(-1.2, 1.2)}
-        if with_moment:
-            corner["M"] = pull * friction / np.hypot(1.0, friction) * rng.uniform(-1.0, 1.0)
-        if with_stress:
-            corner |= {
-                "sxx": load_parameter * rng.uniform(-0.3, 0.3),
-                "syy": load_parameter * rng.uniform(-0.3, 0.3),
-            }
-        corners.append(corner)
-    if back_to_zero:
-        corners[1:1] = [dict.fromkeys(corners[0], 0.0), dict(corners[0])]
-    return problem, LoadHistory(corners)
+from scripts.histories import NODES, random_case
 
 
 def violation(state: State) -> float:

@@ -48,9 +48,10 @@ ALL_AT_ONCE = 3  # all queued statuses were changed at once; the queue holds the
 NO_SUPPORT = 4  # nothing holds the pin any more
 CYCLING = 5  # the statuses did not settle
 ARC_END = 6  # the contact reaches an end node
+ENDLESS = 7  # more events than allowed
 
 # Slots of `counts`.
-UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7
+UPDATES, QUEUED, NEXT, ROUND, EVENTS, EXCHANGES, NEEDED_COLUMN, SETTLED, COUNTS = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 # Slots of `sums`.
 TIME, DISSIPATION, WORK, SUMS = 0, 1, 2, 3
@@ -515,7 +516,7 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     stop : float
         Time at which to stop, 0 to 1.
     most_events : int
-        More events than this mean that the statuses cycle.
+        With more events than this the code is ENDLESS.
     all_at_once : int
         If more nodes than this violate their statuses, all change at once without exchanges, and ALL_AT_ONCE is
         returned.
@@ -523,10 +524,12 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
     Returns
     -------
     int
-        One of the codes above. After STALE, REBUILD and ALL_AT_ONCE the caller calls again.
+        One of the codes above. After STALE, REBUILD and ALL_AT_ONCE the caller calls again. If the caller has set
+        counts[SETTLED], the statuses hold until the next event.
     """
     counts, sums, rates = queue.counts, queue.sums, tableau.rates
-    settled = False
+    settled = counts[SETTLED] != 0
+    counts[SETTLED] = 0
     while True:
         code = _apply_queue(tableau, contact, queue, friction, typical, closed_grid)
         if code != REACHED:
@@ -571,4 +574,4 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
             counts[EVENTS] += 1
             settled = False
             if counts[EVENTS] > most_events:
-                return CYCLING
+                return ENDLESS

@@ -113,8 +113,13 @@ def solve_statuses(
         None if the closed nodes can't hold the pin: a mechanism.
     """
     active = DenseUnknowns(system, status)
-    if active.singular:
-        return None
+    return None if active.singular else solve_unknowns(system, active, stuck_slip, load, rest_gap)
+
+
+def solve_unknowns(
+    system: System, active: DenseUnknowns, stuck_slip: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
+) -> Solution:
+    """Solve for tractions and motion with the unknowns `active`, as :func:`solve_statuses` does."""
     n = system.grid.size
     known = system.loads[active.rows] @ load
     known[: active.normal.size] += np.broadcast_to(rest_gap, n)[active.normal]
@@ -124,6 +129,23 @@ def solve_statuses(
     motion = unknowns[-3:]
     displacement = system.displacement(tractions, motion, load, rest_gap)
     return Solution(tractions[:n], tractions[n:], displacement[:n], displacement[n:], motion)
+
+
+def accept_solution(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
+    """The configuration at `load` that the solution of its statuses gives, with the energies of `start`.
+
+    Sticking nodes keep the slip of `start`. Values beyond their bounds by rounding are put on them.
+    """
+    new = start.copy()
+    closed = status != OPEN
+    new.status = status
+    new.pressure = np.where(closed, np.maximum(solution.pressure, 0.0), 0.0)
+    new.shear = np.where(closed, solution.shear, 0.0)
+    new.gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
+    new.slip = np.where(status == STICK, start.slip, solution.slip)
+    new.motion = solution.motion
+    new.load = load.copy()
+    return new
 
 
 def work_between(system: System, before: Configuration, after: Configuration) -> float:

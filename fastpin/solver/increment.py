@@ -20,6 +20,7 @@ from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
     Solution,
+    accept_solution,
     dissipation_between,
     reaches_end,
     resting_status,
@@ -85,7 +86,7 @@ def _iterate(
         wanted = _wanted_status(system, start, solution, status)
         changes = np.flatnonzero(wanted != status)
         if changes.size == 0:
-            return _accept(start, solution, status, load)
+            return accept_solution(start, solution, status, load)
         if one_at_a_time:
             status[changes[0]] = wanted[changes[0]]
         else:
@@ -129,19 +130,6 @@ def _hold_one(wanted: np.ndarray, status: np.ndarray, solution: Solution, fricti
         others = others[wanted[others] == np.sign(solution.shear[letting_go[0]])]
     if others.size:
         wanted[others[np.argmin(np.abs(slid[others]))]] = STICK
-
-
-def _accept(start: Configuration, solution: Solution, status: np.ndarray, load: np.ndarray) -> Configuration:
-    new = start.copy()
-    closed = status != OPEN
-    new.status = status
-    new.pressure = np.where(closed, np.maximum(solution.pressure, 0.0), 0.0)
-    new.shear = np.where(closed, solution.shear, 0.0)
-    new.gap = np.where(closed, 0.0, np.maximum(solution.gap, 0.0))
-    new.slip = np.where(status == STICK, start.slip, solution.slip)
-    new.motion = solution.motion
-    new.load = load.copy()
-    return new
 
 
 class IncrementStepper:

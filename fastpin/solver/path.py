@@ -18,15 +18,29 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import M, P, Q
-from fastpin.solver.configuration import Configuration, Solution, solve_statuses
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    Solution,
+    dissipation_between,
+    reaches_end,
+    solve_statuses,
+    work_between,
+    worst_residual,
+)
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import release
+from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.step import Piece, Position, Report, force_of, is_pushed
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
 
 MOST_REBUILDS = 400
-"""Rebuilds of the tableau in one piece of a step; with more, the statuses are cycling."""
+"""Rebuilds of the tableau in one piece of a step, and once more for each settling by Lemke's method, at most."""
+
+MOST_RESETTLINGS = 20
+"""Settlings by Lemke's method in one piece of a step, at most, for each node."""
 
 MOST_DRIFT = 1e-10
 """Largest relative error of gap and slip, checked after every chunk of updates. Above it the tableau is rebuilt."""
@@ -52,6 +66,15 @@ NEGLIGIBLE = 1e-3
 MOST_RELEASES = 20
 """Such releases in one piece of a step, at most."""
 
+JUMPS = 10.0 ** np.arange(-8.0, -2.9, 0.5)
+"""Parts of the rest of a piece, one after the other, at which a state beyond a snap of the pin is looked for."""
+
+LONG_JUMPS = slice(6, None, 2)
+"""The jumps that are tried by an increment too, where Lemke's method finds no state."""
+
+MOST_JUMPS = 200
+"""Snaps of the pin in a history, at most."""
+
 ALMOST_UNLOADED = 1.0 - 1e-8
 """Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
 
@@ -62,7 +85,7 @@ class StepLostError(Exception):
     Attributes
     ----------
     code : int
-        A code of :mod:`fastpin.kernels.exchange`: NO_SUPPORT, CYCLING or ARC_END.
+        A code of :mod:`fastpin.kernels.exchange`: NO_SUPPORT, CYCLING, ARC_END or ENDLESS.
     fraction : float
         Fraction of the step that was followed.
     """
@@ -95,6 +118,8 @@ class PathStep:
     rebuilds : int
         Tableaus built from the matrices, and states computed by a factorisation. The first tableau counts too, unless
         all closed nodes stick after a reversal.
+    resettled : int
+        Events at which Lemke's method found the statuses.
     """
 
     def __init__(
@@ -138,6 +163,7 @@ class PathStep:
         self._sample = np.r_[nodes, n + nodes]
         self._sampled = system.operator[self._sample]
         self.rebuilds = 0
+        self.resettled = 0
         self._columns: Columns
         unknowns = self._sticking_after_reversal()
         if unknowns is None:
@@ -198,6 +224,10 @@ class PathStep:
                 self._book()
                 self._rebuild(all_at_once=code == exchange.ALL_AT_ONCE)
                 checked = 0
+            elif code == exchange.CYCLING:
+                self._book()
+                self._resettle()
+                checked = 0
             else:
                 self._book()
                 if code != exchange.REACHED:
@@ -207,6 +237,8 @@ class PathStep:
                 if not _exceeds_bounds(settled, solution):
                     return settled
                 if settlings == MOST_SETTLINGS:
+                    if _is_rounding(settled, solution):
+                        return settled
                     raise StepLostError(exchange.CYCLING, self.fraction)
                 # When a load is almost gone, rounding can keep a status too long. At its limit it changes at once.
                 self._take(settled)
@@ -235,6 +267,22 @@ class PathStep:
             return None
         return unknowns
 
+    def _resettle(self) -> None:
+        """Find the statuses after an event by Lemke's method, where their exchange has not settled."""
+        status = settle(self.system, self.now, self.rate)
+        self.resettled += 1
+        if status is None or self.resettled > MOST_RESETTLINGS * status.size:
+            raise StepLostError(exchange.CYCLING, self.fraction)
+        if not self.system.grid.closed and np.any(status[[0, -1]] != OPEN):
+            raise StepLostError(exchange.ARC_END, self.fraction)
+        counts = self._queue.counts
+        counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = 0
+        counts[exchange.SETTLED] = 1
+        counts[exchange.EXCHANGES] += np.count_nonzero(status != self.now.status)
+        self.now.status[:] = status
+        self._contact.touched[status != OPEN] = True
+        self._rebuild()
+
     def _begin(self, unknowns: StickingRun | DenseUnknowns) -> None:
         """Begin a new tableau from the solvable system of the present statuses."""
         self._queue.counts[exchange.UPDATES] = 0
@@ -246,7 +294,7 @@ class PathStep:
         After a change `all_at_once` that leaves the pin without support, the change is first taken back.
         """
         self.rebuilds += 1
-        if self.rebuilds > MOST_REBUILDS:
+        if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
             raise StepLostError(exchange.CYCLING, self.fraction)
         unknowns, queue = solvable_unknowns(self.system, self.now.status), self._queue
         if unknowns is None and all_at_once:
@@ -365,6 +413,21 @@ def _exceeds_bounds(settled: Configuration, solution: Solution) -> bool:
     )
 
 
+def _is_rounding(settled: Configuration, solution: Solution) -> bool:
+    """Whether a solution exceeds the bounds of its gaps only, by rounding of the largest displacement.
+
+    At a stop where gaps have opened this instant, the largest gap is itself rounding.
+    """
+    stick, gaping = settled.status == STICK, ~settled.closed
+    traction = MOST_DRIFT * settled.pressure.max()
+    length = ROUNDING * max(float(np.abs(solution.slip).max()), float(np.abs(solution.motion).max()))
+    return bool(
+        np.abs(settled.pressure - solution.pressure).max() <= traction
+        and np.abs(settled.shear - solution.shear)[stick].max(initial=0.0) <= traction
+        and np.abs(settled.gap - solution.gap)[gaping].max(initial=0.0) <= length
+    )
+
+
 class PathStepper:
     """The path solver as a stepper: it follows a step from event to event, exactly.
 
@@ -372,7 +435,7 @@ class PathStepper:
     ----------
     system : System
     statistics : dict of str to float
-        Statistics of the run. The stepper counts "events", "exchanges" and "rebuilds" in it.
+        Statistics of the run. The stepper counts "events", "exchanges", "rebuilds", "resettled" and "jumps" in it.
     """
 
     def __init__(self, system: System, statistics: dict[str, float]) -> None:
@@ -413,10 +476,11 @@ class PathStepper:
             if self._step is not None:
                 position.reached = self._begin + lost.fraction * (piece.end - self._begin)
                 position.now = self._step.now
-            if not self._has_just_opened(position.now, piece, lost):
+            if self._has_just_opened(position.now, piece, lost):
+                self.leave(position)
+                position.now = release(self._system, position.now, position.now.load)
+            elif not self._jump(position, piece, stop, lost):
                 raise _solve_error(lost.code, position.now, self._system.problem.rotation == "fixed") from None
-            self.leave(position)
-            position.now = release(self._system, position.now, position.now.load)
 
     def leave(self, position: Position) -> None:
         """End the present path: note the nodes that it touched, count its events, and forget it."""
@@ -426,7 +490,32 @@ class PathStepper:
         self._statistics["events"] += self._step.events
         self._statistics["exchanges"] += self._step.exchanges
         self._statistics["rebuilds"] += self._step.rebuilds
+        self._statistics["resettled"] += self._step.resettled
         self._step = None
+
+    def _jump(self, position: Position, piece: Piece, stop: float, lost: StepLostError) -> bool:
+        """Take the pin over a snap to a state at a finite distance, if one is near. Returns whether it was found."""
+        if lost.code != exchange.CYCLING or self._statistics["jumps"] >= MOST_JUMPS:
+            return False
+        system, now = self._system, position.now
+        finite = FiniteStep(system, now)
+        ways = [(part, finite.to) for part in JUMPS]
+        ways += [(part, lambda load: implicit_step(system, now, load)) for part in JUMPS[LONG_JUMPS]]
+        for part, way in ways:
+            reached = min(position.reached + part * (piece.end - position.reached), stop)
+            found = way(piece.load_at(reached))
+            if found is None or worst_residual(system, found) > MAX_RESIDUAL:
+                continue
+            if reaches_end(system, found):
+                raise ArcError(CUT_OFF)
+            self.leave(position)
+            found.work = now.work + work_between(system, now, found)
+            found.dissipation = now.dissipation + dissipation_between(system, now, found)
+            position.now, position.reached = found, reached
+            position.touched |= found.closed
+            self._statistics["jumps"] += 1
+            return True
+        return False
 
     def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:
         """Whether a lost contact had only become too small for the grid, or carried nothing."""
@@ -450,4 +539,6 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
         return ConvergenceError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == exchange.NO_SUPPORT:
         return NoEquilibriumError("nothing holds the pin any more: it spins, slides away or loses contact")
+    if code == exchange.CYCLING:
+        return NoEquilibriumError("no equilibrium is near: the pin snaps to a distant state, which was not found")
     return ConvergenceError("the stick and slip zones did not settle")

@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 Progress = Callable[[float, int], None]
 """Called with the number of steps that are done, parts included, and the number of all steps."""
 
-COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated")
+COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps")
 """Counts in the statistics of a run."""
 
 UNLOADED_PRESSURE = 1e-9

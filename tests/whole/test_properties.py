@@ -12,7 +12,8 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from scripts.random_histories import NODES, outcome, random_case
+from scripts.histories import NODES, random_case
+from scripts.random_histories import outcome
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)

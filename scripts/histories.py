@@ -1,0 +1,249 @@
+"""Random problems with random load histories: the whole space that the theory admits.
+
+:data:`GENERATORS` names the classes. Each one maps a seed to a :class:`RandomCase`. All are dimensionless: a load P = 1
+has the load parameter of the problem.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import Corner
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+
+NODES = 81
+"""Nodes of the general class."""
+
+
+@dataclass(frozen=True)
+class RandomCase:
+    """A random problem and history, and the options of :func:`fastpin.solve` for it."""
+
+    problem: Problem
+    history: LoadHistory
+    options: dict[str, Any] = field(default_factory=lambda: {"nodes": NODES})
+
+
+def random_case(seed: int) -> tuple[Problem, LoadHistory]:
+    """A random problem and a random history of up to six corners: everyday values.
+
+    L_p is 1e-4 to 2.5, friction 0.02 to 1.2, the stiffness ratio 1/30 to 30, nu 0 to 0.49, with both planes, both pin
+    loads and both rotations. Q goes up to 1.2 mu P. Half of the free centre-loaded pins have a moment, up to the
+    largest that friction at a point can carry. One case of five has remote stress, one of five returns to no load.
+    """
+    rng = np.random.default_rng(seed)
+    ratio = 30.0 ** rng.uniform(-1.0, 1.0)
+    pair = MaterialPair(
+        Material(1.0, rng.uniform(0.0, 0.49)),
+        Material(ratio, rng.uniform(0.0, 0.49)),
+        "strain" if rng.random() < 0.5 else "stress",
+    )
+    load_parameter = 10.0 ** rng.uniform(-4.0, np.log10(2.5))
+    friction = rng.uniform(0.02, 1.2)
+    pin_load = "body" if rng.random() < 0.5 else "centre"
+    rotation = "fixed" if pin_load == "centre" and rng.random() < 0.5 else "free"
+    problem = Problem.from_load_parameter(pair, load_parameter, friction, pin_load, rotation)
+    with_moment = pin_load == "centre" and rotation == "free" and rng.random() < 0.5
+    with_stress = rng.random() < 0.2
+    back_to_zero = rng.random() < 0.2
+    corners = []
+    for _ in range(int(rng.integers(1, 7))):
+        pull = rng.uniform(0.2, 1.0)
+        corner = {"P": pull, "Q": pull * friction * rng.uniform(-1.2, 1.2)}
+        if with_moment:
+            corner["M"] = pull * friction / np.hypot(1.0, friction) * rng.uniform(-1.0, 1.0)
+        if with_stress:
+            corner |= {
+                "sxx": load_parameter * rng.uniform(-0.3, 0.3),
+                "syy": load_parameter * rng.uniform(-0.3, 0.3),
+            }
+        corners.append(corner)
+    if back_to_zero:
+        corners[1:1] = [dict.fromkeys(corners[0], 0.0), dict(corners[0])]
+    return problem, LoadHistory(corners)
+
+
+def _extreme_pair(rng: np.random.Generator) -> MaterialPair:
+    """Stiffness ratio 0.01 to 100, nu up to 0.5; one pair of twelve has a rigid body."""
+    nus = [0.5 if rng.random() < 0.1 else rng.uniform(0.0, 0.5) for _ in range(2)]
+    bodies = [Material(1.0, nus[0]), Material(10.0 ** rng.uniform(-2.0, 2.0), nus[1])]
+    plane = "strain" if rng.random() < 0.5 else "stress"
+    if rng.random() < 1.0 / 12.0:
+        bodies[int(rng.integers(2))] = Material.rigid()
+    if plane == "strain" and any(body.is_rigid for body in bodies):
+        # An incompressible body on a rigid body in plane strain: keep one that can change its volume.
+        bodies = [body if body.is_rigid else Material(body.E, min(body.nu, 0.49)) for body in bodies]
+    return MaterialPair(bodies[0], bodies[1], plane)
+
+
+def _any_friction(rng: np.random.Generator) -> float:
+    """No friction in one case of twelve, otherwise 0.005 to 3."""
+    return 0.0 if rng.random() < 1.0 / 12.0 else float(10.0 ** rng.uniform(math.log10(0.005), math.log10(3.0)))
+
+
+def _support(rng: np.random.Generator) -> dict[str, Any]:
+    """How the pin is loaded and held: body or centre, free or fixed, sometimes at a hub."""
+    if rng.random() < 0.4:
+        return {"pin_load": "body", "rotation": "free"}
+    if rng.random() < 0.45:
+        return {"pin_load": "centre", "rotation": "free"}
+    hub = rng.uniform(0.1, 1.0) if rng.random() < 0.3 else None
+    return {"pin_load": "centre", "rotation": "fixed", "hub_radius": hub}
+
+
+def _extreme_loads(rng: np.random.Generator, problem: Problem, corners: int, stress: float) -> list[dict[str, float]]:
+    """Corners with forces, moments a free pin can carry, and remote stress up to `stress` of the clearance."""
+    friction = problem.friction
+    turning = problem.pin_load == "centre" and problem.rotation == "free" and friction > 0.0 and rng.random() < 0.4
+    rotated = problem.rotation == "fixed" and rng.random() < 0.3
+    result = []
+    for _ in range(corners):
+        pull = rng.uniform(0.05, 1.0)
+        corner = {"P": pull, "Q": pull * min(max(friction, 0.3), 1.5) * rng.uniform(-1.2, 1.2)}
+        force = math.hypot(corner["P"], corner["Q"])
+        if turning:
+            corner["M"] = force * friction / math.hypot(1.0, friction) * rng.uniform(-0.95, 0.95)
+        if rotated:
+            corner["rotation"] = rng.uniform(-0.5, 0.5)
+        if stress > 0.0:
+            size = stress * abs(problem.clearance)
+            corner |= {name: size * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+        result.append(corner)
+    if rng.random() < 0.15:
+        result[1:1] = [dict.fromkeys(result[0], 0.0), dict(result[0])]
+    return result
+
+
+def _problem(rng: np.random.Generator, load_parameter: float, **fields: Any) -> Problem:
+    chosen = {"pair": _extreme_pair(rng), "friction": _any_friction(rng), **_support(rng), **fields}
+    return Problem.from_load_parameter(load_parameter=load_parameter, **chosen)
+
+
+def _nodes(rng: np.random.Generator) -> dict[str, Any]:
+    return {"nodes": int(rng.integers(61, 143))}
+
+
+def general(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Everyday values, see :func:`random_case`."""
+    del rng
+    return RandomCase(*random_case(seed))
+
+
+def extreme(rng: np.random.Generator, seed: int) -> RandomCase:
+    """All materials, load parameters 1e-4 to 1e4, friction to 3, remote stress in a third of the cases."""
+    del seed
+    problem = _problem(rng, 10.0 ** rng.uniform(-4.0, 4.0))
+    stress = 0.5 if rng.random() < 0.33 else 0.0
+    return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), stress)), _nodes(rng))
+
+
+def remote(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Remote stress with or without a force, up to several times the stress that closes the hole, rigid bodies."""
+    del seed
+    problem = _problem(rng, 10.0 ** rng.uniform(-2.0, 1.5))
+    alone = rng.random() < 0.5
+    size = 10.0 ** rng.uniform(-1.0, 0.7) * problem.clearance
+    corners: list[Corner] = []
+    for _ in range(int(rng.integers(1, 6))):
+        corner = {name: size * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+        if not alone:
+            pull = rng.uniform(0.05, 1.0)
+            corner |= {"P": pull, "Q": pull * rng.uniform(-0.8, 0.8)}
+        corners.append(corner)
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+def fits(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Interference fits, and neat fits in one case of four, with forces and remote stress."""
+    del seed
+    load_parameter = 0.0 if rng.random() < 0.25 else -(10.0 ** rng.uniform(-3.0, 2.0))
+    problem = _problem(rng, load_parameter)
+    if problem.pair.pin.nu > 0.49 and problem.pair.plate.is_rigid:
+        problem = _problem(rng, load_parameter, pair=MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3)))
+    corners = _extreme_loads(rng, problem, int(rng.integers(1, 6)), 0.0)
+    if rng.random() < 0.5:
+        size = 10.0 ** rng.uniform(-1.0, 0.5) * max(abs(load_parameter), 0.1)
+        for corner in corners:
+            corner |= {name: size * rng.uniform(-1.0, 1.0) for name in ("sxx", "syy", "sxy")}
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+def fixed(rng: np.random.Generator, seed: int) -> RandomCase:
+    """A pin whose rotation is held, moderate friction, all load parameters."""
+    del seed
+    problem = _problem(
+        rng, 10.0 ** rng.uniform(-3.0, 3.5), friction=rng.uniform(0.05, 0.8), pin_load="centre", rotation="fixed",
+        hub_radius=None,
+    )  # fmt: skip
+    return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(2, 8)), 0.0)), _nodes(rng))
+
+
+def moderate_stress(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Everyday materials, forces and remote stress in every case."""
+    del seed
+    pair = MaterialPair(
+        Material(1.0, rng.uniform(0.1, 0.45)), Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.1, 0.45))
+    )
+    problem = _problem(rng, 10.0 ** rng.uniform(-1.5, 1.0), pair=pair, friction=rng.uniform(0.05, 1.0))
+    return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), 2.0)), _nodes(rng))
+
+
+def narrow(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Narrow contacts, load parameters 40 to 1e4, rotation held, all materials."""
+    del seed
+    problem = _problem(rng, 10.0 ** rng.uniform(math.log10(40.0), 4.0), pin_load="centre", rotation="fixed")
+    stress = 0.5 if rng.random() < 0.33 else 0.0
+    return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), stress)), _nodes(rng))
+
+
+def rough(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Friction 2 to 3; one case of ten 100 to 1000."""
+    del seed
+    friction = 10.0 ** rng.uniform(2.0, 3.0) if rng.random() < 0.1 else rng.uniform(2.0, 3.0)
+    problem = _problem(rng, 10.0 ** rng.uniform(-3.0, 2.0), friction=friction)
+    return RandomCase(problem, LoadHistory(_extreme_loads(rng, problem, int(rng.integers(1, 7)), 0.0)), _nodes(rng))
+
+
+def scales(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Loads of very different size: forces from 1e-5 to 1 in one history."""
+    del seed
+    problem = _problem(rng, 10.0 ** rng.uniform(-3.0, 2.0))
+    corners: list[Corner] = []
+    for _ in range(int(rng.integers(2, 7))):
+        pull = 10.0 ** rng.uniform(-5.0, 0.0)
+        corners.append({"P": pull, "Q": pull * rng.uniform(-0.8, 0.8)})
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+def wandering(rng: np.random.Generator, seed: int) -> RandomCase:
+    """A force that turns round the hole, forth and back, and pushes the other way."""
+    del seed
+    problem = _problem(rng, 10.0 ** rng.uniform(-3.0, 3.0))
+    angle, corners = 0.0, []
+    for _ in range(int(rng.integers(2, 9))):
+        angle += rng.uniform(-1.5, 1.5)
+        pull = rng.uniform(0.2, 1.0) * (-1.0 if rng.random() < 0.15 else 1.0)
+        corners.append({"P": pull * math.cos(angle), "Q": pull * math.sin(angle)})
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
+    function.__name__: function
+    for function in (
+        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering,
+    )
+}  # fmt: skip
+"""The classes of random cases, by name."""
+
+
+def generate(kind: str, seed: int) -> RandomCase:
+    """The random case of a class and a seed."""
+    return GENERATORS[kind](np.random.default_rng([zlib.crc32(kind.encode()), seed]), seed)

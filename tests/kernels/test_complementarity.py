@@ -1,0 +1,114 @@
+"""Lemke's method: compiled, as plain Python, and against trying all combinations."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from fastpin.kernels import complementarity
+from fastpin.kernels.complementarity import RAY, SOLVED, UNFINISHED
+
+
+@pytest.fixture(params=["compiled", "python"])
+def lemke(request, monkeypatch):
+    """Return the code and z of a problem, by compiled code or by plain Python."""
+    kernel = complementarity.lemke
+    if request.param == "python":
+        for name in ("_lexically_smaller", "_leaving_row", "_pivot"):
+            monkeypatch.setattr(complementarity, name, getattr(complementarity, name).py_func)
+        kernel = complementarity.lemke.py_func
+
+    def solve(matrix, vector, most_pivots=1000, cover=None):
+        k = vector.size
+        z = np.full(k, np.nan)
+        tableau, basis = np.full((k, 2 * k + 2), np.nan), np.zeros(k, dtype=np.int64)
+        cover = np.ones(k) if cover is None else cover
+        return kernel(np.ascontiguousarray(matrix), vector, cover, most_pivots, tableau, basis, z), z
+
+    return solve
+
+
+def solutions(matrix, vector):
+    """All solutions, by solving for every combination of basic variables."""
+    k = vector.size
+    found = []
+    for chosen in itertools.product([False, True], repeat=k):
+        basic = np.array(chosen)
+        z = np.zeros(k)
+        if basic.any():
+            block = matrix[np.ix_(basic, basic)]
+            if abs(np.linalg.det(block)) < 1e-12:
+                continue
+            z[basic] = np.linalg.solve(block, -vector[basic])
+        w = vector + matrix @ z
+        if z.min() > -1e-10 and w[~basic].min(initial=0.0) > -1e-10:
+            found.append(z)
+    return found
+
+
+def violation(matrix, vector, z):
+    w = vector + matrix @ z
+    return max(-z.min(), -w.min(), np.abs(w * z).max())
+
+
+@pytest.mark.parametrize("k", [1, 2, 5, 8])
+def test_a_p_matrix_has_the_one_solution_of_all_combinations(lemke, k):
+    for seed in range(12):
+        rng = np.random.default_rng([k, seed])
+        root, turn = rng.normal(size=(k, k)), rng.normal(size=(k, k))
+        matrix, vector = root @ root.T + 0.1 * np.eye(k) + turn - turn.T, rng.normal(size=k)
+        code, z = lemke(matrix, vector)
+        (naive,) = solutions(matrix, vector)
+        assert code == SOLVED
+        assert z == pytest.approx(naive, abs=1e-9)
+
+
+def test_any_matrix_gives_a_solution_or_a_ray(lemke):
+    endings = {SOLVED: 0, RAY: 0}
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        matrix, vector = rng.normal(size=(6, 6)), rng.normal(size=6)
+        code, z = lemke(matrix, vector)
+        endings[code] += 1
+        if code == SOLVED:
+            assert violation(matrix, vector, z) < 1e-8
+            assert any(np.allclose(z, one, atol=1e-8) for one in solutions(matrix, vector))
+    assert min(endings.values()) > 5
+
+
+def test_without_a_negative_entry_the_solution_is_zero(lemke):
+    code, z = lemke(-np.eye(3), np.array([0.0, 1.0, 2.0]))
+    assert code == SOLVED
+    assert np.array_equal(z, np.zeros(3))
+
+
+def test_no_solution_ends_on_a_ray(lemke):
+    assert lemke(-np.eye(2), np.array([-1.0, 1.0]))[0] == RAY
+    assert lemke(np.zeros((2, 2)), np.array([-1.0, -1.0]))[0] == RAY
+    assert lemke(np.eye(2), np.array([np.nan, 1.0]))[0] == RAY
+
+
+def test_too_many_pivots_are_reported(lemke):
+    rng = np.random.default_rng(3)
+    root = rng.normal(size=(8, 8))
+    assert lemke(root @ root.T + np.eye(8), -np.ones(8), most_pivots=2)[0] == UNFINISHED
+
+
+def test_ties_do_not_cycle(lemke):
+    """A problem on which the plain ratio rule meets ties at every pivot: symmetric, with equal right-hand sides."""
+    k = 12
+    matrix = np.eye(k) + np.diag(np.full(k - 1, 2.0), -1)
+    for vector in (-np.ones(k), np.where(np.arange(k) % 2, -1.0, 0.0)):
+        code, z = lemke(matrix, vector, most_pivots=2**k + 10)
+        assert code == SOLVED
+        assert violation(matrix, vector, z) < 1e-9
+
+
+def test_the_covering_vector_does_not_change_a_single_solution(lemke):
+    rng = np.random.default_rng(5)
+    root = rng.normal(size=(7, 7))
+    matrix, vector = root @ root.T + np.eye(7), rng.normal(size=7)
+    one, two = lemke(matrix, vector)[1], lemke(matrix, vector, cover=rng.uniform(0.5, 2.0, size=7))[1]
+    assert one == pytest.approx(two, abs=1e-10)

@@ -1,0 +1,194 @@
+"""Statuses from complementarity problems: events at which exchanging violators cycles, and snaps of the pin."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity.system import System
+from fastpin.kernels import exchange
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver import path, settling
+from fastpin.solver.configuration import solve_statuses, worst_residual
+from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.first_contact import first_contact
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep
+from fastpin.solver.rest import unloaded_configuration
+from fastpin.solver.settling import FiniteStep, settle
+from fastpin.solver.solving import solve
+
+BOTTOM = -0.5 * np.pi
+
+
+def problem(pin, plate, load_parameter, friction, pin_load="centre", rotation="fixed", plane="strain"):
+    pair = MaterialPair(Material(*pin), Material(*plate), plane)
+    return Problem.from_load_parameter(pair, load_parameter, friction, pin_load, rotation)
+
+
+NARROW = (
+    problem((9, 0.2), (7, 0.2), 400, 0.5),
+    [{"P": 0.38, "Q": -0.22}, {"P": 0.88, "Q": 0.24}, {"P": 0.34, "Q": 0.089}],
+)
+OVAL = (problem((4, 0.3), (40, 0.4), 2, 0.3), [{"P": 0.8, "Q": 0.1, "sxx": 10, "syy": -20}])
+RELIEVED = (
+    problem((4, 0.2), (40, 0.2), 1, 0.2, "body", "free"),
+    [{"P": 0.7, "Q": -0.02, "sxx": -20, "syy": -10}, {"P": 0.5, "Q": -0.07, "sxx": 20}],
+)
+VERY_ROUGH = (problem((1, 0.3), (3, 0.3), 0.1, 1000, "body", "free"), [{"P": 1}, {"Q": 0.5}, {"Q": -0.5}])
+CASES = {"narrow": NARROW, "oval": OVAL, "relieved": RELIEVED, "very rough": VERY_ROUGH}
+
+
+def rate_violation(system, now, status, load_rate):
+    """Largest violation of the conditions on the rates of `status`, in parts of the largest rate."""
+    rates = solve_statuses(system, status, np.zeros(status.size), load_rate, 0.0)
+    mu, closed, stick = system.friction, status != OPEN, status == STICK
+    traction = max(np.abs(rates.pressure).max(), np.abs(rates.shear).max())
+    length = max(np.abs(rates.gap).max(), np.abs(rates.slip).max())
+    touching = (status == OPEN) & (now.gap == 0.0)
+    bare = closed & (now.pressure == 0.0)
+    limit = stick & ~bare & (np.abs(now.shear) >= mu * now.pressure)
+    shear, growth = np.sign(now.shear) * rates.shear, mu * rates.pressure
+    violations = [
+        -rates.gap[touching].min(initial=0.0) / length,
+        -(status * rates.slip)[closed & ~stick].min(initial=0.0) / length,
+        -rates.pressure[bare].min(initial=0.0) / traction,
+        (np.abs(rates.shear) - growth)[bare & stick].max(initial=0.0) / traction,
+        (shear - growth)[limit].max(initial=0.0) / traction,
+    ]
+    return max(violations)
+
+
+@pytest.fixture
+def met(monkeypatch):
+    """The events (system, configuration, load rate, statuses) at which Lemke's method is asked."""
+    events = []
+
+    def remembered(system, now, load_rate):
+        status = settle(system, now, load_rate)
+        events.append((system, now.copy(), load_rate.copy(), status))
+        return status
+
+    monkeypatch.setattr(path, "settle", remembered)
+    return events
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("nodes", [61, 101])
+def test_histories_whose_statuses_cycle_are_solved(name, nodes, met):
+    case, history = CASES[name]
+    result = solve(case, history, nodes=nodes)
+    assert result.complete
+    assert all(max(state.residuals.values()) < 1e-12 for state in result)
+    for system, now, load_rate, status in met:
+        if status is not None:
+            assert rate_violation(system, now, status, load_rate) < 1e-9
+
+
+def test_lemke_finds_the_only_statuses_among_all_combinations(met):
+    for name, nodes in (("narrow", 61), ("narrow", 101), ("oval", 61), ("relieved", 101)):
+        case, history = CASES[name]
+        solve(case, history, nodes=nodes)
+    compared = 0
+    for system, now, load_rate, status in met:
+        limit = np.flatnonzero(
+            now.closed & (now.pressure > 0.0) & (np.abs(now.shear) >= system.friction * now.pressure)
+        )
+        bare = np.where(now.closed, now.pressure == 0.0, now.gap == 0.0)
+        if limit.size > 11 or bare.any() or status is None:
+            continue
+        good = []
+        for slipping in itertools.product([False, True], repeat=limit.size):
+            trial = now.status.copy()
+            trial[limit] = np.where(slipping, -np.sign(now.shear[limit]), STICK)
+            if solve_statuses(system, trial, now.slip, now.load, 0.0) is None:
+                continue
+            if rate_violation(system, now, trial, load_rate) < 1e-9:
+                good.append(trial)
+        assert len(good) == 1
+        assert np.array_equal(good[0], status)
+        compared += 1
+    assert compared >= 2
+
+
+@pytest.mark.parametrize("name", ["narrow", "relieved"])
+def test_increments_tend_to_the_path_beyond_such_events(name):
+    """First order as a whole; single numbers of increments may be lucky."""
+    case, history = CASES[name]
+    exact = solve(case, history, nodes=101)
+    differences = []
+    for increments in (100, 400, 1600):
+        steps = solve(case, history, grid=exact.grid, method="increment", increments=increments)
+        last, end = steps[-1], exact[-1]
+        differences.append(np.abs(last.shear - end.shear).sum() / np.abs(end.pressure).sum())
+    assert differences[2] < differences[0] / 6.0
+    assert differences[2] < 2e-3
+
+
+def test_statuses_that_are_left_alone_settle_without_lemke(met, titanium_in_aluminium):
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    result = solve(case, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=101)
+    assert not met
+    assert result.statistics["resettled"] == result.statistics["jumps"] == 0
+
+
+def test_jumps_are_counted_and_end_in_states(met):
+    case, history = VERY_ROUGH
+    result = solve(case, history, nodes=61)
+    assert result.statistics["jumps"] > 0
+    assert result.statistics["resettled"] >= result.statistics["jumps"]
+
+
+def test_too_many_jumps_end_the_history(monkeypatch):
+    monkeypatch.setattr(path, "MOST_JUMPS", 2)
+    case, history = VERY_ROUGH
+    with pytest.raises(NoEquilibriumError, match="no equilibrium is near: the pin snaps"):
+        solve(case, history, nodes=61)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_finite_step_is_an_implicit_increment(titanium_in_aluminium, friction, closed):
+    """Both solve the same problem. Where the increment's iteration ends, Lemke's method finds its state."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, friction, "body")
+    grid = Grid.circle(61) if closed else Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 41)
+    system = System.build(case, grid, 1.0)
+    nothing, first, last = (
+        np.array([load.get(name, 0.0) for name in LOADS]) for load in ({}, {"P": 1.0}, {"P": 0.9, "Q": 0.2})
+    )
+    start, part = first_contact(system, unloaded_configuration(system), nothing, first)
+    now = PathStep(system, start, first).follow(1.0)
+    assert part < 1.0
+    for load in (0.97 * first, last, 0.3 * first):
+        one, two = FiniteStep(system, now).to(load), implicit_step(system, now, load)
+        assert worst_residual(system, one) < 1e-12
+        if friction > 0.0:
+            assert np.array_equal(one.status, two.status)
+        assert np.array_equal(one.closed, two.closed)
+        for field in ("pressure", "shear", "gap", "slip", "motion"):
+            assert getattr(one, field) == pytest.approx(getattr(two, field), abs=1e-12)
+
+
+def test_without_rates_lemke_finds_none(titanium_in_aluminium):
+    """A frictionless pin in contact at one node can't be held sideways: no statuses give rates."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.0, "body")
+    system = System.build(case, Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 41), 1.0)
+    now = unloaded_configuration(system)
+    now.status[20], now.pressure[20], now.gap[20] = 1, 1.0, 0.0
+    assert settle(system, now, np.eye(len(LOADS))[1]) is None
+    assert settling.lemke(-np.eye(1), np.array([-1.0])) is None
+
+
+def test_the_cap_of_variables(monkeypatch):
+    monkeypatch.setattr(settling, "MOST_VARIABLES", 1)
+    assert settling.lemke(np.eye(2), -np.ones(2)) is None
+
+
+def test_endless_events_are_told_from_cycling_statuses():
+    assert exchange.ENDLESS != exchange.CYCLING
