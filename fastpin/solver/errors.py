@@ -57,3 +57,7 @@ class ConvergenceError(SolveError):
 
 class ArcError(SolveError):
     """The contact reaches an end of the given arc of nodes."""
+
+
+class ResolutionError(ConvergenceError):
+    """The contact is narrower than the nodes of this grid can resolve."""

@@ -18,9 +18,10 @@ from fastpin.solver.configuration import (
     resting_status,
     worst_residual,
 )
-from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError
+from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import hole_gap, put_at_rest, release
+from fastpin.solver.settling import FiniteStep
 from fastpin.states.zones import runs
 
 FIRST_NODES = (2, 4)
@@ -28,6 +29,12 @@ FIRST_NODES = (2, 4)
 
 FIRST_BESIDE = 2
 """Nodes on either side of the nearest node. The iteration for the first contact begins with all these closed."""
+
+NARROW = "at the first load the contact is narrower than the nodes can resolve; use more nodes or leave that load out"
+"""Message where the contact at the first load is narrower than the nodes."""
+
+OUTSIDE = 721
+"""Points of the hole outside an arc at which it may grip a pin without force."""
 
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
@@ -58,19 +65,20 @@ def at_rest(
         If a moment acts on a pin that nothing holds. If the moment is more than friction at a point can carry. If the
         remote stress closes the hole on the pin before the pin is loaded.
     ArcError
-        If the pin touches the hole outside the arc.
+        If the pin touches the hole outside the arc, or is gripped there.
     """
-    begins = 0.0
+    begins, angle = 0.0, 0.0
     force = np.array([after[Q], -after[P]])
     size = float(np.hypot(*force))
+    lowest: np.ndarray | None = None
     if size == 0.0:
         if system.problem.rotation == "free" and after[M] != 0.0:
             raise NoEquilibriumError("a moment acts on the pin, which is not in contact: it spins")
-        angle = 0.0
-        begins = _pinch(system, before, after)
-        if begins >= 1.0:
+        gripped = _grip(system, before, after)
+        if gripped is None:
             return None
-        rest, rest_gap = np.zeros(2), np.full(system.grid.size, system.rest_clearance)
+        begins, rest, lowest = gripped
+        rest_gap = system.rest_clearance + system.motion[: system.grid.size, :2] @ rest
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         limit = system.friction / math.hypot(1.0, system.friction)
@@ -85,12 +93,13 @@ def at_rest(
     if np.isnan(resting.origin).any():
         resting.origin = rest.copy()
     put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
-    nearness = resting.gap
-    if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
-        nearness = system.loads[: system.grid.size] @ (after - before)
-        if size > 0.0:
-            nearness = nearness - np.cos(system.grid.theta - angle)
-    lowest = _lowest_places(system, nearness)
+    if lowest is None or np.ptp(resting.gap) == 0.0:
+        nearness = resting.gap
+        if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
+            nearness = system.loads[: system.grid.size] @ (after - before)
+            if size > 0.0:
+                nearness = nearness - np.cos(system.grid.theta - angle)
+        lowest = _lowest_places(system, nearness)
     if not system.grid.closed and not 0 < lowest[0] < system.grid.size - 1:
         raise ArcError("the pin rests on the hole outside the arc; give a wider one, or none")
     offsets = np.arange(-FIRST_BESIDE, FIRST_BESIDE + 1)
@@ -139,8 +148,8 @@ def first_contact(
     ------
     NoEquilibriumError
         See :func:`at_rest`.
-    ConvergenceError
-        If no first contact was found on this grid.
+    ResolutionError
+        If the contact is narrower than the nodes.
     ArcError
         If the pin touches the hole outside the arc or at its end.
     """
@@ -191,15 +200,45 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     return optimum.x, system.rest_clearance + system.motion[: system.grid.size, :2] @ optimum.x
 
 
-def _pinch(system: System, before: np.ndarray, after: np.ndarray) -> float:
-    """Fraction of the step at which the shrinking hole touches the concentric pin; 1 if they do not touch."""
-    fine = np.linspace(-math.pi, math.pi, 1441)
-    first, last = hole_gap(system, before, fine)[0], hole_gap(system, after, fine)[0]
-    touching = last < 0.0
-    if not touching.any():
-        return 1.0
-    drop = first[touching] - last[touching]
-    return float(np.min(np.clip(first[touching] / drop, 0.0, 1.0)))
+def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float, np.ndarray, np.ndarray] | None:
+    """Find where the shrinking hole grips a pin without force: a linear programme of the rigid pin on the nodes.
+
+    The pin is free as long as there is a position at which no node penetrates it.
+
+    Returns
+    -------
+    (float, ndarray, ndarray) or None
+        The fraction of the step at which the hole grips the pin, the position of the pin's centre there, shape (2,),
+        and the nodes that hold it. None if the pin stays free.
+
+    Raises
+    ------
+    ArcError
+        If the hole grips the pin outside the arc.
+    """
+    theta = system.grid.theta
+    if not system.grid.closed:  # the rest of the hole
+        beyond = np.linspace(theta[-1], theta[0] + 2.0 * math.pi, OUTSIDE)[1:-1]
+        theta = np.r_[theta, beyond]
+    first, last = hole_gap(system, before, theta)[0], hole_gap(system, after, theta)[0]
+    size = max(float(np.abs(first).max()), float(np.abs(last).max()), 1e-300)
+    rows = np.column_stack([first - last, np.cos(theta), np.sin(theta)]) / size
+    optimum = scipy.optimize.linprog(
+        [-1.0, 0.0, 0.0], rows, first / size, bounds=[(0.0, 1.0), (None, None), (None, None)]
+    )
+    if not optimum.success:  # the hole is too narrow already
+        return 0.0, np.zeros(2), _lowest_places(system, first[: system.grid.size])
+    if optimum.x[0] >= 1.0:
+        return None
+    held = np.flatnonzero(optimum.ineqlin.marginals < -1e-9)
+    if held.max() >= system.grid.size:
+        raise ArcError("the hole grips the pin outside the arc; give a wider one, or none")
+    place = optimum.x + np.linalg.lstsq(rows[held], first[held] / size - rows[held] @ optimum.x)[0]  # to all digits
+    # Opposite nodes leave the pin free across. Then it stays as near to the middle as it can.
+    across = np.r_[place[0], np.linalg.lstsq(rows[held, 1:], first[held] / size - rows[held, 0] * place[0])[0]]
+    if np.all(rows @ across <= first / size + 1e-12):
+        place = across
+    return float(np.clip(place[0], 0.0, 1.0)), place[1:], held
 
 
 def _first_patch(
@@ -226,7 +265,7 @@ def _first_patch(
         fraction = begins + part * (1.0 - begins)
         load = before + fraction * (after - before)
         rough = self_similar or not load[[P, Q]].any() or (system.problem.rotation == "free" and load[M] != 0.0)
-        found = implicit_step(system, resting, load) if rough else _shearless_step(system, resting, load)
+        found = _one_step(system, resting, load) if rough else _shearless_step(system, resting, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             part *= 0.7
             continue
@@ -235,13 +274,12 @@ def _first_patch(
             best = (count, found, fraction)
         if self_similar or least <= count <= most or (count < least and part == 1.0):
             break
-        part = min(max(part * min(max((wanted / count) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
+        part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
     if best is None:
-        raise ConvergenceError(
-            "no first contact was found: at the first load the contact is narrower than the nodes can resolve; use "
-            "more nodes or leave that load out"
-        )
-    _, found, fraction = best
+        raise ResolutionError(NARROW)
+    count, found, fraction = best
+    if fraction == 1.0 and count <= most // 2 and not self_similar:
+        raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
     dissipated = dissipation_between(system, resting, found)
@@ -250,13 +288,18 @@ def _first_patch(
     return found, fraction
 
 
+def _one_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
+    """The implicit increment from rest; by Lemke's method where its iteration fails."""
+    return implicit_step(system, resting, load) or FiniteStep(system, resting).to(load)
+
+
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
     """The implicit increment without friction. After it the closed nodes stick where they are."""
     smooth, start, held_load = system.without_friction(), resting.copy(), load.copy()
     start.status[start.closed] = resting_status(smooth)
     if system.problem.rotation == "free":
         held_load[ROTATION] = resting.motion[2]
-    found = implicit_step(smooth, start, held_load)
+    found = _one_step(smooth, start, held_load)
     if found is not None:
         found.status[found.closed] = resting_status(system)
         found.load = load
@@ -270,9 +313,10 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     square of the contact's half-width.
     """
     force = float(np.hypot(change[Q], change[P]))
-    theta = system.grid.theta[np.argmin(resting.gap)]
+    nearest = int(np.argmin(resting.gap))
+    theta = system.grid.theta[nearest]
     gap, _, curvature = hole_gap(system, resting.load, theta)
-    half = 2.5 * float(np.median(system.grid.weights))
+    half = 2.5 * _width(system, nearest)
     bend = max(float(gap + curvature), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
@@ -280,3 +324,12 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     else:
         part = math.pi * bend * half**2 / force
     return min(max(part, LEAST_PART), 1.0)
+
+
+def _width(system: System, node: int) -> float:
+    """Spacing of the nodes round a node, rad: the largest of the nodes that the first contact may close."""
+    if system.grid.uniform:
+        return float(np.median(system.grid.weights))
+    beside = np.arange(node - FIRST_BESIDE, node + FIRST_BESIDE + 1)
+    n = system.grid.size
+    return float(system.grid.weights[beside % n if system.grid.closed else beside.clip(0, n - 1)].mean())

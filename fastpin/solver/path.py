@@ -28,7 +28,7 @@ from fastpin.solver.configuration import (
     work_between,
     worst_residual,
 )
-from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import release
 from fastpin.solver.settling import FiniteStep, settle
@@ -460,7 +460,9 @@ class PathStepper:
         NoEquilibriumError
             If nothing holds the pin any more.
         ConvergenceError
-            If the statuses do not settle, or the contact shrinks to a few nodes and is lost between them.
+            If the statuses do not settle.
+        ResolutionError
+            If the contact shrinks to a few nodes and is lost between them.
         ArcError
             If the contact reaches an end of the arc.
         """
@@ -536,7 +538,7 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
     if code == exchange.ARC_END:
         return ArcError(CUT_OFF)
     if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
-        return ConvergenceError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
+        return ResolutionError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == exchange.NO_SUPPORT:
         return NoEquilibriumError("nothing holds the pin any more: it spins, slides away or loses contact")
     if code == exchange.CYCLING:
