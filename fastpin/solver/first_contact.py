@@ -8,6 +8,8 @@ import numpy as np
 import scipy
 
 from fastpin.elasticity.system import System
+from fastpin.kernels.status import STICK
+from fastpin.model.angles import angle_between
 from fastpin.model.loads import ROTATION, M, P, Q
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
@@ -20,6 +22,7 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
+from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import hole_gap, put_at_rest, release
 from fastpin.solver.settling import FiniteStep
 from fastpin.states.zones import runs
@@ -35,6 +38,12 @@ NARROW = "at the first load the contact is narrower than the nodes can resolve; 
 
 OUTSIDE = 721
 """Points of the hole outside an arc at which it may grip a pin without force."""
+
+GROWN_NODES = 19
+"""Nodes of the young contact from which the slip of the first nodes is found."""
+
+GROWN_FIT = np.arange(4, 7)
+"""Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
 
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
@@ -282,6 +291,8 @@ def _first_patch(
         raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
+    if not rough and system.friction > 0.0:
+        found = _with_grown_slip(system, found, before + begins * (after - before)) or found
     dissipated = dissipation_between(system, resting, found)
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated
@@ -304,6 +315,40 @@ def _shearless_step(system: System, resting: Configuration, load: np.ndarray) ->
         found.status[found.closed] = resting_status(system)
         found.load = load
     return found
+
+
+def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> Configuration | None:
+    """The first patch with the slip that its nodes would have if the contact had grown to them from a point.
+
+    A young contact grows in proportion: nodes at a distance x from the first node stick with a slip (c_0 + c_1 x) x^2,
+    on either side. The path is followed on trial, in the direction of the load, until the contact has
+    :data:`GROWN_NODES` nodes. The nodes :data:`GROWN_FIT` then give the two numbers of their side.
+
+    `begin` is the load at which the contact begins. Returns None if those nodes do not all stick.
+    """
+    n, first = system.grid.size, int(np.argmax(patch.pressure))
+    growth = (GROWN_NODES / np.count_nonzero(patch.closed)) ** 2
+    try:
+        grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
+    except StepLostError:
+        return None
+    new = patch.copy()
+    for sense in (-1, 1):
+        fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
+        if system.grid.closed:
+            fitted, inner = fitted % n, inner % n
+        elif fitted.min() < 0 or fitted.max() >= n:
+            return None
+        if np.any(grown.status[fitted] != STICK) or grown.status[first] != STICK:
+            return None
+        away = angle_between(system.grid.theta[fitted], system.grid.theta[first])
+        slip = (grown.slip[fitted] - grown.slip[first]) / away**2
+        linear, constant = np.polyfit(away, slip, 1)
+        inner = inner[patch.closed[inner]]
+        away = angle_between(system.grid.theta[inner], system.grid.theta[first])
+        new.slip[inner] = patch.slip[first] + (constant + linear * away) * away**2
+    found = _one_step(system, new, patch.load)
+    return None if found is None or worst_residual(system, found) > MAX_RESIDUAL else found
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:
