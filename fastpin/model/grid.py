@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
@@ -15,6 +17,13 @@ from fastpin.model.checks import number, numbers, true_or_false, whole_number
 LEAST_NODES = 5
 MAX_NODES = 20_000
 """Limits of the number of nodes. The matrices hold 4 nodes^2 numbers: 13 GB for the largest grid."""
+
+
+MOST_WIDTH = 2.0
+"""Largest width of a place of a graded grid, rad. Wider contacts need no grading."""
+
+GRADED_SAMPLES = 200
+"""Angles round each place at which the spacing of a graded grid is computed."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,8 +83,42 @@ class Grid:
         count = whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)
         return cls(number("start", start) + 2.0 * math.pi * np.arange(count) / count, closed=True)
 
+    @classmethod
+    def graded(cls, places: Sequence[tuple[float, float]], nodes: int, node_at: float | None = None) -> Grid:
+        """A whole circle of nodes that are dense at some places, where contacts are narrow.
+
+        At each place the spacing is the place's width divided by the same number m. Away from it the spacing grows in
+        proportion to the distance, by 2/m from one node to the next. :func:`graded_size` gives the nodes for an m.
+
+        Parameters
+        ----------
+        places : sequence of (float, float)
+            Angle and width of each place, rad; the widths are positive.
+        nodes : int
+        node_at : float, optional
+            Angle at which a node lies, rad.
+
+        Raises
+        ------
+        InputError
+            If there are no places, a width is not positive, or the number of nodes is out of range.
+        """
+        count = whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)
+        theta, number_below = _graded_counts(places)
+        shift = 0.0
+        if node_at is not None:
+            turned = theta[0] + (number("node_at", node_at) - theta[0]) % (2.0 * math.pi)
+            shift = float(np.interp(turned, theta, number_below)) / number_below[-1] * count % 1.0
+        wanted = (np.arange(count) + shift) / count * number_below[-1]
+        return cls(scipy.interpolate.PchipInterpolator(number_below, theta)(wanted), closed=True)
+
     def with_nodes(self, nodes: int) -> Grid:
-        """A grid of `nodes` equally spaced nodes on the same arc or circle."""
+        """A grid of `nodes` nodes on the same arc or circle. Its spacings are in proportion to the present ones."""
+        if not self.uniform:
+            ends = np.r_[self.theta, self.theta[0] + 2.0 * math.pi] if self.closed else self.theta
+            places = np.linspace(0.0, ends.size - 1.0, nodes + 1 if self.closed else nodes)
+            finer = scipy.interpolate.PchipInterpolator(np.arange(ends.size), ends)(places)
+            return Grid(finer[:-1] if self.closed else finer, self.closed)
         if self.closed:
             return Grid.circle(nodes, float(self.theta[0]))
         return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
@@ -120,6 +163,30 @@ class Grid:
             total += _half_hat_moment(length, sense)
         total *= np.exp(1j * self.theta)
         return total.real, total.imag
+
+
+def graded_size(places: Sequence[tuple[float, float]], across: float) -> int:
+    """Number of nodes of :meth:`Grid.graded` with `across` nodes on the width of each place."""
+    return math.ceil(across * float(_graded_counts(places)[1][-1]))
+
+
+def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
+    """Angles round the hole, and the number of nodes below each of them, with one node on the width of each place."""
+    pairs = numbers("places", np.array(places, dtype=float))
+    if pairs.ndim != 2 or pairs.shape[1:] != (2,) or not pairs.size or pairs[:, 1].min() <= 0.0:
+        raise InputError("places", "must be angles with positive widths, rad: (angle, width), ...")
+    angles, widths = pairs[:, 0], np.minimum(pairs[:, 1], MOST_WIDTH)
+    away = np.geomspace(0.5, math.pi / float(widths.min()), GRADED_SAMPLES)
+    offsets = np.outer(widths, np.r_[0.0, 0.25, away])
+    start = -1.5 * math.pi
+    samples = (np.concatenate([angles[:, None] + offsets, angles[:, None] - offsets]) - start) % (2.0 * math.pi)
+    steps = np.linspace(0.0, 2.0 * math.pi, GRADED_SAMPLES)
+    theta = np.unique(np.round(np.r_[steps, samples[samples > 0.0]], 13)) + start
+    spacing = np.full(theta.size, MOST_WIDTH)
+    for angle, width in zip(angles, widths, strict=True):
+        spacing = np.minimum(spacing, np.maximum(width, 2.0 * np.abs(angle_between(theta, angle))))
+    density = 1.0 / spacing
+    return theta, np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(theta))]
 
 
 def _half_hat_moment(length: np.ndarray, sense: float) -> np.ndarray:

@@ -6,19 +6,24 @@ Hertz's contact gives a first estimate. Coarse runs then find all places of the 
 from __future__ import annotations
 
 import itertools
+import logging
 import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from fastpin.elasticity.system import System
-from fastpin.model.grid import Grid
+from fastpin.model.angles import angle_between
+from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.run import Progress, Run
+from fastpin.solver.survey import survey
+
+log = logging.getLogger(__name__)
 
 COARSE_NODES = 121
 """Nodes of a coarse run."""
@@ -28,6 +33,12 @@ WHOLE = 5.6
 
 MOST_CORNERS = 200
 """Corners that a coarse run follows. Of a longer history it follows the extreme corners only."""
+
+LEAST_ACROSS = 20
+"""Nodes across the narrowest contact of a graded grid, at least."""
+
+MOST_GRADED = 2000
+"""Nodes of a graded grid, at most, unless the user asks for more."""
 
 DIRECTIONS = 16
 """Directions in the plane of two loads. The outermost corner in each direction is an extreme corner."""
@@ -65,6 +76,43 @@ def candidate_grids(
         arc = _widened(arc, 1.25)
     start = -1.5 * math.pi
     yield Grid.circle(nodes, start + _shift_to_node(start, 2.0 * math.pi / nodes, values))
+
+
+def narrow_grid(
+    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
+) -> Grid | None:
+    """A graded grid with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
+
+    Parameters
+    ----------
+    problem, values, force, progress
+        See :func:`candidate_grids`.
+    nodes : int
+        Number of nodes. The grid has more where so many are needed, up to :data:`MOST_GRADED`.
+
+    Returns
+    -------
+    Grid or None
+        None if the history could not be surveyed, or takes too many nodes.
+    """
+    places = survey(problem, _outline(values), force, progress)
+    if not places:
+        return None
+    distinct = _distinct_places(places)
+    needed = graded_size(distinct, LEAST_ACROSS)
+    if needed > max(MOST_GRADED, nodes):
+        log.info("the narrow contacts of this history take %d nodes: too many", needed)
+        return None
+    return Grid.graded(distinct, max(nodes, needed), first_direction(values))
+
+
+def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The places without those that lie on a narrower one."""
+    kept: list[tuple[float, float]] = []
+    for angle, width in sorted(places, key=lambda place: place[1]):
+        if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in kept):
+            kept.append((angle, width))
+    return kept
 
 
 def _touched_arc(

@@ -22,8 +22,8 @@ from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import REMOTE, M, P, Q
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.arc import candidate_grids
-from fastpin.solver.errors import CUT_OFF, ArcError, Interrupted
+from fastpin.solver.arc import candidate_grids, narrow_grid
+from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Progress, Recorder, Run
@@ -79,10 +79,11 @@ class Task:
         check_arc(self.problem, self.options)
         check_keep(self.history, self.options)
 
-    def follow(self, recorder: Recorder, beyond: Grid | None = None) -> None:
-        """Follow the history from no load, on the first grid that is wide enough.
+    def follow(self, recorder: Recorder, unfit: tuple[Grid, SolveError] | None = None) -> None:
+        """Follow the history from no load, on the first grid that is wide enough and fine enough.
 
-        `beyond` is a grid that was too narrow in an earlier run. With it only the candidates after this grid are tried.
+        `unfit` is a grid on which an earlier run ended, and its error. With it only the candidates after this grid are
+        tried.
 
         Raises
         ------
@@ -93,21 +94,38 @@ class Task:
         """
         with deferred_interrupts() as request, _one_blas_thread():
             progress = self._stoppable_progress(request)
-            given = None if beyond is not None else self.grid
-            for grid in replace(self, grid=given).grids(progress):
-                if beyond is not None:
-                    if np.allclose(grid.theta, beyond.theta, rtol=0.0, atol=1e-9):
-                        beyond = None
-                    continue
-                log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
-                try:
-                    self._follow_on(grid, self.force, recorder, None, progress)
-                    return
-                except ArcError:
-                    if self.options.arc is not None or given is not None:
-                        raise
-                    log.info("the contact reaches an end of the arc: once more on a wider one")
-        raise ArcError(CUT_OFF)  # the grid `beyond` is none of the present candidates
+            given = None if unfit is not None else self.grid
+            task = replace(self, grid=given)
+            try:
+                task._follow_candidates(recorder, progress, unfit)
+            except ConvergenceError as error:
+                if given is not None or self.options.arc is not None or self.options.method != "path":
+                    raise
+                grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options.nodes, progress)
+                if grid is None or (unfit is not None and _is_same(grid, unfit[0])):
+                    raise
+                log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
+                self._follow_on(grid, self.force, recorder, None, progress)
+
+    def _follow_candidates(self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None) -> None:
+        """Follow the history on the candidates one after the other, until one is wide enough."""
+        if unfit is not None and not isinstance(unfit[1], ArcError):
+            raise unfit[1]
+        beyond = None if unfit is None else unfit[0]
+        for grid in self.grids(progress):
+            if beyond is not None:
+                if _is_same(grid, beyond):
+                    beyond = None
+                continue
+            log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
+            try:
+                self._follow_on(grid, self.force, recorder, None, progress)
+                return
+            except ArcError:
+                if self.options.arc is not None or self.grid is not None:
+                    raise
+                log.info("the contact reaches an end of the arc: once more on a wider one")
+        raise ArcError(CUT_OFF)  # the grid of `unfit` is none of the present candidates
 
     def grids(self, progress: Progress | None = None) -> Iterator[Grid]:
         """Yield the given grid, or candidates to try until the contact keeps clear of the ends of the arc."""
@@ -185,6 +203,11 @@ class Task:
                 self.progress(done, total)
 
         return progress
+
+
+def _is_same(one: Grid, two: Grid) -> bool:
+    """Whether two grids have the same nodes, up to rounding."""
+    return one.size == two.size and bool(np.allclose(one.theta, two.theta, rtol=0.0, atol=1e-9))
 
 
 def as_history(history: LoadHistory | Sequence[dict[str, float]]) -> LoadHistory:

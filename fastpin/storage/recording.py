@@ -14,7 +14,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.errors import ArcError
+from fastpin.solver.errors import ArcError, ConvergenceError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
@@ -121,10 +121,10 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
         assert task.grid is not None
         try:
             task.continue_from(writer, restart, task.grid)
-        except ArcError:
+        except (ArcError, ConvergenceError) as error:
             if not writer.chosen_arc:
                 raise
-            task.follow(writer, beyond=task.grid)
+            task.follow(writer, unfit=(task.grid, error))
 
 
 def stored_error(path: str | Path) -> str | None:

@@ -1,0 +1,200 @@
+"""A survey of a history: all places where the contact ever is, and its width there.
+
+Some contacts are too narrow for equally spaced nodes: contacts at small loads, far-travelled contacts at large load
+parameters. The survey follows the history roughly. It begins each contact on a grid that is dense where the contact
+begins. When the contact has moved or changed its width, it continues on another grid. Slip is interpolated from grid
+to grid. So its states are only good enough to know where the nodes must be in the exact run.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import OPEN
+from fastpin.model.grid import Grid, graded_size
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS, P, Q, complete_load
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.solver.configuration import Configuration, resting_status
+from fastpin.solver.errors import SolveError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.repeats import Repeats
+from fastpin.solver.rest import hole_gap, unloaded_configuration
+from fastpin.solver.result import Restart
+from fastpin.solver.run import Progress, Run
+from fastpin.solver.settling import FiniteStep
+from fastpin.states.zones import runs
+
+log = logging.getLogger(__name__)
+
+Place = tuple[float, float]
+"""Angle of the middle and width of a contact, rad."""
+
+ACROSS = 24
+"""Nodes across the contact on a grid of the survey."""
+
+FEWEST, MOST = 11, 60
+"""Least and largest number of nodes across the contact. Outside these limits another grid takes over."""
+
+LARGEST_PART = 0.25
+"""Largest part of a step that is followed on one grid."""
+
+LEAST_PART = 1e-7
+"""Smallest part of a step that is tried."""
+
+MOST_TRIALS = 400
+"""Trials for one step, at most."""
+
+LEAST_WIDTH = 1e-6
+"""Smallest width of a contact, rad. A narrower one is not resolved."""
+
+
+def survey(problem: Problem, values: np.ndarray, force: float, progress: Progress | None = None) -> list[Place] | None:
+    """Find all places where the contact is on the way through a history.
+
+    Parameters
+    ----------
+    problem : Problem
+    values : ndarray, shape (corners, loads)
+        Loads at the corners, SI.
+    force : float
+        The reference force, N/m.
+    progress : callable, optional
+        Called as ``progress(done_steps, all_steps)``.
+
+    Returns
+    -------
+    list of (float, float), or None
+        Angle and width of each contact that was met, rad. None if the history could not be followed.
+    """
+    followed = _Survey(problem, force)
+    before = np.zeros(values.shape[1])
+    for step, corner in enumerate(values):
+        target = complete_load(corner, before)
+        if not followed.follow(before, target):
+            log.info("the survey of narrow contacts ends in step %d", step + 1)
+            return None
+        before = target
+        if progress is not None:
+            progress(step + 1, len(values))
+    return followed.places
+
+
+class _Survey:
+    """The contact on its present grid, and the places where it was."""
+
+    def __init__(self, problem: Problem, force: float) -> None:
+        self.places: list[Place] = []
+        self._problem, self._force = problem, force
+        self._system = System.build(problem, Grid.circle(10 * ACROSS + 1), force)
+        self._now = unloaded_configuration(self._system)
+        self._load = np.zeros(len(LOADS))  # SI
+        self._part = LARGEST_PART
+
+    def follow(self, before: np.ndarray, target: np.ndarray) -> bool:
+        """Follow a step between two loads, SI. Returns whether its end was reached."""
+        done, finer = 0.0, 1.0
+        for _ in range(MOST_TRIALS):
+            if done >= 1.0:
+                return True
+            stop = min(1.0, done + self._part)
+            load = target if stop == 1.0 else before + stop * (target - before)
+            if not self._now.closed.any():
+                self._look_where_it_begins(load, finer)
+            if self._advance(load):
+                done, finer, self._part = stop, 1.0, min(1.5 * self._part, LARGEST_PART)
+                continue
+            self._part *= 0.5
+            if self._part < LEAST_PART:
+                return False
+            if self._now.closed.any():
+                finer *= 0.5
+                self._look_at_contact(finer)
+        return False
+
+    def _advance(self, load: np.ndarray) -> bool:
+        """Follow the load, SI, on the present grid. Returns whether the contact was never lost between the nodes."""
+        start = Restart(0, self._load, self._force, replace(self._now), 0.0, 0.0, Repeats(), {}, {})
+        corner = {name: float(value) for name, value in zip(LOADS, load, strict=True)}
+        run = Run(LoadHistory([corner]), self._system, SolveOptions(), start=start)
+        try:
+            run.follow()
+        except SolveError:
+            return False
+        patches = runs(self._system.grid, run.now.closed)
+        counts = [patch.size for patch in patches]
+        if counts and min(counts) < 3:
+            return False
+        self._now, self._load = run.now, load
+        self.places += [self._place(patch) for patch in patches]
+        if counts and (min(counts) < FEWEST or min(counts) > MOST):
+            self._look_at_contact(1.0)
+        return True
+
+    def _place(self, patch: np.ndarray) -> Place:
+        """Middle and width of a patch of closed nodes."""
+        left, right = self._system.grid.knots()
+        theta = self._system.grid.theta
+        first, last = theta[patch[0]] + left[patch[0]], theta[patch[-1]] + right[patch[-1]]
+        width = (0.5 * (last - first)) % (2.0 * math.pi) or 2.0 * math.pi
+        return 0.5 * first + 0.5 * width, max(width, LEAST_WIDTH)
+
+    def _look_at_contact(self, finer: float) -> None:
+        """Go to a grid that is dense where the contact is now, `finer` times the usual spacing."""
+        places = [self._place(patch) for patch in runs(self._system.grid, self._now.closed)]
+        self._change_grid([(angle, finer * width) for angle, width in places])
+
+    def _look_where_it_begins(self, load: np.ndarray, finer: float) -> None:
+        """Go to a grid that is dense where a force will press the floating pin on the hole, on the way to `load`."""
+        force = math.hypot(load[P], load[Q])
+        if force == 0.0:
+            return
+        angle = math.atan2(-load[P], load[Q])
+        scales = self._system.scales
+        gap, _, curvature = hole_gap(self._system, load / scales.loads, angle)
+        bend = max(float(gap + curvature), 1e-300)
+        half = min(math.sqrt(force / scales.force / (math.pi * bend)), 0.7)
+        self._change_grid([(angle, finer * 2.0 * half)])
+
+    def _change_grid(self, places: Sequence[Place]) -> None:
+        """Go to a graded grid and carry the present contact to it. Without success everything stays."""
+        nodes = min(max(graded_size(places, ACROSS), 4 * ACROSS), 40 * ACROSS)
+        grid = Grid.graded(places, nodes, places[0][0])
+        system = System.build(self._problem, grid, self._force)
+        carried = _carry(self._system, self._now, system)
+        if carried is not None:
+            self._system, self._now = system, carried
+
+
+def _carry(old: System, now: Configuration, system: System) -> Configuration | None:
+    """The contact `now` on another grid under the same load: slip is interpolated, tractions are solved anew."""
+    theta, before = system.grid.theta, old.grid.theta
+
+    def at_nodes(values: np.ndarray) -> np.ndarray:
+        return np.interp(theta, before, values, period=2.0 * math.pi)
+
+    closed = at_nodes(now.closed.astype(float)) >= 0.5
+    away = theta - math.atan2(now.rest[1], now.rest[0])
+    length = math.hypot(*now.rest)
+    new = replace(
+        now,
+        pressure=np.where(closed, at_nodes(now.pressure), 0.0),
+        shear=np.where(closed, at_nodes(now.shear), 0.0),
+        gap=np.where(closed, 0.0, at_nodes(now.gap)),
+        slip=at_nodes(now.slip),
+        status=np.where(closed, resting_status(system), OPEN).astype(np.int8),
+        rest_gap=system.rest_clearance - length + 2.0 * length * np.sin(0.5 * away) ** 2,
+        rest_slip=at_nodes(now.rest_slip),
+    )
+    if not now.closed.any():
+        return new
+    if not closed.any():
+        return None
+    return implicit_step(system, new, now.load) or FiniteStep(system, new).to(now.load)
