@@ -103,12 +103,10 @@ class System:
         """Fill the matrices of `problem` on `grid` with reference force `force`, N/m."""
         pair = problem.pair
         n, theta = grid.size, grid.theta
-        left, right = grid.knots()
         weights = grid.weights
         ratio = pair.alpha_star / pair.beta_star
         uniform_part = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
-        operator = np.empty((2 * n, 2 * n), order="F")
-        influence.fill_operator(theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
+        operator = cls._filled_operator(grid, ratio, uniform_part)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
         cos_double, sin_double = np.cos(2 * theta), np.sin(2 * theta)
@@ -142,6 +140,18 @@ class System:
             operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
         )  # fmt: skip
 
+    @staticmethod
+    def _filled_operator(grid: Grid, ratio: float, uniform_part: float) -> np.ndarray:
+        n = grid.size
+        operator = np.empty((2 * n, 2 * n), order="F")
+        left, right = grid.knots()
+        influence.fill_operator(grid.theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
+        return operator
+
+    def elastic(self, tractions: np.ndarray) -> np.ndarray:
+        """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
+        return self.operator @ tractions
+
     def without_friction(self) -> System:
         """The same system without friction (mu = 0). The rotation is held at the load's ``rotation``."""
         equilibrium, motion_rows, forces = self.equilibrium.copy(), np.zeros((3, 3)), self.forces.copy()
@@ -164,7 +174,7 @@ class System:
         rest_gap : ndarray, shape (n,), or float
             Gap of the rigid pin in the undeformed hole.
         """
-        return self.total_displacement(self.operator @ tractions, motion, load, rest_gap)
+        return self.total_displacement(self.elastic(tractions), motion, load, rest_gap)
 
     def total_displacement(
         self, elastic: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float

@@ -273,7 +273,16 @@ def _hat_series(h_left, h_right, ratio):
     return np.stack([series.real, series.imag], axis=1)
 
 
-def log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross):
+def log_columns(
+    seen: np.ndarray,
+    nodes: np.ndarray,
+    h_left: np.ndarray,
+    h_right: np.ndarray,
+    ratio: float,
+    scale: float,
+    direct: np.ndarray,
+    cross: np.ndarray,
+) -> None:
     """Compute `scale` times the integrals of direct and cross over hats, one column for each hat.
 
     Far from a hat's node, at x = seen - node, the kernels at x - t are

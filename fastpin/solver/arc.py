@@ -34,10 +34,10 @@ WHOLE = 5.6
 MOST_CORNERS = 200
 """Corners that a coarse run follows. Of a longer history it follows the extreme corners only."""
 
-LEAST_ACROSS = 20
+LEAST_ACROSS = 16
 """Nodes across the narrowest contact of a graded grid, at least."""
 
-MOST_GRADED = 2000
+MOST_GRADED = 12_000
 """Nodes of a graded grid, at most, unless the user asks for more."""
 
 DIRECTIONS = 16

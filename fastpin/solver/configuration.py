@@ -169,7 +169,7 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
 def elastic_energy(system: System, configuration: Configuration) -> float:
     """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
     tractions = np.r_[configuration.pressure, configuration.shear]
-    elastic = 0.5 * (system.operator @ tractions) + system.loads @ configuration.load
+    elastic = 0.5 * system.elastic(tractions) + system.loads @ configuration.load
     return float(np.sum(np.r_[system.weights, system.weights] * tractions * elastic))
 
 
@@ -190,7 +190,7 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
     n, mu = system.grid.size, system.friction
     pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
     tractions = np.r_[pressure, shear]
-    elastic = system.operator @ tractions
+    elastic = system.elastic(tractions)
     true = system.total_displacement(elastic, configuration.motion, configuration.load, configuration.rest_gap)
     closed, stick = status != OPEN, status == STICK
     slipping = closed & ~stick

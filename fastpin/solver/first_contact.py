@@ -7,6 +7,7 @@ import math
 import numpy as np
 import scipy
 
+from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import angle_between
@@ -25,6 +26,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import hole_gap, put_at_rest, release
 from fastpin.solver.settling import FiniteStep
+from fastpin.solver.window import Window
 from fastpin.states.zones import runs
 
 FIRST_NODES = (2, 4)
@@ -162,10 +164,15 @@ def first_contact(
     ArcError
         If the pin touches the hole outside the arc or at its end.
     """
-    resting = at_rest(system, floating, before, after)
-    if resting is None:
+    found = at_rest(system, floating, before, after)
+    if found is None:
         return release(system, floating, after), 1.0
-    return _first_patch(system, *resting, before, after)
+    resting, begins = found
+    if not isinstance(system, LargeSystem):
+        return _first_patch(system, resting, begins, before, after)
+    window = Window(system, resting.closed)
+    patch, part = _first_patch(window.system, window.cut(resting), begins, before, after)
+    return window.paste(patch, resting), part
 
 
 def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
@@ -23,6 +24,7 @@ from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, R
 from fastpin.solver.rest import release, unloaded_configuration
 from fastpin.solver.result import Restart
 from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
+from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
@@ -357,6 +359,8 @@ def _stepper(system: System, options: SolveOptions, statistics: dict[str, float]
     if options.method == "increment":
         assert options.increments is not None
         return IncrementStepper(system, options.increments, statistics)
+    if isinstance(system, LargeSystem):
+        return WindowStepper(system, statistics)
     return PathStepper(system, statistics)
 
 

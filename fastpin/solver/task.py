@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
+from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.case import check_arc, check_keep
@@ -186,7 +187,8 @@ class Task:
         self, grid: Grid, force: float, recorder: Recorder | None, start: Restart | None, progress: Progress
     ) -> Run:
         """Follow the history on one grid, from `start` or from no load."""
-        system = System.build(self.problem, grid, force)
+        build = build_system if self.options.method == "path" else System.build
+        system = build(self.problem, grid, force)
         run = Run(self.history, system, self.options, recorder, progress, start, self.stops)
         if recorder is not None:
             recorder.begin(run)

@@ -1,0 +1,62 @@
+"""A system of many nodes of which few are in contact at a time: its operator is never filled as a whole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.kernels import influence
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+
+COLUMNS = 64
+"""Columns of the operator that are computed together."""
+
+MOST_DENSE = 400
+"""Nodes of unequal spacing, at most, for which the whole operator is filled."""
+
+
+@dataclass(frozen=True, eq=False)
+class LargeSystem(System):
+    """A system without a filled operator. Its product computes the columns of the nodes that carry tractions.
+
+    Solvers work on a window: the system of neighbouring nodes, see :meth:`window`. ``operator`` is empty.
+    """
+
+    def elastic(self, tractions: np.ndarray) -> np.ndarray:
+        """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
+        grid, pair = self.grid, self.problem.pair
+        n, scale = grid.size, 1.0 / (4.0 * np.pi)
+        pressure, shear = tractions[:n], tractions[n:]
+        loaded = np.flatnonzero((pressure != 0.0) | (shear != 0.0))
+        left, right = grid.knots()
+        h_left, h_right = grid.theta - left, right - grid.theta
+        expansion = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
+        gap, slip = np.full(n, -scale * expansion * float(self.weights @ pressure)), np.zeros(n)
+        for begin in range(0, loaded.size, COLUMNS):
+            nodes = loaded[begin : begin + COLUMNS]
+            direct, cross = (np.empty((n, nodes.size), order="F") for _ in range(2))
+            influence.log_columns(
+                grid.theta, grid.theta[nodes], h_left[nodes], h_right[nodes], pair.alpha_star / pair.beta_star, scale,
+                direct, cross,
+            )  # fmt: skip
+            gap += direct @ pressure[nodes] + cross @ shear[nodes]
+            slip += direct @ shear[nodes] - cross @ pressure[nodes]
+        return np.r_[gap, slip]
+
+    def window(self, nodes: np.ndarray) -> System:
+        """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
+        turns = np.r_[0, np.cumsum(np.diff(nodes) < 0)]
+        return System.build(self.problem, Grid(self.grid.theta[nodes] + 2.0 * np.pi * turns), self.scales.force)
+
+    @staticmethod
+    def _filled_operator(grid: Grid, ratio: float, uniform_part: float) -> np.ndarray:
+        return np.empty((0, 0))
+
+
+def build_system(problem: Problem, grid: Grid, force: float) -> System:
+    """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due."""
+    large = grid.closed and not grid.uniform and grid.size > MOST_DENSE
+    return (LargeSystem if large else System).build(problem, grid, force)

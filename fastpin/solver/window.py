@@ -1,0 +1,164 @@
+"""A window of neighbouring nodes round the contact. The path is followed on its small system, to the same states.
+
+On a grid with thousands of nodes a narrow contact needs few of them at a time. Nodes outside the window stay open. A
+contact that reaches an end of the window continues on another window. All nodes keep their hats, so nothing is
+interpolated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.elasticity.large import LargeSystem
+from fastpin.kernels.status import OPEN
+from fastpin.solver.configuration import Configuration
+from fastpin.solver.errors import ArcError, ResolutionError
+from fastpin.solver.path import PathStepper
+from fastpin.solver.step import Piece, Position, Report
+
+MARGIN = 48
+"""Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
+
+PENETRATION = 1e-9
+"""Largest penetration of nodes outside the window, in parts of the largest displacement."""
+
+FIELDS = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
+"""Arrays of a configuration with one number for each node."""
+
+
+class Window:
+    """The system of the nodes round a contact, and copies of a configuration to it and back.
+
+    Parameters
+    ----------
+    system : LargeSystem
+    closed : ndarray of bool, shape (n,)
+        Nodes in contact, or about to be.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (k,)
+        The nodes of the window, in their order round the hole.
+    system : System
+        Their system.
+    """
+
+    def __init__(self, system: LargeSystem, closed: np.ndarray) -> None:
+        n = system.grid.size
+        inside = np.flatnonzero(closed)
+        spaces = np.diff(np.r_[inside, inside[0] + n])
+        widest = int(np.argmax(spaces))  # the contact lies between the ends of this open part
+        first, count = int(inside[(widest + 1) % inside.size]), n - int(spaces[widest]) + 1
+        margin = min(max(MARGIN, count), (n - count) // 2)
+        self.nodes = np.arange(first - margin, first + count + margin) % n
+        self._large = system
+        self.system = system.window(self.nodes)
+
+    def cut(self, configuration: Configuration) -> Configuration:
+        """The part of a configuration of all nodes that lies in the window."""
+        return replace(configuration, **{name: getattr(configuration, name)[self.nodes] for name in FIELDS}).copy()
+
+    def paste(self, inside: Configuration, before: Configuration) -> Configuration:
+        """The configuration of all nodes with the part `inside` the window. `before` has the rest of the other nodes.
+
+        Raises
+        ------
+        ResolutionError
+            If the pin penetrates the hole outside the window.
+        """
+        n = self._large.grid.size
+        fields = {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
+        fields |= {name: np.zeros(n) for name in ("pressure", "shear")}
+        fields["status"] = np.full(n, OPEN, dtype=np.int8)
+        for name, values in fields.items():
+            values[self.nodes] = getattr(inside, name)
+        tractions = np.r_[fields["pressure"], fields["shear"]]
+        true = self._large.displacement(tractions, inside.motion, inside.load, fields["rest_gap"])
+        gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
+        gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
+        outside = np.delete(true[:n], self.nodes)
+        if outside.size and outside.min() < -PENETRATION * float(np.abs(true).max()):
+            raise ResolutionError("the pin touches the hole at a second place, far from the first")
+        return replace(inside, **fields, gap=gap, slip=slip)
+
+
+class WindowStepper:
+    """The path solver on windows of a large grid: it follows a step from window to window.
+
+    Parameters
+    ----------
+    system : LargeSystem
+    statistics : dict of str to float
+        Statistics of the run, see :class:`fastpin.solver.path.PathStepper`.
+    """
+
+    def __init__(self, system: LargeSystem, statistics: dict[str, float]) -> None:
+        self._system = system
+        self._statistics = statistics
+        self._window: Window | None = None
+        self._stepper: PathStepper | None = None
+        self._inside: Position | None = None
+
+    def begin_piece(self) -> None:
+        """Prepare for the next straight piece."""
+        if self._stepper is not None:
+            self._stepper.begin_piece()
+
+    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+        """Follow a piece as :meth:`PathStepper.advance` does, from window to window.
+
+        Raises
+        ------
+        NoEquilibriumError, ConvergenceError, ResolutionError
+            See :meth:`fastpin.solver.path.PathStepper.advance`.
+        """
+        lost_at = -1.0
+        while position.now.closed.any() and not np.array_equal(position.now.load, piece.load_at(stop)):
+            inside = self._begin(position)
+            assert self._stepper is not None
+            try:
+                self._stepper.advance(inside, piece, stop, report)
+            except ArcError:
+                if inside.reached == lost_at:
+                    raise
+                lost_at = inside.reached
+                self._paste(position)
+                self.leave(position)
+                self._window = None
+            else:
+                self._paste(position)
+
+    def leave(self, position: Position) -> None:
+        """End the present path, and note the nodes that it touched."""
+        if self._inside is None:
+            return
+        assert self._stepper is not None
+        assert self._window is not None
+        self._stepper.leave(self._inside)
+        position.touched[self._window.nodes] |= self._inside.touched
+        self._inside = None
+
+    def _begin(self, position: Position) -> Position:
+        """The position inside the window; a new window if the contact is not well inside the present one."""
+        if self._inside is not None:
+            return self._inside
+        closed = position.now.closed
+        window = self._window
+        if window is None or closed.sum() != closed[window.nodes[2:-2]].sum():
+            window = self._window = Window(self._system, closed)
+            self._stepper = PathStepper(window.system, self._statistics)
+        self._inside = Position(
+            window.cut(position.now), position.touched[window.nodes], position.reached, position.fresh
+        )
+        return self._inside
+
+    def _paste(self, position: Position) -> None:
+        """Bring `position` to where the position inside the window is."""
+        assert self._window is not None
+        assert self._inside is not None
+        position.now = self._window.paste(self._inside.now, position.now)
+        position.reached, position.fresh = self._inside.reached, self._inside.fresh
+        if not position.now.closed.any():
+            self.leave(position)
