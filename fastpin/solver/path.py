@@ -39,11 +39,20 @@ from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknown
 MOST_REBUILDS = 400
 """Rebuilds of the tableau in one piece of a step, and once more for each settling by Lemke's method, at most."""
 
+MOST_EVENTS = 200
+"""Events in one piece of a step, at most, for each node."""
+
 MOST_RESETTLINGS = 20
 """Settlings by Lemke's method in one piece of a step, at most, for each node."""
 
 MOST_DRIFT = 1e-10
 """Largest relative error of gap and slip, checked after every chunk of updates. Above it the tableau is rebuilt."""
+
+SEVERE_DRIFT = 1e-6
+"""Relative error of gap and slip with which events may have been missed. The step goes back to the last check."""
+
+CAREFUL_ROOM = (24, 7)
+"""Updates of the tableau before it is rebuilt, after a first and a second severe drift."""
 
 ROUNDING = 5e-15
 """Relative error of gap, slip and equilibrium that is rounding. Corrections end below it."""
@@ -164,6 +173,8 @@ class PathStep:
         self._sampled = system.operator[self._sample]
         self.rebuilds = 0
         self.resettled = 0
+        self._room: int | None = None
+        self._remember()
         self._columns: Columns
         unknowns = self._sticking_after_reversal()
         if unknowns is None:
@@ -207,7 +218,7 @@ class PathStep:
         while True:
             code = exchange.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.grid.closed, self._typical, stop, 1000 * n, self._all_at_once,
+                system.friction, system.grid.closed, self._typical, stop, MOST_EVENTS * n, self._all_at_once,
             )  # fmt: skip
             updates = int(counts[exchange.UPDATES])
             if code == exchange.STALE:
@@ -215,18 +226,28 @@ class PathStep:
                     checked = updates // exchange.CHUNK
                     if report is not None:
                         report(self.fraction)
-                    if self._has_drifted():
+                    drift = self._drift()
+                    if drift > SEVERE_DRIFT and self._go_back():
+                        checked = 0
+                        continue
+                    if not drift <= MOST_DRIFT:
                         self._mend()
                         checked = 0
                         continue
+                    self._remember()
                 self._columns.refresh(int(counts[exchange.NEEDED_COLUMN]), updates)
             elif code in (exchange.REBUILD, exchange.ALL_AT_ONCE):
+                if self._room is not None and self._drift() > SEVERE_DRIFT and self._go_back():
+                    checked = 0
+                    continue
                 self._book()
                 self._rebuild(all_at_once=code == exchange.ALL_AT_ONCE)
                 checked = 0
             elif code == exchange.CYCLING:
                 self._book()
                 self._resettle()
+                checked = 0
+            elif self._drift() > SEVERE_DRIFT and self._go_back():
                 checked = 0
             else:
                 self._book()
@@ -286,7 +307,7 @@ class PathStep:
     def _begin(self, unknowns: StickingRun | DenseUnknowns) -> None:
         """Begin a new tableau from the solvable system of the present statuses."""
         self._queue.counts[exchange.UPDATES] = 0
-        self._columns = Columns(self.system, unknowns, self._contact, self.rate, self._memory)
+        self._columns = Columns(self.system, unknowns, self._contact, self.rate, self._memory, self._room)
 
     def _rebuild(self, all_at_once: bool = False) -> None:
         """Build the tableau of the present statuses from the matrices.
@@ -294,7 +315,7 @@ class PathStep:
         After a change `all_at_once` that leaves the pin without support, the change is first taken back.
         """
         self.rebuilds += 1
-        if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
+        if self.rebuilds > MOST_REBUILDS * (1 + self.resettled + 4 * (self._room is not None)):
             raise StepLostError(exchange.CYCLING, self.fraction)
         unknowns, queue = solvable_unknowns(self.system, self.now.status), self._queue
         if unknowns is None and all_at_once:
@@ -308,15 +329,38 @@ class PathStep:
             raise StepLostError(exchange.NO_SUPPORT, self.fraction)
         self._begin(unknowns)
 
-    def _has_drifted(self) -> bool:
-        """Whether gap and slip at a sample of the nodes differ from the matrices by more than MOST_DRIFT."""
+    def _drift(self) -> float:
+        """Largest relative error of gap and slip at a sample of the nodes, from the matrices."""
         system, now = self.system, self.now
         rows, load = self._sample, self.before + self.fraction * self.rate
         elastic = self._sampled @ np.r_[now.pressure, now.shear]
         true = elastic + system.motion[rows] @ now.motion + system.loads[rows] @ load
         true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
         length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
-        return not np.abs(true - np.r_[now.gap, now.slip][rows]).max() <= MOST_DRIFT * length
+        return float(np.abs(true - np.r_[now.gap, now.slip][rows]).max()) / max(length, 1e-300)
+
+    def _remember(self) -> None:
+        """Remember the present configuration, which was checked."""
+        self._checked = self.now.copy(), self._queue.sums.copy()
+
+    def _go_back(self) -> bool:
+        """Go back to the last configuration that was checked, and rebuild the tableau more often from there.
+
+        Returns whether the tableau can be rebuilt more often than before.
+        """
+        smaller = [room for room in CAREFUL_ROOM if self._room is None or room < self._room]
+        if not smaller:
+            return False
+        self._room = smaller[0]
+        configuration, sums = self._checked
+        self._take(configuration)
+        self.now.status[:] = configuration.status
+        self._queue.sums[:] = sums
+        counts = self._queue.counts
+        counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = counts[exchange.SETTLED] = 0
+        self._book()
+        self._rebuild()
+        return True
 
     def _mend(self) -> None:
         """Compute the present configuration anew, by a factorisation, and rebuild the tableau."""

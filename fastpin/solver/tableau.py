@@ -51,6 +51,8 @@ class Columns:
         Dimensionless, per unit of the step.
     memory : TableauMemory
         Memory for the tableau. It is overwritten.
+    room : int, optional
+        Updates before the tableau is rebuilt; as many as the memory holds unless given.
 
     Attributes
     ----------
@@ -64,8 +66,9 @@ class Columns:
         contact: Contact,
         load_rate: np.ndarray,
         memory: TableauMemory,
+        room: int | None = None,
     ) -> None:
-        n, updates = system.grid.size, memory.left.shape[1]
+        n, updates = system.grid.size, memory.left.shape[1] if room is None else room
         self._system, self._basis = system, basis
         # Stacked vectors hold the unknowns and, below them, the others. `_order` has the places of (N or h), (T or s)
         # and the motion in them.
@@ -76,7 +79,7 @@ class Columns:
         self.tableau = Tableau(
             matrix=memory.matrix,
             fresh=np.full(-(-2 * n // WIDTH), -1),
-            left=memory.left,
+            left=memory.left[:, :updates],
             source=np.empty(updates, dtype=np.int64),
             slot=np.empty(updates, dtype=np.int64),
             delta=np.empty(updates),
