@@ -79,7 +79,7 @@ def candidate_grids(
 
 
 def narrow_grid(
-    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
+    problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: Progress | None = None
 ) -> Grid | None:
     """A graded grid with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
 
@@ -87,23 +87,24 @@ def narrow_grid(
     ----------
     problem, values, force, progress
         See :func:`candidate_grids`.
-    nodes : int
-        Number of nodes. The grid has more where so many are needed, up to :data:`MOST_GRADED`.
+    options : SolveOptions
+        The grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`.
 
     Returns
     -------
     Grid or None
         None if the history could not be surveyed, or takes too many nodes.
     """
-    places = survey(problem, _outline(values), force, progress)
+    first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
+    places = survey(problem, _outline(values), force, first_part, progress)
     if not places:
         return None
     distinct = _distinct_places(places)
     needed = graded_size(distinct, LEAST_ACROSS)
-    if needed > max(MOST_GRADED, nodes):
+    if needed > max(MOST_GRADED, options.nodes):
         log.info("the narrow contacts of this history take %d nodes: too many", needed)
         return None
-    return Grid.graded(distinct, max(nodes, needed), first_direction(values))
+    return Grid.graded(distinct, max(options.nodes, needed), first_direction(values))
 
 
 def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:

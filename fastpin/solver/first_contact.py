@@ -137,7 +137,7 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
 
 
 def first_contact(
-    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
+    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray, least_nodes: int = 3
 ) -> tuple[Configuration, float]:
     """Find the first contact on the way from load `before` to load `after`: one implicit increment from rest.
 
@@ -148,6 +148,8 @@ def first_contact(
         The pin without contact. It is not changed.
     before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
+    least_nodes : int
+        Nodes of each patch of a contact that the whole step makes, at least.
 
     Returns
     -------
@@ -169,9 +171,9 @@ def first_contact(
         return release(system, floating, after), 1.0
     resting, begins = found
     if not isinstance(system, LargeSystem):
-        return _first_patch(system, resting, begins, before, after)
+        return _first_patch(system, resting, (begins, before, after), least_nodes)
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, window.cut(resting), begins, before, after)
+    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after), least_nodes)
     return window.paste(patch, resting), part
 
 
@@ -258,7 +260,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
 
 
 def _first_patch(
-    system: System, resting: Configuration, begins: float, before: np.ndarray, after: np.ndarray
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], least_nodes: int
 ) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
@@ -266,9 +268,10 @@ def _first_patch(
     begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
     and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
 
-    `begins` is the fraction of the step at which the contact begins. Returned are the configuration and the fraction
-    of the step at which it holds.
+    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. Returned are
+    the configuration and the fraction of the step at which it holds.
     """
+    begins, before, after = way
     patches = len(runs(system.grid, resting.closed))
     least, most = (patches * count for count in FIRST_NODES)
     wanted = 0.5 * (least + most)
@@ -294,7 +297,7 @@ def _first_patch(
     if best is None:
         raise ResolutionError(NARROW)
     count, found, fraction = best
-    if fraction == 1.0 and count <= most // 2 and not self_similar:
+    if fraction == 1.0 and count < patches * least_nodes and not self_similar:
         raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)

@@ -227,7 +227,8 @@ class Run:
         """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
         position = self.position
         self.stepper.leave(position)
-        position.now, part = first_contact(self.system, self.now, self.now.load, load)
+        least = 3 if stop == 1.0 else 1
+        position.now, part = first_contact(self.system, self.now, self.now.load, load, least)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:

@@ -56,7 +56,9 @@ LEAST_WIDTH = 1e-6
 """Smallest width of a contact, rad. A narrower one is not resolved."""
 
 
-def survey(problem: Problem, values: np.ndarray, force: float, progress: Progress | None = None) -> list[Place] | None:
+def survey(
+    problem: Problem, values: np.ndarray, force: float, first_part: float = 1.0, progress: Progress | None = None
+) -> list[Place] | None:
     """Find all places where the contact is on the way through a history.
 
     Parameters
@@ -66,6 +68,8 @@ def survey(problem: Problem, values: np.ndarray, force: float, progress: Progres
         Loads at the corners, SI.
     force : float
         The reference force, N/m.
+    first_part : float
+        Part of a step at which there is the first state, 0 to 1.
     progress : callable, optional
         Called as ``progress(done_steps, all_steps)``.
 
@@ -74,7 +78,7 @@ def survey(problem: Problem, values: np.ndarray, force: float, progress: Progres
     list of (float, float), or None
         Angle and width of each contact that was met, rad. None if the history could not be followed.
     """
-    followed = _Survey(problem, force)
+    followed = _Survey(problem, force, first_part)
     before = np.zeros(values.shape[1])
     for step, corner in enumerate(values):
         target = complete_load(corner, before)
@@ -90,8 +94,9 @@ def survey(problem: Problem, values: np.ndarray, force: float, progress: Progres
 class _Survey:
     """The contact on its present grid, and the places where it was."""
 
-    def __init__(self, problem: Problem, force: float) -> None:
+    def __init__(self, problem: Problem, force: float, first_part: float) -> None:
         self.places: list[Place] = []
+        self._first_part = first_part
         self._problem, self._force = problem, force
         self._system = System.build(problem, Grid.circle(10 * ACROSS + 1), force)
         self._now = unloaded_configuration(self._system)
@@ -104,9 +109,10 @@ class _Survey:
         for _ in range(MOST_TRIALS):
             if done >= 1.0:
                 return True
-            stop = min(1.0, done + self._part)
+            floats = not self._now.closed.any()
+            stop = min(1.0, done + min(self._part, self._first_part if floats else 1.0))
             load = target if stop == 1.0 else before + stop * (target - before)
-            if not self._now.closed.any():
+            if floats:
                 self._look_where_it_begins(load, finer)
             if self._advance(load):
                 done, finer, self._part = stop, 1.0, min(1.5 * self._part, LARGEST_PART)

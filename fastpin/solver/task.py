@@ -102,7 +102,7 @@ class Task:
             except ConvergenceError as error:
                 if given is not None or self.options.arc is not None or self.options.method != "path":
                     raise
-                grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options.nodes, progress)
+                grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options, progress)
                 if grid is None or (unfit is not None and _is_same(grid, unfit[0])):
                     raise
                 log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)

@@ -21,11 +21,22 @@ from fastpin.solver.step import Piece, Position, Report
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
 
+WIDEST = 2500
+"""Nodes of a window, at most."""
+
 PENETRATION = 1e-9
 """Largest penetration of nodes outside the window, in parts of the largest displacement."""
 
 FIELDS = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
 """Arrays of a configuration with one number for each node."""
+
+
+class SecondPlaceError(Exception):
+    """Internal: the pin touches the hole outside the window too. ``nodes``, bool, shape (n,), are the nodes there."""
+
+    def __init__(self, nodes: np.ndarray) -> None:
+        super().__init__(nodes)
+        self.nodes = nodes
 
 
 class Window:
@@ -65,7 +76,7 @@ class Window:
 
         Raises
         ------
-        ResolutionError
+        SecondPlaceError
             If the pin penetrates the hole outside the window.
         """
         n = self._large.grid.size
@@ -78,9 +89,9 @@ class Window:
         true = self._large.displacement(tractions, inside.motion, inside.load, fields["rest_gap"])
         gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
         gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
-        outside = np.delete(true[:n], self.nodes)
-        if outside.size and outside.min() < -PENETRATION * float(np.abs(true).max()):
-            raise ResolutionError("the pin touches the hole at a second place, far from the first")
+        true[self.nodes] = 0.0
+        if true[:n].min() < -PENETRATION * float(np.abs(true).max()):
+            raise SecondPlaceError(true[:n] < 0.0)
         return replace(inside, **fields, gap=gap, slip=slip)
 
 
@@ -119,16 +130,20 @@ class WindowStepper:
             inside = self._begin(position)
             assert self._stepper is not None
             try:
-                self._stepper.advance(inside, piece, stop, report)
-            except ArcError:
-                if inside.reached == lost_at:
-                    raise
-                lost_at = inside.reached
-                self._paste(position)
+                try:
+                    self._stepper.advance(inside, piece, stop, report)
+                except ArcError:
+                    if inside.reached == lost_at:
+                        raise
+                    lost_at = inside.reached
+                    self._paste(position)
+                    self.leave(position)
+                    self._window = None
+                else:
+                    self._paste(position)
+            except SecondPlaceError as second:  # once more from before, with a window round both places
                 self.leave(position)
-                self._window = None
-            else:
-                self._paste(position)
+                self._open_window(position.now.closed | second.nodes)
 
     def leave(self, position: Position) -> None:
         """End the present path, and note the nodes that it touched."""
@@ -147,12 +162,19 @@ class WindowStepper:
         closed = position.now.closed
         window = self._window
         if window is None or closed.sum() != closed[window.nodes[2:-2]].sum():
-            window = self._window = Window(self._system, closed)
-            self._stepper = PathStepper(window.system, self._statistics)
+            window = self._open_window(closed)
         self._inside = Position(
             window.cut(position.now), position.touched[window.nodes], position.reached, position.fresh
         )
         return self._inside
+
+    def _open_window(self, closed: np.ndarray) -> Window:
+        """Open a window round the nodes `closed`, bool, shape (n,)."""
+        window = self._window = Window(self._system, closed)
+        if window.nodes.size > WIDEST:
+            raise ResolutionError(f"the contacts are narrow and far apart: {window.nodes.size} nodes at a time")
+        self._stepper = PathStepper(window.system, self._statistics)
+        return window
 
     def _paste(self, position: Position) -> None:
         """Bring `position` to where the position inside the window is."""
