@@ -311,7 +311,7 @@ def _first_patch(
 
 def _one_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
     """The implicit increment from rest; by Lemke's method where its iteration fails."""
-    return implicit_step(system, resting, load) or FiniteStep(system, resting).to(load)
+    return implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere=True).to(load)
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:

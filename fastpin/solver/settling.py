@@ -28,7 +28,7 @@ MOST_VARIABLES = 1200
 """Variables of a complementarity problem, at most. Time and memory of a pivot grow with their square."""
 
 MORE_NODES = 20
-"""In one finite step the contact may grow to twice its nodes and so many more."""
+"""Nodes by which a contact may grow in one finite step, beyond twice its nodes."""
 
 
 def lemke(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray | None:
@@ -124,9 +124,11 @@ class FiniteStep:
     system : System
     now : Configuration
         The configuration at the start. It is not changed.
+    everywhere : bool
+        Whether all nodes may close. If not, the contact may grow to twice its nodes and :data:`MORE_NODES` more.
     """
 
-    def __init__(self, system: System, now: Configuration) -> None:
+    def __init__(self, system: System, now: Configuration, everywhere: bool = False) -> None:
         n, mu = system.grid.size, system.friction
         self._system, self._now = system, now
         self._base = np.where(now.closed, resting_status(system), OPEN).astype(np.int8)
@@ -137,7 +139,7 @@ class FiniteStep:
         if not system.grid.closed:
             away = away[(away > 0) & (away < n - 1)]
         room = MOST_VARIABLES // (3 if mu > 0.0 else 1) - self._closed.size
-        room = min(max(room, 0), self._closed.size + MORE_NODES)
+        room = min(max(room, 0), system.grid.size if everywhere else self._closed.size + MORE_NODES)
         self._away = np.sort(away[np.argsort(now.gap[away], kind="stable")[:room]])
         if not self._unknowns.singular:
             self._matrix = self._complementarity_matrix()
