@@ -9,7 +9,7 @@ import numpy as np
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, number, string, whole_number
-from fastpin.model.history import MAX_CORNERS, LoadHistory, check_loads
+from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_loads
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 
@@ -129,7 +129,7 @@ def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None
 
 def _harmonic(block: Section) -> LoadHistory | None:
     tables = {name: _loads(block, name) for name in ("mean", "amplitude", "phase")}
-    points = block.checked("points", whole_number, 2)
+    points = block.checked("points", whole_number, 2, MOST_POINTS)
     count = block.checked("repeat", whole_number, 1) or 1
     mean, amplitude, phase = tables.values()
     if mean is None or amplitude is None or phase is None:

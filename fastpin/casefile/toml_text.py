@@ -36,12 +36,19 @@ class CaseText:
         Whether the text could be parsed. The tables then hold all values except the values on faulty lines.
     root : Section
         The keys before the first section, and all sections.
+
+    Raises
+    ------
+    InputError
+        If `text` is no string.
     """
 
     def __init__(self, text: str) -> None:
         self.faults: list[tuple[int, str]] = []
         self.placed: list[tuple[Place, str]] = []
         self.readable = True
+        if not isinstance(text, str):
+            raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
         self._lines, keys, starts = _locate(lines)
         self.root = Section(self, (), self._parse(lines, keys, starts))

@@ -11,7 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from fastpin.errors import InputError
 from fastpin.figures.style import Line, add_legend, line, panels, save_drawing
+from fastpin.model.checks import as_toml, instance, string, whole_number
 from fastpin.model.units import named_loads, scaled
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES
@@ -62,9 +64,14 @@ def plot_convergence(
     Raises
     ------
     InputError
-        If the figure's format is unknown, or the file can't be written.
+        If an argument is out of range, the figure's format is unknown, or the file can't be written.
     """
-    chosen = max(convergence.loads) if corner is None else corner
+    instance("convergence", convergence, Convergence, "a Convergence")
+    string("title", title)
+    chosen = max(convergence.loads) if corner is None else whole_number("corner", corner, 1)
+    if chosen not in convergence.loads:
+        studied = ", ".join(map(str, convergence.loads))
+        raise InputError("corner", f"must be a studied corner: {studied}, not {as_toml(chosen)}")
     save_drawing(lambda study: _draw(study, chosen, title), convergence, path, dpi)
 
 
@@ -102,7 +109,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     )
     loads = named_loads(convergence.problem, convergence.loads[corner])
     lines = [*textwrap.wrap(title, TITLE_WIDTH), f"corner {corner}: {loads}"]
-    figure.suptitle("\n".join(lines), fontsize=9.5)
+    figure.suptitle("\n".join(lines), fontsize=9.5, parse_math=False)
     return figure
 
 

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.style import MAX_NAMED, draw_and_save, fitted_legend, line
-from fastpin.model.checks import as_toml
+from fastpin.figures.style import MAX_NAMED, check_figure_text, draw_and_save, fitted_legend, line
+from fastpin.model.checks import instance
 from fastpin.model.units import scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import consecutive_cycles
@@ -44,13 +44,13 @@ def plot_cycles(
     Raises
     ------
     InputError
-        If there are no cycles, or the figure's format is unknown.
+        If there are no cycles, an argument is out of range, or the figure's format is unknown.
     """
-    if not isinstance(result, Result):
-        raise InputError("result", f"must be a Result, not {as_toml(result)}")
+    inches = check_figure_text(title, width)
+    instance("result", result, Result, "a Result")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
-    return draw_and_save(lambda: _draw_cycles(result, title, width), path, dpi)
+    return draw_and_save(lambda: _draw_cycles(result, title, inches), path, dpi)
 
 
 def _draw_cycles(result: Result, title: str, width: float) -> Figure:
@@ -95,5 +95,5 @@ def _draw_cycles(result: Result, title: str, width: float) -> Figure:
         panels[2].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
     figure.align_ylabels(panels)
     if title:
-        figure.suptitle(title, fontsize=9.5)
+        figure.suptitle(title, fontsize=9.5, parse_math=False)
     return figure

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from fastpin.figures.style import MAX_NAMED, spread
 from fastpin.figures.tractions import plot_tractions
+from fastpin.model.checks import instance
 from fastpin.report.states import state_table
 from fastpin.solver.result import Result
 from fastpin.states.state import State
@@ -21,12 +22,20 @@ DPI = 110.0
 
 
 def state_html(state: State) -> str:
-    """Return the HTML of a state: a table with one row, and a figure of the tractions."""
+    """Return the HTML of a state: a table with one row, and a figure of the tractions.
+
+    Another class than :class:`State` raises :class:`InputError`.
+    """
+    instance("state", state, State, "a State")
     return _html([state], "")
 
 
 def result_html(result: Result) -> str:
-    """Return the HTML of a result: a table and the tractions of at most six states, with the first and the last one."""
+    """Return the HTML of a result: a table and the tractions of at most six states, with the first and the last one.
+
+    Another class than :class:`Result` raises :class:`InputError`.
+    """
+    instance("result", result, Result, "a Result")
     if not len(result):
         return f"<pre>{html.escape(repr(result))}</pre>"
     states = [result[k] for k in spread(len(result), MAX_NAMED)]

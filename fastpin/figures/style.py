@@ -5,6 +5,7 @@ Matplotlib is used without global state and needs no display.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
+from fastpin.model.checks import file_path, number, string
 from fastpin.storage.files import check_writable, replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
@@ -36,6 +38,12 @@ DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
 
 MAX_NAMED = len(COLOURS)
 """Most states that a figure names in its legend; more states get a colour scale."""
+
+LEAST_WIDTH, MOST_WIDTH = 1.0, 12.0
+"""Limits of a figure's width, inches."""
+
+LEAST_DPI, MOST_DPI = 10.0, 1200.0
+"""Limits of a bitmap's dots per inch. The largest bitmap takes less than 1 GB of memory."""
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -69,15 +77,30 @@ def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: floa
     Raises
     ------
     InputError
-        If the format is unknown, or the file can't be written. It comes before the figure is drawn where possible.
+        If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
+        drawn where possible.
     """
+    resolution = number("dpi", dpi, LEAST_DPI, MOST_DPI)
     if path is not None:
-        _check_format(Path(path))
-    with mpl.rc_context(STYLE):
+        _check_format(file_path("path", path))
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # A title may have letters that no font has.
         figure = draw()
         if path is not None:
-            _save(figure, Path(path), dpi)
+            _save(figure, Path(path), resolution)
     return figure
+
+
+def check_figure_text(title: str, width: float) -> float:
+    """Check title and width of a figure, and return the width, inches.
+
+    Raises
+    ------
+    InputError
+        If `title` is no text, or `width` is out of range.
+    """
+    string("title", title)
+    return number("width", width, LEAST_WIDTH, MOST_WIDTH)
 
 
 def spread(count: int, most: int) -> list[int]:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from fastpin.figures.style import MAX_NAMED, Line, add_legend, line, panels, save_drawing
+from fastpin.model.checks import instance
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
@@ -41,8 +42,9 @@ def plot_sweep(chart: Chart, path: str | Path, dpi: float = 160.0) -> None:
     Raises
     ------
     InputError
-        If the figure's format is unknown, or the file can't be written.
+        If an argument is out of range, the figure's format is unknown, or the file can't be written.
     """
+    instance("chart", chart, Chart, "a Chart")
     save_drawing(_draw_curves if chart.y is None else _draw_maps, chart, path, dpi)
 
 
@@ -144,4 +146,4 @@ def _finish(figure: Figure, axes: np.ndarray, chart: Chart) -> None:
         if index + axes.shape[1] >= filled:
             panel.set_xlabel(chart.x.label)
     if chart.title:
-        figure.suptitle(chart.title, fontsize=9.5)
+        figure.suptitle(chart.title, fontsize=9.5, parse_math=False)

@@ -20,7 +20,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, draw_and_save, fitted_legend, spread
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, check_figure_text, draw_and_save, fitted_legend, spread
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND, LOADS
@@ -70,8 +70,9 @@ def plot_tractions(
     Raises
     ------
     InputError
-        If there is no state, the figure's format is unknown, or the file can't be written.
+        If there is no state, an argument is out of range, the figure's format is unknown, or the file can't be written.
     """
+    inches = check_figure_text(title, width)
     drawn = [states] if isinstance(states, State) else states
     if not isinstance(drawn, Sequence) or not all(isinstance(state, State) for state in drawn):
         raise InputError("states", f"must be states or a result, not {as_toml(states)}")
@@ -82,7 +83,7 @@ def plot_tractions(
         raise InputError("states", "there is no state to plot")
     if len(drawn) > MAX_LINES:
         drawn = [drawn[k] for k in drawn_places(len(drawn))]
-    return draw_and_save(lambda: _draw(drawn, title, width), path, dpi)
+    return draw_and_save(lambda: _draw(drawn, title, inches), path, dpi)
 
 
 def _draw(states: list[State], title: str, width: float) -> Figure:
@@ -244,7 +245,7 @@ def _name_states(
     common = [_load_text(states, 0, name) for name in acting if name not in varying]
     heading = "\n".join(line for line in (title, ",  ".join(common)) if line)
     if heading:
-        figure.suptitle(heading, fontsize=9.5, x=0.5)
+        figure.suptitle(heading, fontsize=9.5, x=0.5, parse_math=False)
     if not named:
         bar = figure.colorbar(_scale(states), ax=list(axes), aspect=40, pad=0.02)
         bar.set_label("load point (1: first corner of the history)")

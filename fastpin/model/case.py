@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from fastpin.errors import InputError
+from fastpin.model.checks import instance, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
@@ -21,12 +22,23 @@ class Case:
     options : SolveOptions
     title : str
         Empty if there is none.
+
+    Raises
+    ------
+    InputError
+        If a field is of another class.
     """
 
     problem: Problem
     history: LoadHistory
     options: SolveOptions = field(default_factory=SolveOptions)
     title: str = ""
+
+    def __post_init__(self) -> None:
+        instance("problem", self.problem, Problem, "a Problem")
+        instance("history", self.history, LoadHistory, "a LoadHistory")
+        instance("options", self.options, SolveOptions, "a SolveOptions")
+        string("title", self.title)
 
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:

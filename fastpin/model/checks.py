@@ -5,29 +5,39 @@ Python, case files, plans and the command line all call these validators. So the
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import math
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 
+T = TypeVar("T")
+
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
+
+DEEPEST_LIST = 3
+"""Lists inside lists that a message repeats."""
+
+LONGEST_NAME, LONGEST_PATH = 255, 4095
+"""Most bytes of a file's name and of its whole path, as usual systems allow them."""
+
+_NUMBER_KINDS = "iuf"
+"""Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 
 
 def number(field: str, value: object, least: float = -math.inf, most: float = math.inf) -> float:
     """Check a finite number from `least` to `most`, and return it as a float."""
-    if isinstance(value, (bool, np.bool_, str, bytes, Sequence, Mapping)) or bool(getattr(value, "ndim", False)):
+    converted = _as_float(value)
+    if converted is None:
         raise InputError(field, f"must be a number, not {as_toml(value)}")
-    try:
-        converted = float(value)  # type: ignore[arg-type]
-    except OverflowError:
-        converted = math.inf
-    except (TypeError, ValueError):
-        raise InputError(field, f"must be a number, not {as_toml(value)}") from None
     if not math.isfinite(converted):
         raise InputError(field, f"must be a finite number, not {converted}")
     if not least <= converted <= most:
@@ -37,11 +47,15 @@ def number(field: str, value: object, least: float = -math.inf, most: float = ma
 
 def whole_number(field: str, value: object, least: int, most: int | None = None) -> int:
     """Check a whole number from `least` to `most`. No `most` means no upper limit."""
-    is_whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not is_whole or value < least or (most is not None and value > most):  # type: ignore[operator]
+    if not is_whole(value) or value < least or (most is not None and value > most):  # type: ignore[operator]
         limits = f"of at least {least}" if most is None else f"from {least} to {most}"
         raise InputError(field, f"must be a whole number {limits}, not {as_toml(value)}")
     return int(value)  # type: ignore[call-overload]
+
+
+def is_whole(value: object) -> bool:
+    """Whether a value is a whole number of Python or NumPy, and no truth value or duration."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.timedelta64))
 
 
 def choice(field: str, value: object, allowed: Sequence[str]) -> str:
@@ -61,10 +75,47 @@ def true_or_false(field: str, value: object) -> bool:
 
 
 def string(field: str, value: object) -> str:
-    """Check a string."""
+    """Check a string that can be stored in any file: without NUL and lone surrogates."""
     if not isinstance(value, str):
         raise InputError(field, f"must be text in quotes, not {as_toml(value)}")
+    if "\0" in value or not _is_unicode(value):
+        raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(value)}")
     return value
+
+
+def file_path(field: str, value: object) -> Path:
+    """Check the path of a file or directory. The file need not exist."""
+    try:
+        name = os.fspath(value)  # type: ignore[call-overload]
+        encoded = os.fsencode(name)
+    except (TypeError, UnicodeEncodeError):
+        name, encoded = None, b""
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise InputError(field, f"must be the name of a file, not {as_toml(value)}")
+    if len(encoded) > LONGEST_PATH or max(map(len, encoded.split(os.fsencode(os.sep)))) > LONGEST_NAME:
+        raise InputError(field, f"is too long for the name of a file: {as_toml(value)}")
+    return Path(name)
+
+
+def instance(field: str, value: object, kind: type[T], name: str) -> T:
+    """Check the class of a value. `name` is the class with its article, for the message."""
+    if not isinstance(value, kind):
+        raise InputError(field, f"must be {name}, not {as_toml(value)}")
+    return value
+
+
+def check_callable(field: str, value: object) -> None:
+    """Check that a value is None or can be called."""
+    if value is not None and not callable(value):
+        raise InputError(field, f"must be a callable, not {as_toml(value)}")
+
+
+def items(field: str, values: Iterable[T], name: str) -> list[T]:
+    """Check that a value can be iterated, and return its items. `name` says in the message what it must be."""
+    try:
+        return list(values)
+    except TypeError:
+        raise InputError(field, f"must be {name}, not {as_toml(values)}") from None
 
 
 def numbers(
@@ -77,10 +128,7 @@ def numbers(
     open_high: bool = False,
 ) -> np.ndarray:
     """Check finite numbers from `low` to `high`, and return them as a float array. An open end is itself excluded."""
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(field, f"must be a number, not {as_toml(values)}") from None
+    array = number_array(field, values)
     bad = ~np.isfinite(array)
     bad |= array <= low if open_low else array < low
     bad |= array >= high if open_high else array > high
@@ -95,25 +143,64 @@ def numbers(
     return array
 
 
+def number_array(field: str, values: ArrayLike) -> np.ndarray:
+    """Check an array of numbers, also NaN and infinite ones, and return it as a float array of any shape."""
+    with contextlib.suppress(Exception):  # Any object can be given, and its conversion may fail in any way.
+        array = np.asarray(values)
+        if array.dtype.kind in _NUMBER_KINDS + "O" and not isinstance(values, np.ma.MaskedArray):
+            return array.astype(float)
+    raise InputError(field, f"must be a number, not {as_toml(values)}")
+
+
 def as_toml(value: object) -> str:
     """A value as text, in the notation of case files. Long values are cut short."""
-    if isinstance(value, (np.ndarray, np.generic)):
+    return _as_toml(value, 0)
+
+
+def _as_toml(value: object, depth: int) -> str:
+    if isinstance(value, (np.ndarray, np.generic)) and not isinstance(value, np.ma.MaskedArray):
         value = value.tolist()
-    if isinstance(value, (bool, np.bool_)):
+    if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, (list, tuple)):
-        return "a list" if len(value) > 6 else f"[{', '.join(as_toml(item) for item in value)}]"
+        if len(value) > 6 or depth >= DEEPEST_LIST:
+            return "a list"
+        return f"[{', '.join(_as_toml(item, depth + 1) for item in value)}]"
     if isinstance(value, str):
         return f'"{_cut(value)}"'
     if isinstance(value, int) and abs(value) >= 10**18:
         return "a number of more than 18 digits"
-    return _cut(str(value))
+    try:
+        return _cut(str(value))
+    except Exception:  # The class of the value may be anyone's.
+        return f"a {type(value).__name__}"
+
+
+def _as_float(value: Any) -> float | None:
+    """A number as a float, infinite if it is too large; None for anything else."""
+    no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping, np.ma.MaskedArray)
+    kind = getattr(getattr(value, "dtype", None), "kind", "f")
+    if isinstance(value, no_number) or kind not in _NUMBER_KINDS or bool(getattr(value, "ndim", False)):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+    except Exception:  # Any object can be given, and its conversion may fail in any way.
+        return None
+
+
+def _is_unicode(text: str) -> bool:
+    return not any("\ud800" <= character <= "\udfff" for character in text)
 
 
 def _cut(words: str) -> str:
-    return words if len(words) < LONGEST_TEXT else f"{words[: LONGEST_TEXT - 4]}..."
+    """Words on one line that can be printed, at most :data:`LONGEST_TEXT` characters."""
+    shown = " ".join(words[: 2 * LONGEST_TEXT].split())
+    shown = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in shown)
+    return shown if len(shown) < LONGEST_TEXT else f"{shown[: LONGEST_TEXT - 4]}..."
 
 
 def closest(word: str, known: Sequence[str]) -> str:

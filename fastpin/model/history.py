@@ -17,9 +17,19 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import as_toml, number, whole_number
+from fastpin.model.checks import (
+    as_toml,
+    file_path,
+    instance,
+    is_whole,
+    items,
+    number,
+    number_array,
+    true_or_false,
+    whole_number,
+)
 from fastpin.model.history_csv import read_corners
-from fastpin.model.loads import LOADS, Corner, check_corner, load_index
+from fastpin.model.loads import LOAD_KIND, LOADS, Corner, check_corner, load_index
 from fastpin.model.problem import Problem
 
 POINTS = 24
@@ -30,6 +40,9 @@ MAX_CORNERS = 100_000_000
 
 MOST_POINTS = 100_000
 """Most corners in a harmonic cycle."""
+
+MOST_LOAD = 1e50
+"""Limit of every load, in parts of the load that strains the bodies by about 1. Squares of all results are numbers."""
 
 MOST_SHOWN = 6
 """Most blocks that the short form of a history shows."""
@@ -58,6 +71,11 @@ class Block:
         Whether each time through is a cycle, or the end of one in a block cut from a longer cycle.
     size : int
         Number of corners of the whole table, if this block is cut from it; 0 if it is not cut.
+
+    Raises
+    ------
+    InputError
+        If an attribute is out of range, or does not fit the others.
     """
 
     given: np.ndarray
@@ -71,6 +89,18 @@ class Block:
     def corners(self) -> int:
         """Number of corners, all times through."""
         return len(self.given) * self.count
+
+    def __post_init__(self) -> None:
+        rows, cycles = len(self.given), len(self.lengths)
+        if self.given.shape != (rows, len(LOADS)) or not self.given.dtype == float or np.isinf(self.given).any():
+            raise InputError("given", f"must be finite numbers or NaN, shape (corners, {len(LOADS)})")
+        if self.ends.shape != (rows,) or self.ends.dtype.kind != "i" or not _lie_within(self.ends, 0, cycles):
+            raise InputError("ends", f"must be {rows} whole numbers from 0 to {cycles}, the number of inner cycles")
+        whole_number("count", self.count, 1)
+        whole_number("size", self.size, 0)
+        for length in self.lengths:
+            whole_number("lengths", length, 1, max(rows, self.size))
+        true_or_false("cycle", self.cycle)
 
     @cached_property
     def begins(self) -> np.ndarray:
@@ -125,10 +155,8 @@ class LoadHistory:
     """
 
     def __init__(self, corners: Iterable[Corner]) -> None:
-        if not isinstance(corners, Iterable):
-            raise InputError("history", f"must be a sequence of corners, not {as_toml(corners)}")
         rows = []
-        for index, corner in enumerate(corners):
+        for index, corner in enumerate(items("history", corners, "a sequence of corners")):
             if not isinstance(corner, Mapping):
                 raise InputError("history", f"corner {index + 1} must map load names to numbers, not {as_toml(corner)}")
             row = np.full(len(LOADS), np.nan)
@@ -150,8 +178,9 @@ class LoadHistory:
     @classmethod
     def of_blocks(cls, blocks: Iterable[Block]) -> LoadHistory:
         """A history of given blocks. No corners at all raise :class:`InputError`."""
+        given = items("blocks", blocks, "a sequence of blocks")
         history = cls.__new__(cls)
-        history._set(blocks)
+        history._set(instance("blocks", block, Block, "a sequence of blocks") for block in given)
         return history
 
     @classmethod
@@ -178,15 +207,21 @@ class LoadHistory:
             Sign of the first excursion.
         return_to_mean : bool
             Whether to append the mean load as a last corner.
+
+        Raises
+        ------
+        InputError
+            If an argument is of the wrong kind or out of range. The error names the argument.
         """
         count = whole_number("count", count, 1)
-        if number("start", start) not in (1.0, -1.0):
+        start = number("start", start)
+        if start not in (1.0, -1.0):
             raise InputError("start", f"must be 1 or -1, not {as_toml(start)}")
         mean, amplitude = check_corner("mean", mean), check_corner("amplitude", amplitude)
         plus = {k: mean.get(k, 0.0) + start * v for k, v in amplitude.items()}
         minus = {k: mean.get(k, 0.0) - start * v for k, v in amplitude.items()}
         history = cls([mean, plus]) + cls([minus, plus]).repeated(count)
-        if return_to_mean:
+        if true_or_false("return_to_mean", return_to_mean):
             history += cls([{k: mean.get(k, 0.0) for k in amplitude}])
         return history
 
@@ -219,8 +254,7 @@ class LoadHistory:
                 raise InputError("phase", f"{name} has a phase but no amplitude")
         if points is None:
             points = 2 if all(angle % 180.0 == 0.0 for angle in phase.values()) else POINTS
-        if whole_number("points", points, 2) > MOST_POINTS:
-            raise InputError("points", f"must not be more than {MOST_POINTS:,}, not {points:,}")
+        points = whole_number("points", points, 2, MOST_POINTS)
 
         def corner(turn: float) -> dict[str, float]:
             return {
@@ -241,11 +275,8 @@ class LoadHistory:
         InputError
             If a load is unknown or named twice, the shape does not fit, a value is infinite or there are no corners.
         """
-        columns = [load_index(name, "loads") for name in loads]
-        try:
-            array = np.asarray(corners, dtype=float)
-        except (TypeError, ValueError, OverflowError):
-            raise InputError("corners", f"must be an array of numbers, not {as_toml(corners)}") from None
+        columns = [load_index(name, "loads") for name in items("loads", loads, "a list of load names")]
+        array = number_array("corners", corners)
         if len(set(columns)) < len(columns):
             raise InputError("loads", "a load is named twice")
         if array.ndim != 2 or array.shape[1] != len(columns):
@@ -268,8 +299,10 @@ class LoadHistory:
         CaseFileError
             If the file can't be read, a column is unknown, or cells are not finite numbers. The error lists the first
             :data:`fastpin.model.history_csv.MOST_FAULTS` faulty lines.
+        InputError
+            If `path` is no path.
         """
-        path = Path(path)
+        path = file_path("path", path)
         try:
             with path.open(encoding="utf-8-sig", newline="") as file:
                 return cls.of_blocks([_plain(read_corners(file, str(path)))])
@@ -346,7 +379,12 @@ class LoadHistory:
         return max([0, *whole, *(length for block in self._blocks for length in block.lengths)])
 
     def corner(self, index: int) -> tuple[np.ndarray, list[CycleKey]]:
-        """The loads given at a corner, shape (loads,), and the cycles that end there. NaN keeps the last value."""
+        """The loads given at a corner, shape (loads,), and the cycles that end there. NaN keeps the last value.
+
+        Corners count from 0. An `index` without a corner raises :class:`InputError`.
+        """
+        if not is_whole(index) or not 0 <= index < len(self):
+            whole_number("index", index, 0, len(self) - 1)
         block_index, place = self._locate(index)
         block = self._blocks[block_index]
         row = place % len(block.given)
@@ -412,7 +450,8 @@ class LoadHistory:
     def values(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
         """All loads at all corners, shape (corners, loads), in the order of :data:`fastpin.model.LOADS`.
 
-        `initial`, shape (loads,), is the load before the first corner; zero by default.
+        `initial`, shape (loads,), is the load before the first corner; zero by default. Another shape raises
+        :class:`InputError`.
         """
         return _filled([_times(block, block.count) for block in self._blocks], initial)
 
@@ -422,7 +461,14 @@ class LoadHistory:
 
 
 def check_loads(problem: Problem, history: LoadHistory) -> None:
-    """Raise :class:`InputError` if a load of `history` can't act in `problem`."""
+    """Raise :class:`InputError` if a load of `history` can't act in `problem`, or is beyond :data:`MOST_LOAD`."""
+    natural = problem.natural_loads()
+    for place, (name, kind) in enumerate(LOAD_KIND.items()):
+        for block in history.blocks:
+            column = block.given[:, place]
+            if (given := column[~np.isnan(column)]).size:
+                largest = float(given[np.argmax(np.abs(given))])
+                number(name, largest, -MOST_LOAD * natural[kind], MOST_LOAD * natural[kind])
     moments = [block.given[:, LOADS.index("M")] for block in history.blocks]
     rotations = [block.given[:, LOADS.index("rotation")] for block in history.blocks]
     if problem.pin_load == "body" and any(np.any(np.nan_to_num(moment) != 0.0) for moment in moments):
@@ -438,7 +484,9 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:
-    first = np.zeros(len(LOADS)) if initial is None else np.asarray(initial, dtype=float)
+    first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
+    if first.shape != (len(LOADS),):
+        raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
     values = np.vstack([first, *parts])
     for column in values.T:
         rows = np.where(np.isnan(column), 0, np.arange(len(column)))
@@ -448,6 +496,10 @@ def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | Non
 
 def _times(block: Block, count: int) -> np.ndarray:
     return block.given if count == 1 else np.tile(block.given, (count, 1))
+
+
+def _lie_within(values: np.ndarray, least: int, most: int) -> bool:
+    return not values.size or (values.min() >= least and values.max() <= most)
 
 
 def _plain(given: np.ndarray) -> Block:

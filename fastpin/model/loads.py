@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, closest, number
+from fastpin.model.checks import LONGEST_TEXT, as_toml, closest, number
 
 LOAD_KIND = {
     "P": "force",
@@ -51,10 +51,12 @@ def load_index(name: object, where: str) -> int:
     InputError
         If there is no such load. The message begins with `where`, the place of the name in the input.
     """
-    if name in LOADS:
-        return LOADS.index(str(name))
-    hint = closest(str(name), LOADS)
-    raise InputError(str(name), f"{where}: unknown load {name!r}; the loads are {', '.join(LOADS)}{hint}")
+    if isinstance(name, str) and name in LOADS:
+        return LOADS.index(name)
+    is_word = isinstance(name, str) and len(name) < LONGEST_TEXT
+    hint = closest(str(name), LOADS) if is_word else ""
+    known = f"the loads are {', '.join(LOADS)}{hint}"
+    raise InputError(str(name) if is_word else "loads", f"{where}: unknown load {as_toml(name)}; {known}")
 
 
 def check_corner(field: str, loads: Corner) -> dict[str, float]:

@@ -14,7 +14,7 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, number, true_or_false, whole_number
+from fastpin.model.checks import as_toml, choice, is_whole, number, true_or_false, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 
 Method = Literal["path", "increment"]
@@ -60,9 +60,8 @@ class KeepRule:
     every: int = 1
 
     def __post_init__(self) -> None:
-        whole_number("keep", self.every, 1)
-        if self.which not in KEEP_WORDS or (self.every > 1 and self.which != "corners"):
-            raise InputError("keep", f"{self.which!r} of every {self.every} corners is no choice of states")
+        choice("keep", self.which, KEEP_WORDS)
+        whole_number("keep", self.every, 1, None if self.which == "corners" else 1)
 
     @classmethod
     def read(cls, text: str | KeepRule) -> KeepRule:
@@ -157,7 +156,7 @@ class SolveOptions:
 
     def changed(self, **changes: Any) -> SolveOptions:
         """A copy with some options changed. Method "path" drops ``increments``, unless `changes` give them too."""
-        if changes.get("method", self.method) == "path":
+        if choice("method", changes.get("method", self.method), METHODS) == "path":
             changes.setdefault("increments", None)
         return replace(self, **changes)
 
@@ -217,7 +216,7 @@ def _checked_arc(value: object) -> tuple[float, float] | None:
 
 
 def _checked_between(value: object) -> int | tuple[float, ...]:
-    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+    if is_whole(value):
         return whole_number("between", value, 0, MOST_BETWEEN)
     allowed = "a whole number, or increasing fractions between 0 and 1"
     wrong = InputError("between", f"must be {allowed}, not {as_toml(value)}")

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fastpin.model.case import Case
+from fastpin.model.checks import instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
@@ -17,7 +18,11 @@ from fastpin.report.table import table, visible_rows
 
 
 def describe(case: Case) -> str:
-    """Describe a case as text: pair, contact, solver, and a table of the loads with their load parameters."""
+    """Describe a case as text: pair, contact, solver, and a table of the loads with their load parameters.
+
+    Another class than :class:`Case` raises :class:`InputError`.
+    """
+    instance("case", case, Case, "a Case")
     problem, options = case.problem, case.options
     pair = problem.pair
     alpha, beta = pair.dundurs()

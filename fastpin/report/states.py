@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled, units, with_unit
 from fastpin.report.case import load_columns
@@ -33,7 +34,16 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     states : sequence of State
     hidden : int
         Number of states that are left out of the middle of `states`; the table says so.
+
+    Raises
+    ------
+    InputError
+        If an argument is of another class.
     """
+    instance("problem", problem, Problem, "a Problem")
+    whole_number("hidden", hidden, 0)
+    for state in items("states", states, "a list of states"):
+        instance("states", state, State, "a list of states")
     unit = units(problem)
 
     def column(name: str, digits: int = 5, natural: float = 0.0) -> tuple[str, str, list[str]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from fastpin.model.checks import items, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.problem import Problem
@@ -120,10 +121,20 @@ class Result(Sequence[State]):
             See :func:`fastpin.plot_tractions`.
         states : slice or sequence of int
             The states to draw, by their places in the result; all unless given.
+
+        Raises
+        ------
+        InputError
+            If there is no such state. Also see :func:`fastpin.plot_tractions`.
         """
         import fastpin
 
-        chosen = self.states[states] if isinstance(states, slice) else [self.states[place] for place in states]
+        if isinstance(states, slice):
+            chosen = self.states[states]
+        else:
+            places = items("states", states, "a slice or whole numbers")
+            last = len(self) - 1
+            chosen = [self.states[whole_number("states", place, -len(self), last)] for place in places]
         return fastpin.plot_tractions(chosen, path, **options)
 
     def save(self, path: str | Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml
+from fastpin.model.checks import file_path, instance
 from fastpin.model.loads import LOADS
 from fastpin.model.units import units
 from fastpin.solver.result import Result
@@ -54,7 +54,7 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
         import xarray
     except ImportError:
         raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
-    variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(Path(source))
+    variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(file_path("source", source))
     dataset = xarray.Dataset(variables, attrs=attributes)
     return dataset.set_coords([name for name in variables if name in COORDINATES])
 
@@ -105,8 +105,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
         import pandas
     except ImportError:
         raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
-    if not isinstance(result, Result):
-        raise InputError("result", f"must be a Result, not {as_toml(result)}")
+    instance("result", result, Result, "a Result")
     unit = {**units(result.problem), "angle": "rad", "width": "rad"}
     named = dict(zip(LOADS, load_units(result.problem), strict=True))
     rows = [

@@ -9,7 +9,7 @@ from typing import Any, Unpack
 
 from fastpin.errors import InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import closest, string, whole_number
+from fastpin.model.checks import as_toml, check_callable, closest, file_path, items, string, true_or_false, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -70,12 +70,14 @@ def record(
 
     A KeyboardInterrupt ends the file properly, with all earlier states.
     """
-    path = Path(path)
+    path = file_path("path", path)
     check_writable(path)
     string("title", title)
+    true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
-    save_corners = frozenset(whole_number("save_after", corner, 1) for corner in save_after)
+    corners = items("save_after", save_after, "a list of corners")
+    save_corners = frozenset(whole_number("save_after", corner, 1) for corner in corners)
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
@@ -83,7 +85,9 @@ def record(
         raise InputError("error_bars", "are not kept in files; leave them out, or solve without a file")
     task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
     if max(save_corners, default=0) > len(task.history):
-        raise InputError("save_after", f"must be corners from 1 to {len(task.history)}, not {max(save_corners)}")
+        raise InputError(
+            "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
+        )
     writer = FileRecorder(path, task, title)
     writer.overwrite = overwrite
     writer.check_overwriting()
@@ -112,7 +116,8 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
     SolveError, OSError
         See :func:`record`.
     """
-    path = Path(path)
+    path = file_path("path", path)
+    check_callable("progress", progress)
     check_exists(path)
     writer, restart = reopen(path, progress)
     task = writer.task
@@ -135,7 +140,7 @@ def stored_error(path: str | Path) -> str | None:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(Path(path)) as file:
+    with open_result(file_path("path", path)) as file:
         error = file.attrs.get("error")
         return None if error is None else str(error)
 
@@ -148,7 +153,7 @@ def stored_case(path: str | Path) -> Case:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(Path(path)) as file:
+    with open_result(file_path("path", path)) as file:
         title = str(file["solver"].attrs.get("title", ""))
         return Case(read_problem(file), read_history(file), read_options(file), title)
 

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, whole_number
+from fastpin.model.checks import as_toml, file_path, instance, is_whole, items, string, true_or_false, whole_number
 from fastpin.model.history import LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
@@ -64,11 +64,14 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         If `path` can't be written, holds an unfinished run, or another run is writing to it. Also if a state of the
         result is on another grid.
     """
-    if not isinstance(result, Result):
-        raise InputError("result", f"must be a Result, not {as_toml(result)}")
+    instance("result", result, Result, "a Result")
+    true_or_false("restart", restart)
+    if error is not None:
+        string("error", error)
+    path = file_path("path", path)
     check_writable(path)
-    check_free(Path(path))
-    if is_unfinished(Path(path)):
+    check_free(path)
+    if is_unfinished(path):
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
@@ -107,11 +110,11 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     InputError
         If the file can't be read, was cut short, or is no result of fastpin. Also if it has no such corner or state.
     """
-    path = Path(path)
-    if not isinstance(states, slice) and not all(
-        isinstance(state, (int, np.integer)) for state in np.atleast_1d(states)
-    ):
-        raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
+    path = file_path("path", path)
+    if not isinstance(states, slice):
+        states = items("states", states, "a slice or whole numbers")
+        if not all(map(is_whole, states)):
+            raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
     with open_result(path) as file:
         problem, grid, history = read_problem(file), read_grid(file), read_history(file)
         complete, restart, task = bool(file.attrs["complete"]), None, None
@@ -126,7 +129,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         if isinstance(states, slice):
             states = slice(*states.indices(found))
         elif any(not -found <= state < found for state in states):
-            raise InputError("states", f"must be places from 0 to {found - 1}, not {list(states)}")
+            raise InputError("states", f"must be places from 0 to {found - 1}, not {as_toml(states)}")
         else:
             states = [state % found for state in states]
         cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
@@ -163,7 +166,7 @@ def state_count(path: str | Path) -> int:
     InputError
         See :func:`load`.
     """
-    with open_result(Path(path)) as file:
+    with open_result(file_path("path", path)) as file:
         return count(file["states"])
 
 
@@ -195,7 +198,7 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tu
         last = int(file["states/step"][-1]) + (1 if file["states/fraction"][-1] == 1.0 else 0)
         reached = max(reached, last)
     if not 1 <= after <= reached:
-        raise InputError("after", f"must be a corner from 1 to {reached}, not {after}: {path} has no others")
+        raise InputError("after", f"must be a corner from 1 to {reached}, not {as_toml(after)}: {path} has no others")
     stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
     if "run" not in file.attrs or not stored:
         raise InputError("after", f"{path} was not written by a run: nothing can continue from it")

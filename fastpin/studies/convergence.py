@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import as_toml, check_callable, items, whole_number
 from fastpin.model.grid import MAX_NODES, Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import Method, SolveOptions
@@ -200,12 +200,12 @@ def converge(
     StudyInterrupted
         After Ctrl-C. It holds the study of the finished grids, if there are three.
     """
+    check_callable("progress", progress)
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
     for before, after in pairwise(counts):
         if after < LEAST_RATIO * before:
             raise InputError("nodes", f"must grow by a tenth at least to show an order, but {after} follows {before}")
-    has_increments = np.size(increments) > 0
-    steps = _increasing("increments", increments, 1) if has_increments else ()
+    steps = () if _is_empty(increments) else _increasing("increments", increments, 1)
     single = next((count for count in counts if count >= INCREMENT_NODES), counts[-1])
     if increment_nodes is not None:
         if not steps:
@@ -213,15 +213,21 @@ def converge(
         single = whole_number("increment_nodes", increment_nodes, LEAST_NODES, MAX_NODES)
     task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
     if corner is not None and whole_number("corner", corner, 1) > len(task.history):
-        raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {corner}")
+        raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {as_toml(corner)}")
     return _Work(task, counts, steps, single, corner, progress).study()
 
 
+def _is_empty(values: object) -> bool:
+    return values.size == 0 if isinstance(values, np.ndarray) else isinstance(values, Sequence) and not values
+
+
 def _increasing(field: str, numbers: object, least: int, most: int | None = None) -> tuple[int, ...]:
-    numbers = numbers.tolist() if isinstance(numbers, np.ndarray) else numbers
-    if not isinstance(numbers, Sequence) or isinstance(numbers, str) or len(numbers) < LEAST_GRIDS:
-        raise InputError(field, f"must be at least {LEAST_GRIDS} numbers, not {numbers!r}: an order takes as many")
-    checked = tuple(whole_number(field, number, least, most) for number in numbers)
+    listed = items(field, numbers, "a list of numbers") if isinstance(numbers, Sequence | np.ndarray) else []
+    if len(listed) < LEAST_GRIDS:
+        raise InputError(
+            field, f"must be at least {LEAST_GRIDS} numbers, not {as_toml(numbers)}: an order takes as many"
+        )
+    checked = tuple(whole_number(field, number, least, most) for number in listed)
     for before, after in pairwise(checked):
         if after <= before:
             raise InputError(field, f"must increase from one to the next, but {after} follows {before}")

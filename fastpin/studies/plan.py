@@ -23,7 +23,7 @@ from fastpin.casefile.reader import EXAMPLE, KEYS, read_text
 from fastpin.casefile.toml_text import CaseText, Place, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, choice, closest, number, string, whole_number
+from fastpin.model.checks import as_toml, choice, closest, file_path, instance, number, string, whole_number
 from fastpin.model.loads import LOADS
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units
@@ -110,8 +110,9 @@ class Plan:
         Raises
         ------
         InputError
-            If a CSV file of its loads has changed since the plan was read.
+            If a CSV file of its loads has changed since the plan was read, or `point` is no point.
         """
+        instance("point", point, Point, "a Point of this plan")
         text, case = self._base.vary(point.values)
         if case is None or text.placed or run_id(canonical(case)) != point.id:
             raise InputError(f"run {point.id}", "its loads have changed since the plan was read")
@@ -128,8 +129,10 @@ def read_plan(path: str | Path) -> Plan:
     ------
     CaseFileError
         With all faults of the plan, of the base case and of the runs.
+    InputError
+        If `path` is no path.
     """
-    path = Path(path)
+    path = file_path("path", path)
     return parse_plan(read_text(path), str(path), path.parent)
 
 
@@ -150,11 +153,14 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     ------
     CaseFileError
         With all faults of the text, of the base case and of the runs.
+    InputError
+        If an argument is of the wrong kind.
     """
     source = CaseText(text)
-    plan = _plan(source, text, Path(folder)) if source.readable else None
+    place, title = file_path("folder", folder), string("name", name)
+    plan = _plan(source, text, place) if source.readable else None
     if source.faults:
-        raise CaseFileError(name, source.faults)
+        raise CaseFileError(title, source.faults)
     assert plan is not None
     return plan
 

@@ -23,7 +23,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.storage.files import replacing
 from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.outcome import Outcome
@@ -122,8 +122,12 @@ def run(
         If the executor breaks. Finished runs stay in the directory.
     """
     points = shard_of(plan, shard)
+    true_or_false("retry", retry)
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise InputError("executor", f"must be an executor of concurrent.futures, not {as_toml(executor)}")
+    check_callable("progress", progress)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
-    directory = ensure_directory(Path(directory))
+    directory = ensure_directory(file_path("directory", directory))
     with lock_directory(directory):
         _check_plan_copy(directory, plan.text)
         with Index(directory, create=True) as index:
@@ -152,7 +156,7 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
     InputError
         If the index can't be used, or `shard` is out of range.
     """
-    points, directory = shard_of(plan, shard), Path(directory)
+    points, directory = shard_of(plan, shard), file_path("directory", directory)
     if not has_index(directory):
         return Summary(0, len(points), [])
     with Index(directory) as index:
@@ -177,7 +181,7 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
     InputError
         If the directory holds no index, or the index can't be used.
     """
-    with Index(Path(directory)) as index:
+    with Index(file_path("directory", directory)) as index:
         return index.rows()
 
 
@@ -191,7 +195,9 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     InputError
         If the index can't be used.
     """
-    known_rows = {row["id"]: row for row in load(directory)} if has_index(Path(directory)) else {}
+    instance("plan", plan, Plan, "a Plan")
+    has_rows = has_index(file_path("directory", directory))
+    known_rows = {row["id"]: row for row in load(directory)} if has_rows else {}
     waiting = {"status": WAITING, "reason": None}
     return [
         {**known_rows.get(point.id, waiting), "id": point.id, **dict.fromkeys(plan.fields), **point.values}
@@ -207,10 +213,13 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
     InputError
         If `shard` is out of range.
     """
-    runs = plan.runs
+    runs = instance("plan", plan, Plan, "a Plan").runs
     if shard is None:
         return runs
-    part, count = shard
+    numbers = items("shard", shard, "two numbers, i and n")
+    if len(numbers) != 2:
+        raise InputError("shard", f"must be two numbers, i and n, not {as_toml(shard)}")
+    part, count = numbers
     whole_number("shard", count, 1)
     if not 1 <= whole_number("shard", part, 1) <= count:
         raise InputError("shard", f"must be i/n with i from 1 to n, not {part}/{count}")
@@ -322,15 +331,18 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
         If the parts belong to different plans or versions of fastpin, two results of one run disagree, or files can't
         be used.
     """
-    target = Path(directory)
-    for source in map(Path, sources):
+    target = file_path("directory", directory)
+    if isinstance(sources, str | Path):
+        raise InputError("sources", f"must be a list of directories, not {as_toml(str(sources))}")
+    parts = [file_path("sources", source) for source in items("sources", sources, "a list of directories")]
+    for source in parts:
         if source.resolve() == target.resolve():
             raise InputError(str(source), "can't be merged into itself")
-    _check_parts([*([target] if (target / FILE).exists() else []), *map(Path, sources)])
+    _check_parts([*([target] if (target / FILE).exists() else []), *parts])
     _check_plan_copy(ensure_directory(target))
     with lock_directory(target), Index(target, create=True) as index:
         ensure_directory(target / RESULTS)
-        for source in map(Path, sources):
+        for source in parts:
             with Index(source) as other:
                 _absorb(index, other, target, source)
         return len(index.statuses())

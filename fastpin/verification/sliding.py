@@ -28,7 +28,7 @@ from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import InputError
-from fastpin.model.checks import number, whole_number
+from fastpin.model.checks import as_toml, number, whole_number
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
 
@@ -159,10 +159,10 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
         parts, or it is too narrow for the digits of an angle.
     """
     if not isinstance(problem, Problem):
-        raise InputError("problem", f"must be a Problem, not {problem!r}")
+        raise InputError("problem", f"must be a Problem, not {as_toml(problem)}")
     given = _checked_load(load)
     if isinstance(slip, bool) or not isinstance(slip, (int, np.integer)) or slip not in (1, -1):
-        raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {slip!r}")
+        raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
     counts = TERMS if terms is None else (whole_number("terms", terms, LEAST_TERMS),)
     case = _Case.of(problem, given, -float(slip))
     place: tuple[float, float] | None = None
@@ -194,7 +194,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
 
 def _checked_load(load: Mapping[str, float]) -> dict[str, float]:
     if not isinstance(load, Mapping):
-        raise InputError("load", f"must map load names to numbers, not {load!r}")
+        raise InputError("load", f"must map load names to numbers, not {as_toml(load)}")
     for name in load:
         if name not in SLIDING_LOADS:
             raise InputError(

@@ -218,7 +218,7 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("P = 1e6", "amplitude = {Q = 'x'}", 10, "amplitude.Q: must be a number"),
         ("P = 1e6", "amplitude = {q = 1}", 9, 'did you mean "Q"'),
         ("P = 1e6", "amplitude = {Q = 1}\nphase = {P = 1}", 11, "P has a phase but no amplitude"),
-        ("P = 1e6", "amplitude = {Q = 1}\npoints = 1", 11, "points: must be a whole number of at least 2"),
+        ("P = 1e6", "amplitude = {Q = 1}\npoints = 1", 11, "points: must be a whole number from 2 to 100000"),
         ("P = 1e6", "amplitude = {Q = 1}\nrepeat = 100000000", 11, "more than"),
         ("P = 1e6", "P = 1e6\n[history]\nrepeat = 0", 12, "repeat: must be a whole number"),
         ("[[load]]\nP = 1e6", "[history]\ncsv = 'no such file.csv'", 10, "No such file"),
