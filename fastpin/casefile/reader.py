@@ -18,12 +18,12 @@ from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case, check_arc, check_keep
-from fastpin.model.checks import choice, closest, number, string, true_or_false
+from fastpin.model.checks import choice, closest, file_path, number, string, true_or_false
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
-from fastpin.model.problem import Problem
+from fastpin.model.problem import MOST_RADIUS, Problem
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
@@ -71,8 +71,10 @@ def read_case(path: str | Path) -> Case:
     ------
     CaseFileError
         If the file can't be read or has faults. It lists all faults with their lines.
+    InputError
+        If `path` is no path.
     """
-    path = Path(path)
+    path = file_path("path", path)
     return parse_case(read_text(path), str(path), path.parent)
 
 
@@ -112,11 +114,14 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     ------
     CaseFileError
         If the text has faults. It lists all faults with their lines.
+    InputError
+        If an argument is of the wrong kind.
     """
     source = CaseText(text)
-    case = case_from(source, Path(folder)) if source.readable else None
+    place, title = file_path("folder", folder), string("name", name)
+    case = case_from(source, place) if source.readable else None
     if source.faults:
-        raise CaseFileError(name, source.faults)
+        raise CaseFileError(title, source.faults)
     assert case is not None
     return case
 
@@ -296,7 +301,13 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
     held = pin_load is not None and rotation is not None
     if held:
         values |= {"pin_load": pin_load, "rotation": rotation, "hub_radius": hub_radius}
-    harmless = {"hole_radius": 1e300, "clearance": 0.0, "load_parameter": 0.0, "friction": 0.0, "hub_radius": None}
+    harmless = {
+        "hole_radius": MOST_RADIUS,
+        "clearance": 0.0,
+        "load_parameter": 0.0,
+        "friction": 0.0,
+        "hub_radius": None,
+    }
     problem = _built(contact, make, values, harmless)
     return problem if held else None
 

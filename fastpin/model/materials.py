@@ -19,13 +19,28 @@ from typing import Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, number
+from fastpin.model.checks import choice, instance, number, string
 
 Plane = Literal["strain", "stress"]
-"""Plane strain or plane stress."""
+"""Plane strain or plane stress, for type checkers."""
+
+PLANES = ("strain", "stress")
+"""Words for plane strain and plane stress."""
 
 Convention = Literal["usual", "paper"]
 """Sign conventions of Dundurs' parameters."""
+
+LEAST_MODULUS, MOST_MODULUS = 1e-60, 1e60
+"""Limits of Young's modulus, Pa. Squares of dimensional results are then still numbers, in any units."""
+
+MOST_RATIO = 1e30
+"""Largest ratio of the two moduli. The stiffer body is rigid to the last digit long before."""
+
+LEAST_BETA_STAR, MOST_BETA_STAR = 1e-40, 1e40
+"""Limits of a given composite compliance, 1/Pa. The moduli then keep within their own limits."""
+
+LEAST_SQUEEZE = 1e-11
+"""Least compliance of a pair under uniform pressure, in parts of beta*. A smaller compliance is rounding."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,7 +50,7 @@ class Material:
     Parameters
     ----------
     E : float
-        Young's modulus, Pa, positive; ``math.inf`` for a rigid body.
+        Young's modulus, Pa, from :data:`LEAST_MODULUS` to :data:`MOST_MODULUS`; ``math.inf`` for a rigid body.
     nu : float
         Poisson's ratio, 0 to 0.5.
     name : str, optional
@@ -44,7 +59,7 @@ class Material:
     Raises
     ------
     InputError
-        If `E` is not positive or `nu` is outside [0, 0.5].
+        If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], or `name` is no text.
     """
 
     E: float
@@ -56,11 +71,14 @@ class Material:
         modulus = self.E if rigid else number("E", self.E)
         if modulus <= 0.0:
             raise InputError("E", f"Young's modulus must be positive, not {modulus:g}")
+        if not rigid:
+            number("E", modulus, LEAST_MODULUS, MOST_MODULUS)
         ratio = number("nu", self.nu)
         if not 0.0 <= ratio <= 0.5:
             raise InputError("nu", f"Poisson's ratio must lie between 0 and 0.5, not {ratio:g}")
         object.__setattr__(self, "E", float(modulus))
         object.__setattr__(self, "nu", ratio)
+        string("name", self.name)
 
     def __repr__(self) -> str:
         name = f", {self.name!r}" if self.name else ""
@@ -82,8 +100,11 @@ class Material:
         return self.E / (2.0 * (1.0 + self.nu))
 
     def kolosov(self, plane: Plane) -> float:
-        """Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress."""
-        if plane == "strain":
+        """Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress.
+
+        An unknown `plane` raises :class:`InputError`.
+        """
+        if choice("plane", plane, PLANES) == "strain":
             return 3.0 - 4.0 * self.nu
         return (3.0 - self.nu) / (1.0 + self.nu)
 
@@ -116,7 +137,7 @@ class MaterialPair:
     Raises
     ------
     InputError
-        If both bodies are rigid or `plane` is unknown.
+        If both bodies are rigid, their moduli differ by more than :data:`MOST_RATIO`, or `plane` is unknown.
     """
 
     pin: Material
@@ -124,12 +145,15 @@ class MaterialPair:
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
-        choice("plane", self.plane, ("strain", "stress"))
+        choice("plane", self.plane, PLANES)
         for field, body in (("pin", self.pin), ("plate", self.plate)):
-            if not isinstance(body, Material):
-                raise InputError(field, f"must be a Material, not {body!r}")
+            instance(field, body, Material, "a Material")
         if self.pin.is_rigid and self.plate.is_rigid:
             raise InputError("plate", "pin and plate can't both be rigid")
+        moduli = sorted((self.pin.E, self.plate.E))
+        if math.isfinite(moduli[1]) and moduli[1] > MOST_RATIO * moduli[0]:
+            allowed = f"must not differ by more than a factor {MOST_RATIO:g}; such a stiff body is rigid"
+            raise InputError("plate", f"the moduli of pin and plate {allowed}, not {moduli[0]:g} and {moduli[1]:g}")
 
     def __repr__(self) -> str:
         return f"{self.pin!r} in {self.plate!r}, plane {self.plane}"
@@ -164,13 +188,11 @@ class MaterialPair:
             If a value is out of range, or no plate with 0 <= nu <= 0.5 gives these parameters.
         """
         choice("convention", convention, ("usual", "paper"))
-        choice("plane", plane, ("strain", "stress"))
+        choice("plane", plane, PLANES)
         sign = 1.0 if convention == "usual" else -1.0
         a = sign * number("alpha", alpha, -1.0, 1.0)
         b = sign * number("beta", beta)
-        scale = number("beta_star", beta_star)
-        if scale <= 0.0:
-            raise InputError("beta_star", f"must be positive, not {scale:g}")
+        scale = number("beta_star", beta_star, LEAST_BETA_STAR, MOST_BETA_STAR)
         nu_pin = number("nu_pin", nu_pin, 0.0, 0.5)
         k_pin = Material(1.0, nu_pin).kolosov(plane)
         inverse_g_pin = (1.0 - a) * scale / (k_pin + 1.0)
@@ -194,8 +216,11 @@ class MaterialPair:
         return cls(pin, _from_compliance(inverse_g, min(max(nu, 0.0), 0.5)), plane)
 
     def scaled(self, beta_star: float) -> MaterialPair:
-        """The same pair with both moduli scaled. Its composite compliance is then `beta_star`, 1/Pa."""
-        factor = self.beta_star / beta_star
+        """The same pair with both moduli scaled. Its composite compliance is then `beta_star`, 1/Pa.
+
+        A `beta_star` beyond :data:`LEAST_BETA_STAR` and :data:`MOST_BETA_STAR` raises :class:`InputError`.
+        """
+        factor = self.beta_star / number("beta_star", beta_star, LEAST_BETA_STAR, MOST_BETA_STAR)
         pin = Material(self.pin.E * factor, self.pin.nu, self.pin.name)
         plate = Material(self.plate.E * factor, self.plate.nu, self.plate.name)
         return MaterialPair(pin, plate, self.plane)
@@ -250,6 +275,12 @@ class MaterialPair:
     def gamma_body_prime(self) -> float:
         """Constant gamma'_B of Eq. (56), for a body load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star + self.pin_compliance
+
+    @property
+    def is_incompressible(self) -> bool:
+        """Whether uniform pressure changes neither the pin nor the hole: the pin has nu = 0.5, the plate is rigid."""
+        squeeze = 0.5 * self.plate_compliance + 0.25 * (self.pin_kolosov - 1.0) * self.pin_compliance
+        return squeeze <= LEAST_SQUEEZE * self.beta_star
 
     def dundurs(self, convention: Convention = "usual") -> tuple[float, float]:
         """Dundurs' parameters (alpha, beta) in the given sign convention (see the module's docstring)."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, number, true_or_false
+from fastpin.model.checks import as_toml, choice, instance, number, true_or_false
 from fastpin.model.materials import MaterialPair
 
 PinLoad = Literal["centre", "body"]
@@ -15,6 +15,18 @@ PinLoad = Literal["centre", "body"]
 
 Rotation = Literal["free", "fixed"]
 """Kinds of pin rotation."""
+
+LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
+"""Limits of the hole radius, m. Squares of dimensional results are then still numbers, in any units."""
+
+MOST_PARAMETER = 1e50
+"""Largest load parameter of a dimensionless problem. A larger clearance could only mean a wrong unit."""
+
+MOST_FRICTION = 1e6
+"""Largest coefficient of friction. The pin sticks wherever it touches. Beyond, rounding makes it slip."""
+
+LEAST_HUB = 1e-5
+"""Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -25,11 +37,11 @@ class Problem:
     ----------
     pair : MaterialPair
     hole_radius : float
-        R, m, positive.
+        R, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`.
     clearance : float
         Radial clearance R - R_D, m. Zero is a neat fit, negative an interference fit.
     friction : float
-        Coefficient of friction, >= 0.
+        Coefficient of friction, 0 to :data:`MOST_FRICTION`.
     pin_load : {"centre", "body"}
         The pin's load acts at its centre, or as a uniform body force (section 4 of the paper).
     rotation : {"free", "fixed"}
@@ -38,7 +50,7 @@ class Problem:
     hub_radius : float, optional
         Radius, m, of the circle whose mean rotation is prescribed; only with ``rotation="fixed"``. The rotation of a
         pin under a centre moment depends on where it is measured. The default is the paper's datum,
-        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``.
+        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R.
     dimensionless : bool
         Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
 
@@ -58,17 +70,27 @@ class Problem:
     dimensionless: bool = False
 
     def __post_init__(self) -> None:
-        if not isinstance(self.pair, MaterialPair):
-            raise InputError("pair", f"must be a MaterialPair, not {self.pair!r}")
+        instance("pair", self.pair, MaterialPair, "a MaterialPair")
+        true_or_false("dimensionless", self.dimensionless)
         radius = number("hole_radius", self.hole_radius)
         if radius <= 0.0:
             raise InputError("hole_radius", f"must be positive, not {radius:g}")
+        number("hole_radius", radius, LEAST_RADIUS, MOST_RADIUS)
         clearance = number("clearance", self.clearance)
-        if not self.dimensionless and abs(clearance) >= radius:
+        if self.dimensionless:
+            number("clearance", clearance, -MOST_PARAMETER, MOST_PARAMETER)
+        elif abs(clearance) >= radius:
             raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
         friction = number("friction", self.friction)
         if friction < 0.0:
             raise InputError("friction", f"must not be negative, not {friction:g}")
+        number("friction", friction, 0.0, MOST_FRICTION)
+        if clearance < 0.0 and self.pair.is_incompressible:
+            raise InputError(
+                "clearance",
+                "a pin with nu = 0.5 in a rigid plate keeps its area in plane strain: it fits into no smaller hole; "
+                f"must not be negative, not {clearance:g}",
+            )
         choice("pin_load", self.pin_load, ("centre", "body"))
         choice("rotation", self.rotation, ("free", "fixed"))
         if self.pin_load == "body" and self.rotation == "fixed":
@@ -81,13 +103,14 @@ class Problem:
             hub = number("hub_radius", self.hub_radius)
             if self.rotation == "free":
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
-            if not 0.0 < hub <= radius:
-                raise InputError("hub_radius", f"must lie between 0 and the hole radius {radius:g}, not {hub:g}")
+            if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
+                limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
+                raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
             object.__setattr__(self, "hub_radius", hub)
         object.__setattr__(self, "hole_radius", radius)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
-        object.__setattr__(self, "dimensionless", true_or_false("dimensionless", self.dimensionless))
+        object.__setattr__(self, "dimensionless", bool(self.dimensionless))
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
@@ -114,9 +137,8 @@ class Problem:
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
         tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R.
         """
-        value = number("load_parameter", load_parameter)
-        if not isinstance(pair, MaterialPair):
-            raise InputError("pair", f"must be a MaterialPair, not {pair!r}")
+        value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
+        instance("pair", pair, MaterialPair, "a MaterialPair")
         return cls(pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, dimensionless=True)
 
     @property
@@ -126,7 +148,16 @@ class Problem:
 
     def load_parameter(self, force: float) -> float:
         """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""
-        return self.clearance / (force * self.pair.beta_star)
+        displacement = number("force", force) * self.pair.beta_star
+        parameter = self.clearance / displacement if displacement else math.inf
+        if not math.isfinite(parameter):
+            raise InputError("force", f"is too small for a load parameter: {as_toml(force)}")
+        return parameter
+
+    def natural_loads(self) -> dict[str, float]:
+        """The load of each kind that strains the bodies by about 1, SI, by the kinds of ``LOAD_KIND``."""
+        radius, stress = self.hole_radius, 1.0 / self.pair.beta_star
+        return {"force": radius * stress, "moment": radius * radius * stress, "traction": stress, "rotation": 1.0}
 
     @property
     def hub_compliance(self) -> float:

@@ -28,6 +28,9 @@ log = logging.getLogger(__name__)
 COARSE_NODES = 121
 """Nodes of a coarse run."""
 
+LEAST_HALF = 1e-6
+"""Least half-angle of the estimated contact, rad. Angles hold 16 digits, and nodes within must be distinct."""
+
 WHOLE = 5.6
 """Length of an arc, rad. A wider arc becomes the whole circle."""
 
@@ -168,7 +171,7 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     climbed = angles + np.arcsin(np.clip(-values[loaded, M] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
     angles = np.r_[angles, climbed]
     parameter = problem.load_parameter(float(pin.max()))
-    half = 1.6 if parameter <= 0.0 else min(1.6, 1.3 / math.sqrt(math.pi * parameter))
+    half = 1.6 if parameter <= 0.0 else min(1.6, max(LEAST_HALF, 1.3 / math.sqrt(math.pi * parameter)))
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
 
 
