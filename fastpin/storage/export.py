@@ -13,14 +13,27 @@ from fastpin.model.loads import LOADS
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
-from fastpin.storage.layout import FIELD_KINDS, NODE_FIELDS, RESIDUALS, as_python, load_units, rows_of
+from fastpin.storage.layout import (
+    FIELD_KINDS,
+    NODE_FIELDS,
+    RESIDUALS,
+    STATE_ROWS,
+    as_python,
+    check_states,
+    load_units,
+    read_grid,
+    rows_of,
+)
 from fastpin.storage.store import open_result
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-COORDINATES = ("state", "theta", "load_name", "residual_name", "step", "fraction")
+SCALES = ("state", "theta", "load_name", "residual_name")
+"""Variables that are the scale of a dimension of the same name."""
+
+COORDINATES = (*SCALES, "step", "fraction")
 """Variables that are coordinates of a dataset."""
 
 Variables = dict[str, tuple[list[str], Any, dict[str, str]]]
@@ -62,17 +75,31 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
 def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
     variables: Variables = {}
     with open_result(path) as file:
-        for name, dataset in file["states"].items():
-            scales = [dimension.values() for dimension in dataset.dims]
-            dimensions = [scale[0].name.rpartition("/")[2] if scale else name for scale in scales]
+        group = file["states"]
+        check_states(file, read_grid(file).size)
+        for name in (*SCALES, *STATE_ROWS):
+            dataset = group[name]
             values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
             unit = dataset.attrs.get("unit", "")
-            variables[name] = dimensions, values, {"units": unit if isinstance(unit, str) else ", ".join(unit)}
+            label = {"units": unit if isinstance(unit, str) else ", ".join(unit)}
+            variables[name] = _dimensions(name), values, label
+        sizes = {name: len(variables[name][1]) for name in SCALES}
+        for name, (dimensions, values, _) in variables.items():
+            if values.shape != tuple(sizes[dimension] for dimension in dimensions):
+                raise ValueError(f"states/{name} has the shape {values.shape}")
         return variables, {name: as_python(value) for name, value in file.attrs.items()}
 
 
+def _dimensions(name: str) -> list[str]:
+    """The dimensions of a variable."""
+    if name in SCALES:
+        return [name]
+    second = "theta" if name in NODE_FIELDS else {"loads": "load_name", "residuals": "residual_name"}.get(name)
+    return ["state"] if second is None else ["state", second]
+
+
 def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
-    unit, inner = units(result.problem), {"loads": "load_name", "residuals": "residual_name"}
+    unit = units(result.problem)
     variables: Variables = {
         "state": (["state"], list(range(len(result))), {"units": ""}),
         "theta": (["theta"], result.grid.theta, {"units": "rad"}),
@@ -80,11 +107,10 @@ def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
         "residual_name": (["residual_name"], list(RESIDUALS), {"units": ""}),
     }
     for name, values in rows_of(list(result)).items():
-        second = "theta" if name in NODE_FIELDS else inner.get(name)
-        dimensions = ["state"] if second is None else ["state", second]
+        dimensions = _dimensions(name)
         label = ", ".join(load_units(result.problem)) if name == "loads" else unit.get(FIELD_KINDS.get(name, ""), "")
-        if second is not None:
-            values = values.reshape(len(result), len(variables[second][1]))
+        if len(dimensions) == 2:
+            values = values.reshape(len(result), len(variables[dimensions[1]][1]))
         variables[name] = dimensions, values, {"units": label}
     return variables, {"complete": result.complete, "method": result.method}
 

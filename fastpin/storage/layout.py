@@ -29,6 +29,8 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.kernels.status import Status
+from fastpin.model.checks import number, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
@@ -41,6 +43,7 @@ from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.storage.damage import check_between, check_finite, dataset_of
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -106,6 +109,12 @@ _PROBLEM_FIELDS = (
     "hub_radius",
     "dimensionless",
 )
+
+STATUS_LIMITS = (min(Status), max(Status))
+"""Smallest and largest status of a node."""
+
+LEAST_FORCE = 1e-145
+"""Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 _ROWS = 128  # rows in a chunk of an array without node values
 
@@ -229,7 +238,7 @@ def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
     """Read the statistics of the solver, by name."""
-    return {str(name): as_python(value) for name, value in file["solver/statistics"].attrs.items()}
+    return _read_numbers(file["solver/statistics"])
 
 
 # -- growing arrays: states, cycles -------------------------------------------------------------------------
@@ -353,26 +362,63 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
     """
     size = count(group)
     for name in names:
-        if group[name].shape[0] != size:
-            raise ValueError(f"{group.name[1:]}/{name} has {group[name].shape[0]} rows, not {size}")
+        rows = len(dataset_of(group, name, _dtype(name)))
+        if rows != size:
+            raise ValueError(f"{group.name[1:]}/{name} has {rows} rows, not {size}")
     if isinstance(picked, slice):
         return {name: group[name][picked] for name in names}
-    return {name: np.array([group[name][index] for index in picked]) for name in names}
+    return {
+        name: np.array([group[name][index] for index in picked], group[name].dtype).reshape(-1, *group[name].shape[1:])
+        for name in names
+    }
 
 
-def read_states(file: h5py.File, problem: Problem, grid: Grid, picked: slice | Sequence[int]) -> list[State]:
+def check_states(file: h5py.File, nodes: int) -> None:
+    """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes."""
+    group = file["states"]
+    for name in NODE_FIELDS:
+        dataset_of(group, name, _dtype(name), (nodes,))
+    for name in NUMBER_FIELDS:
+        dataset_of(group, name, _dtype(name), ())
+    dataset_of(group, "residuals", float, (len(RESIDUALS),))
+    if dataset_of(group, "loads", float).ndim != 2 or group["loads"].shape[1] > len(LOADS):
+        raise ValueError(f"states/loads has the shape {group['loads'].shape}")
+
+
+def check_growing(file: h5py.File, nodes: int) -> None:
+    """Raise :class:`ValueError` if a run can't append to the arrays of states and cycles."""
+    check_states(file, nodes)
+    names = {"states": ("state", *STATE_ROWS), "cycles": tuple(CYCLE_FIELDS) if len(file["cycles"]) else ()}
+    for part, arrays in names.items():
+        group = file[part]
+        for name in arrays:
+            dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
+            if dataset.maxshape[0] is not None:
+                raise ValueError(f"{part}/{name} can't grow")
+            if len(dataset) != count(group):
+                raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {count(group)}")
+
+
+def read_states(
+    file: h5py.File, problem: Problem, grid: Grid, picked: slice | Sequence[int], corners: int
+) -> list[State]:
     """Read some states of a result, by their places in the file.
+
+    `corners` is the number of corners of the history.
 
     Raises
     ------
     ValueError
-        If the arrays don't fit each other, or the nodes of `grid`.
+        If the arrays don't fit each other or the nodes of `grid`, or a number is out of range or not finite.
     """
     group = file["states"]
-    for name in NODE_FIELDS:
-        if group[name].shape[1:] != (grid.size,):
-            raise ValueError(f"states/{name} has shape {group[name].shape}, there are {grid.size} nodes")
+    check_states(file, grid.size)
     rows = read_rows(group, STATE_ROWS, picked)
+    for name in (*FIELD_KINDS, "loads"):
+        check_finite(f"states/{name}", rows[name])
+    check_between("states/status", rows["status"], *STATUS_LIMITS)
+    check_between("states/step", rows["step"], 0, corners - 1)
+    check_between("states/fraction", rows["fraction"], 0.0, 1.0)
     loads = all_loads(rows["loads"], 0.0)
     states = []
     for k in range(len(rows["step"])):
@@ -451,30 +497,72 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
     group.create_group("statistics").attrs.update(restart.statistics)
 
 
-def read_restart(group: h5py.Group) -> Restart:
-    """Read a restart from a group of :func:`write_restart`."""
-    arrays = {name: group[f"configurations/{name}"][()] for name in _ARRAYS}
-    arrays["load"] = all_loads(arrays["load"], 0.0)
+def read_restart(group: h5py.Group, nodes: int) -> Restart:
+    """Read a restart, on a grid of so many nodes, from a group of :func:`write_restart`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range, or the arrays don't fit each other.
+    """
+    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in _ARRAYS}
     size = len(arrays["load"])
+    if any(len(array) != size for array in arrays.values()):
+        raise ValueError(f"{group.name[1:]}/configurations has arrays of different lengths")
     configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(size)]
-    known = [
-        KnownConfiguration(configurations[index], bool(ends), int(last), int(period), int(since))
-        for index, ends, last, period, since in group["met"][()]
-    ]
-    marks = {
-        (int(block), int(inner)): CycleEnd(int(corner), int(number), configurations[index], float(dissipation))
-        for (block, inner, index, corner, number), dissipation in zip(
-            group["marks"][()], group["marks_dissipation"][()], strict=True
-        )
-    }
+    met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
+    dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
+    check_between("met", met[:, 0], 0, size - 1)
+    check_between("marks", marks[:, 2], 0, size - 1)
+    check_finite("marks_dissipation", dissipations)
+    load = all_loads(group["load"][()], 0.0)
+    if load.shape != (len(LOADS),):
+        raise ValueError(f"the load of {group.name[1:]} has the shape {load.shape}")
+    check_finite("load", load)
     return Restart(
-        corner=int(group.attrs["corner"]),
-        load=all_loads(group["load"][()], 0.0),
-        force=float(group.attrs["force"]),
-        configuration=configurations[int(group.attrs["configuration"])],
-        dissipation=float(group.attrs["dissipation"]),
-        work=float(group.attrs["work"]),
-        repeats=Repeats(known),
-        marks=marks,
-        statistics={str(name): float(value) for name, value in group["statistics"].attrs.items()},
+        corner=whole_number("corner", as_python(group.attrs["corner"]), 0),
+        load=load,
+        force=number("force", group.attrs["force"], LEAST_FORCE, 1.0 / LEAST_FORCE),
+        configuration=configurations[whole_number("configuration", as_python(group.attrs["configuration"]), 0)],
+        dissipation=number("dissipation", group.attrs["dissipation"]),
+        work=number("work", group.attrs["work"]),
+        repeats=Repeats(
+            [
+                KnownConfiguration(configurations[index], bool(ends), last, period, since)
+                for index, ends, last, period, since in met.tolist()
+            ]
+        ),
+        marks={
+            (block, inner): CycleEnd(corner, times, configurations[index], dissipation)
+            for (block, inner, index, corner, times), dissipation in zip(
+                marks.tolist(), dissipations.tolist(), strict=True
+            )
+        },
+        statistics=_read_numbers(group["statistics"]),
     )
+
+
+def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
+    """Read one array of all configurations of a restart, shape (configurations, ...)."""
+    size = {"motion": 3, "origin": 2, "rest": 2}.get(name, nodes)
+    if name == "load":
+        array = all_loads(dataset_of(group, name, float)[()], 0.0)
+        size = len(LOADS)
+    else:
+        array = dataset_of(group, name, np.int8 if name == "status" else float, (size,))[()]
+    label = f"configurations/{name}"
+    if array.shape[1:] != (size,):
+        raise ValueError(f"{label} has the shape {array.shape}")
+    if name == "status":
+        check_between(label, array, *STATUS_LIMITS)
+    elif name != "origin":  # The origin is NaN before the pin has come to rest.
+        check_finite(label, array)
+    return array
+
+
+def _read_numbers(group: h5py.Group) -> dict[str, float]:
+    """Read the attributes of a group, which must be numbers."""
+    values = {str(name): as_python(value) for name, value in group.attrs.items()}
+    for name, value in values.items():
+        number(name, value)
+    return values

@@ -20,6 +20,7 @@ from fastpin.model.checks import as_toml, file_path, instance, is_whole, items, 
 from fastpin.model.history import LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
+from fastpin.storage.damage import reading
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import check_free, consistent_view, open_h5
 from fastpin.storage.layout import (
@@ -121,11 +122,11 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         restarts = file.get("restart", {})
         found = count(file["states"])
         if after is not None:
-            task, restart = _way_to(path, file, history, after)
+            task, restart = _way_to(path, file, history, after, grid.size)
             history, complete = history[:after], True
             found = int(np.searchsorted(file["states/step"][()], after))
         elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
-            restart = read_restart(restarts["latest"])
+            restart = read_restart(restarts["latest"], grid.size)
         if isinstance(states, slice):
             states = slice(*states.indices(found))
         elif any(not -found <= state < found for state in states):
@@ -134,7 +135,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             states = [state % found for state in states]
         cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
         result = Result(
-            states=read_states(file, problem, grid, states),
+            states=read_states(file, problem, grid, states, len(history)),
             problem=problem,
             history=history,
             grid=grid,
@@ -180,17 +181,12 @@ def open_result(path: Path) -> Iterator[Any]:
         If the file can't be read, was cut short, or is no result of fastpin. Also if the block finds damaged data.
     """
     check_exists(path)
-    with consistent_view(path), open_h5(path) as file:
+    with consistent_view(path), open_h5(path) as file, reading(path):
         check_format(file, str(path))
-        try:
-            yield file
-        except (OSError, KeyError, ValueError, TypeError, IndexError, RuntimeError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
+        yield file
 
 
-def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tuple[Task, Restart]:
+def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes: int) -> tuple[Task, Restart]:
     """Return the task up to the corner `after`, and the latest restart at or before that corner."""
     whole_number("after", after, 1)
     reached = max((int(group.attrs["corner"]) for group in file.get("restart", {}).values()), default=0)
@@ -202,7 +198,7 @@ def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int) -> tu
     stored = [group for group in file.get("restart", {}).values() if group.attrs["corner"] <= after]
     if "run" not in file.attrs or not stored:
         raise InputError("after", f"{path} was not written by a run: nothing can continue from it")
-    start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])))
+    start = read_restart(max(stored, key=lambda group: int(group.attrs["corner"])), nodes)
     task = stored_task(file)
     return replace(task, history=history[:after], options=task.options.changed(shortcut=True), stops=frozenset()), start
 
@@ -211,7 +207,3 @@ def stored_task(file: h5py.File) -> Task:
     """Read the task of the run of a file, on its grid."""
     stops = frozenset(file["solver"].attrs["save_after"].tolist())
     return Task(read_problem(file), read_history(file), read_options(file), read_grid(file), stops=stops)
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]

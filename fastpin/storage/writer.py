@@ -24,6 +24,7 @@ from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.storage.damage import reading
 from fastpin.storage.files import replacing
 from fastpin.storage.journal import JournaledFile
 from fastpin.storage.layout import (
@@ -31,6 +32,7 @@ from fastpin.storage.layout import (
     Rows,
     append,
     check_format,
+    check_growing,
     count,
     cycle_rows,
     option_attributes,
@@ -348,18 +350,21 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         except OSError:
             raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
         try:
-            check_format(h5, str(path))
-            if "run" not in h5.attrs:
-                raise InputError(str(path), "was not written by a run: there is nothing to continue")
-            if h5.attrs["complete"]:
-                raise InputError(str(path), "holds a finished run: there is nothing to continue")
-            task = replace(stored_task(h5), progress=progress)
-            options = h5["solver"].attrs
-            writer = FileRecorder(path, task, str(options["title"]))
-            writer.chosen_arc = bool(options["arc_chosen"])
-            restart = _latest(path, h5, lambda group: writer.reopen(file, h5, group))
-            h5.attrs.pop("error", None)
-            return writer, restart
+            with reading(path):
+                check_format(h5, str(path))
+                if "run" not in h5.attrs:
+                    raise InputError(str(path), "was not written by a run: there is nothing to continue")
+                if h5.attrs["complete"]:
+                    raise InputError(str(path), "holds a finished run: there is nothing to continue")
+                task = replace(stored_task(h5), progress=progress)
+                assert task.grid is not None
+                check_growing(h5, task.grid.size)
+                options = h5["solver"].attrs
+                writer = FileRecorder(path, task, str(options["title"]))
+                writer.chosen_arc = bool(options["arc_chosen"])
+                restart = _latest(path, h5, task.grid.size, lambda group: writer.reopen(file, h5, group))
+                h5.attrs.pop("error", None)
+                return writer, restart
         except BaseException:
             file.abandon()
             h5.close()
@@ -369,10 +374,10 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         raise
 
 
-def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Restart:
+def _latest(path: Path, h5: h5py.File, nodes: int, use: Callable[[h5py.Group], None]) -> Restart:
     """Read the latest restart of a run, from its checkpoint or else from the file itself.
 
-    `use` gets the group of the restart while it is open.
+    `nodes` is the number of nodes of the grid. `use` gets the group of the restart while it is open.
     """
     file_restart = h5["restart/latest"]
     try:
@@ -380,13 +385,13 @@ def _latest(path: Path, h5: h5py.File, use: Callable[[h5py.Group], None]) -> Res
             group: Any = checkpoint["restart"]
             same_run = checkpoint.attrs["run"] == h5.attrs["run"]
             if same_run and group.attrs["corner"] >= file_restart.attrs["corner"]:
-                restart = read_restart(group)
+                restart = read_restart(group, nodes)
                 use(group)
                 return restart
     except FileNotFoundError:
         pass
-    except (OSError, KeyError):
+    except (OSError, KeyError, ValueError, TypeError, IndexError):
         log.warning("%s can't be read: continuing from an earlier corner", checkpoint_of(path))
-    restart = read_restart(file_restart)
+    restart = read_restart(file_restart, nodes)
     use(file_restart)
     return restart

@@ -1,0 +1,76 @@
+"""Damaged files: one sentence in place of the errors of h5py and NumPy, and checks of stored arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from fastpin.errors import FastpinError, InputError
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn every error of the block, which reads the file `path`, into one sentence.
+
+    Raises
+    ------
+    InputError
+        If the block found damaged data, or the data do not fit into memory.
+    """
+    try:
+        yield
+    except FastpinError:
+        raise
+    except MemoryError as error:
+        raise InputError(str(path), f"needs more memory than there is: {_first_line(error)}") from None
+    except Exception as error:  # h5py and NumPy raise errors of many kinds.
+        raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
+
+
+def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...] | None = None) -> h5py.Dataset:
+    """Return an array of a group. Its numbers must be of a type, and its rows of a shape.
+
+    Parameters
+    ----------
+    group : h5py.Group
+    name : str
+    dtype : type
+        Type of the numbers.
+    shape : tuple of int, optional
+        Shape of a row: of the array without its first dimension.
+
+    Raises
+    ------
+    ValueError
+        If the array is missing, of another type, or of another shape.
+    """
+    dataset = group.get(name)
+    label = f"{group.name}/{name}".strip("/")
+    if not isinstance(dataset, h5py.Dataset):
+        raise ValueError(f"there is no array {label}")
+    if dataset.dtype != np.dtype(dtype):
+        raise ValueError(f"{label} has numbers of the type {dataset.dtype}, not {np.dtype(dtype)}")
+    if shape is not None and (dataset.ndim != len(shape) + 1 or dataset.shape[1:] != shape):
+        raise ValueError(f"{label} has shape {dataset.shape}, not (rows, {', '.join(map(str, shape))})")
+    return dataset
+
+
+def check_finite(label: str, array: np.ndarray) -> None:
+    """Raise :class:`ValueError` if an array has a number that is not finite."""
+    if not np.isfinite(array).all():
+        raise ValueError(f"{label} has a number that is not finite")
+
+
+def check_between(label: str, array: np.ndarray, least: float, most: float) -> None:
+    """Raise :class:`ValueError` if a number of an array is below `least` or above `most`."""
+    if array.size and not (array.min() >= least and array.max() <= most):
+        raise ValueError(f"{label} has a number outside {least:g} to {most:g}")
+
+
+def _first_line(error: BaseException) -> str:
+    text = (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]
+    return "".join(letter for letter in text[:300] if letter.isprintable())
