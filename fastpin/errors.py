@@ -10,6 +10,11 @@ class FastpinError(Exception):
     """Base class of all errors raised by fastpin."""
 
 
+def printable(text: str) -> str:
+    """Text on one line: line ends and other characters that can't be printed become escapes, as in Python."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
+
+
 class InputError(FastpinError, ValueError):
     """Input that can't be used. The message says what is allowed.
 
@@ -22,9 +27,9 @@ class InputError(FastpinError, ValueError):
     """
 
     def __init__(self, field: str, message: str) -> None:
-        super().__init__(f"{field}: {message}")
+        super().__init__(printable(f"{field}: {message}"))
         self.field = field
-        self.reason = message
+        self.reason = printable(message)
 
     def __reduce__(self) -> tuple[type[InputError], tuple[str, str]]:
         return type(self), (self.field, self.reason)
@@ -40,9 +45,9 @@ class CaseFileError(InputError):
     """
 
     def __init__(self, name: str, problems: list[tuple[int, str]]) -> None:
-        self.problems = sorted(problems, key=lambda problem: problem[0])
+        self.problems = sorted(((line, printable(text)) for line, text in problems), key=lambda problem: problem[0])
         super().__init__(name, self.problems[0][1])
-        lines = [f"{name}{f', line {line}' if line else ''}: {text}" for line, text in self.problems]
+        lines = [f"{printable(name)}{f', line {line}' if line else ''}: {text}" for line, text in self.problems]
         self.args = ("\n".join(lines),)
 
     def __reduce__(self) -> tuple[type[CaseFileError], tuple[str, list[tuple[int, str]]]]:  # type: ignore[override]

@@ -252,7 +252,7 @@ def change_result(rng: np.random.Generator, path: Path) -> None:
             item = file[name]
             value = VALUES[int(rng.integers(len(VALUES)))]
             attributes = list(item.attrs)
-            with contextlib.suppress(TypeError, OSError, ValueError, RuntimeError, KeyError):
+            with contextlib.suppress(TypeError, OSError, ValueError, RuntimeError, KeyError, OverflowError):
                 if attributes and rng.random() < 0.5:
                     chosen = attributes[int(rng.integers(len(attributes)))]
                     if rng.random() < 0.25:

@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
+from hypothesis import HealthCheck, settings
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+
+settings.register_profile(
+    "gate",
+    derandomize=True,  # the same examples in every run
+    database=None,
+    deadline=None,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+settings.register_profile("long", parent=settings.get_profile("gate"), derandomize=False, max_examples=2_000)
+settings.load_profile(os.environ.get("FASTPIN_HYPOTHESIS", "gate"))
 
 
 @pytest.fixture(scope="session")

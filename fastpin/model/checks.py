@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, printable
 
 T = TypeVar("T")
 
@@ -198,8 +198,7 @@ def _is_unicode(text: str) -> bool:
 
 def _cut(words: str) -> str:
     """Words on one line that can be printed, at most :data:`LONGEST_TEXT` characters."""
-    shown = " ".join(words[: 2 * LONGEST_TEXT].split())
-    shown = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in shown)
+    shown = printable(" ".join(words[: 2 * LONGEST_TEXT].split()))
     return shown if len(shown) < LONGEST_TEXT else f"{shown[: LONGEST_TEXT - 4]}..."
 
 

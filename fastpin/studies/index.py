@@ -12,9 +12,10 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from fastpin.errors import InputError
+from fastpin.model.checks import choice, instance, number, string, whole_number
 from fastpin.studies.outcome import KEY_FIGURES, Outcome
 from fastpin.studies.plan import Plan, Point, Spacing
 from fastpin.version import __version__
@@ -156,17 +157,23 @@ class Index:
     @property
     def fields(self) -> dict[str, Spacing]:
         """All fields that were ever varied in this directory, with the spacing of their values."""
-        return json.loads(self.read_note("fields") or "{}")
+        with self._as_input_error():
+            fields = _table(self.read_note("fields"))
+            for name, spacing in fields.items():
+                choice(f"spacing of {name}", spacing, get_args(Spacing))
+            return fields
 
     def read_note(self, name: str) -> str | None:
         """Read a note on the whole sweep: "version", "plan" (its digest), "title", "text" or "fields"."""
-        return self._one("SELECT value FROM sweep WHERE name = ?", name)
+        value = self._one("SELECT value FROM sweep WHERE name = ?", name)
+        with self._as_input_error():
+            return _text(name, value)
 
     def statuses(self) -> dict[str, tuple[str, str | None]]:
         """Read status ("waiting", "done", "failed") and reason of a failure, by id."""
         with self._as_input_error():
             cursor = self._database.execute("SELECT id, status, reason FROM runs")
-            return {run: (status, reason) for run, status, reason in cursor}
+            return {str(run): (_status(status), _text("reason", reason)) for run, status, reason in cursor}
 
     def rows(self) -> list[dict[str, Any]]:
         """Read all rows, in the order of their insertion. A row is a dict from column to value.
@@ -178,12 +185,13 @@ class Index:
             cursor = self._database.execute("SELECT * FROM runs ORDER BY rowid")
             names = [column[0] for column in cursor.description]
             rows = [dict(zip(names, row, strict=True)) for row in cursor]
-        for row in rows:
-            for name in fields:
-                row[name] = _value(name, row[name])
-            for name in ("versions", "input"):
-                row[name] = json.loads(row[name]) if row[name] else {}
-        return rows
+            for row in rows:
+                _check_row(row)
+                for name in fields:
+                    row[name] = _value(name, row[name])
+                for name in ("versions", "input"):
+                    row[name] = _table(row[name])
+            return rows
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
         """Copy the rows of these ids, and the notes, from another index of the same plan."""
@@ -229,13 +237,19 @@ class Index:
 
     @contextmanager
     def _as_input_error(self) -> Iterator[None]:
-        """Raise :class:`InputError` with one sentence for an error of SQLite in the block."""
+        """Raise :class:`InputError` with one sentence for an error of SQLite, or a damaged value, in the block."""
         try:
             yield
+        except InputError as error:
+            if error.field == str(self.path):
+                raise
+            raise InputError(str(self.path), f"is damaged: {error}") from None
         except (sqlite3.OperationalError, sqlite3.InternalError) as error:
             raise InputError(str(self.path), f"can't be used: {error}") from None
         except sqlite3.DatabaseError as error:
             raise InputError(str(self.path), f"is no index of a sweep, or a damaged one: {error}") from None
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
+            raise InputError(str(self.path), f"is damaged: {type(error).__name__}: {error}") from None
 
 
 @contextmanager
@@ -262,6 +276,31 @@ def lock_directory(directory: Path) -> Iterator[None]:
         yield
     finally:
         lock.close()
+
+
+def _check_row(row: dict[str, Any]) -> None:
+    """Check the kinds of values in a row."""
+    _status(row["status"])
+    for name in ("id", "reason", "started", "host"):
+        _text(name, row[name])
+    whole_number("dimensionless", row["dimensionless"], 0, 1)
+    for name in (*KEY_FIGURES, "seconds"):
+        if row[name] is not None:
+            number(name, row[name])
+
+
+def _status(value: Any) -> str:
+    return choice("status", value, (WAITING, DONE, FAILED))
+
+
+def _text(name: str, value: Any) -> str | None:
+    return None if value is None else string(name, value)
+
+
+def _table(text: Any) -> dict[str, Any]:
+    """A JSON object as a dict; empty without a text."""
+    table = json.loads(text) if text else {}
+    return instance("JSON", table, dict, "a table")
 
 
 def _quoted(names: Iterable[str]) -> str:

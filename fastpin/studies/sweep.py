@@ -386,5 +386,7 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
 def _check_agreement(first_row: dict[str, Any], second_row: dict[str, Any], source: Path) -> None:
     for name in MUST_AGREE:
         first, second = first_row[name], second_row[name]
+        if first is None or second is None:
+            raise InputError(str(source), f"run {first_row['id']} is done, but has no {name}")
         if abs(first - second) > AGREEMENT * max(abs(first), abs(second)):
             raise InputError(str(source), f"run {first_row['id']} has {name} = {second:.9g}, elsewhere {first:.9g}")

@@ -1,0 +1,213 @@
+"""Strategies of hypothesis: valid and odd input in Python, in case files and in plans."""
+
+from __future__ import annotations
+
+import dataclasses
+import datetime
+import json
+import math
+from decimal import Decimal
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+import fastpin
+from fastpin.model.history import Block
+from fastpin.model.loads import LOADS
+from fastpin.model.options import MOST_BETWEEN, SolveOptions
+
+Tables = dict[str, dict[str, Any]]
+"""Sections of a case file, without its loads."""
+
+
+def between(least: float, most: float) -> st.SearchStrategy[float]:
+    """Floats from `least` to `most`, without subnormal ones."""
+    return st.floats(least, most, allow_nan=False, allow_subnormal=False)
+
+
+def scale(least: int, most: int) -> st.SearchStrategy[float]:
+    """Positive floats over many decades, from 10^least to 10^most."""
+    return st.builds(lambda digits, power: digits * 10.0**power, between(1.0, 9.99), st.integers(least, most - 1))
+
+
+words = st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=12)
+"""Text that a title may have."""
+
+moduli = scale(-3, 14)
+ratios = st.one_of(st.sampled_from([0.0, 0.25, 0.3, 0.5]), between(0.0, 0.5))
+
+materials = st.builds(fastpin.Material, moduli, ratios, words) | st.just(fastpin.Material.rigid())
+
+
+@st.composite
+def pairs(draw: st.DrawFn) -> fastpin.MaterialPair:
+    """Two materials. At most one of them is rigid."""
+    pin, plate = draw(materials), draw(materials)
+    if pin.is_rigid and plate.is_rigid:
+        plate = fastpin.MATERIALS["steel"]
+    return fastpin.MaterialPair(pin, plate, draw(st.sampled_from(["strain", "stress"])))
+
+
+@st.composite
+def problems(draw: st.DrawFn) -> fastpin.Problem:
+    """Problems in SI units, and dimensionless ones."""
+    pair, friction = draw(pairs()), draw(st.just(0.0) | between(0.0, 1.5))
+    pin_load = draw(st.sampled_from(["centre", "body"]))
+    rotation = "free" if pin_load == "body" else draw(st.sampled_from(["free", "fixed"]))
+    share = draw(between(1e-3, 1.0)) if rotation == "fixed" and draw(st.booleans()) else None
+    least = 0.0 if pair.is_incompressible else -0.01
+    if draw(st.booleans()):
+        parameter = draw(between(least, 3.0))
+        return fastpin.Problem.from_load_parameter(pair, parameter, friction, pin_load, rotation, share)
+    radius = draw(scale(-5, 2))
+    hub = None if share is None else share * radius
+    return fastpin.Problem(pair, radius, draw(between(least, 0.01)) * radius, friction, pin_load, rotation, hub)
+
+
+@st.composite
+def corners(draw: st.DrawFn, problem: fastpin.Problem, most: int = 5) -> list[dict[str, float]]:
+    """Corners of loads that a problem can carry, of the size that strains it by some thousandths."""
+    natural = problem.natural_loads()
+    kinds = fastpin.model.loads.LOAD_KIND
+    names = [name for name in LOADS if name not in ("M", "rotation")]
+    if problem.rotation == "fixed":
+        names.append("rotation")
+    elif problem.pin_load == "centre":
+        names.append("M")
+    row = st.dictionaries(st.sampled_from(names), between(-1e-3, 1e-3), min_size=1, max_size=3)
+    rows = draw(st.lists(row, min_size=1, max_size=most))
+    return [{name: part * natural[kinds[name]] for name, part in row.items()} for row in rows]
+
+
+@st.composite
+def histories(draw: st.DrawFn, problem: fastpin.Problem) -> fastpin.LoadHistory:
+    """Histories of a few blocks, some of them repeated."""
+    history = fastpin.LoadHistory(draw(corners(problem)))
+    for count in draw(st.lists(st.integers(1, 40), max_size=2)):
+        history += fastpin.LoadHistory(draw(corners(problem, 3))).repeated(count)
+    return history
+
+
+@st.composite
+def options(draw: st.DrawFn, closed: bool = False) -> SolveOptions:
+    """Options of the solver. With `closed` an arc is the whole circle."""
+    given: dict[str, Any] = {
+        "nodes": draw(st.integers(5, 20_000)),
+        "method": draw(st.sampled_from(["path", "increment"])),
+    }
+    if given["method"] == "increment":
+        given["increments"] = draw(st.none() | st.integers(1, 500))
+    if draw(st.booleans()):
+        start, length = draw(between(-4.0, 3.0)), draw(between(0.1, 6.0))
+        given["arc"] = (start, start + (2.0 * math.pi if closed else length))
+    fractions = st.lists(between(0.01, 0.99), min_size=1, max_size=4, unique=True).map(sorted).map(tuple)
+    given["between"] = draw(st.integers(0, MOST_BETWEEN) | fractions)
+    given["keep"] = draw(st.sampled_from(["all", "corners", "every 10", "every 2"]))
+    given |= {name: draw(st.booleans()) for name in ("shortcut", "error_bars")}
+    return SolveOptions(**given)
+
+
+@st.composite
+def cases(draw: st.DrawFn) -> fastpin.Case:
+    """Whole cases: problem, history, options and title. Materials have no names: case files can't give them."""
+    problem = draw(problems())
+    pin, plate = (
+        fastpin.Material.rigid() if body.is_rigid else fastpin.Material(body.E, body.nu)
+        for body in (problem.pair.pin, problem.pair.plate)
+    )
+    problem = dataclasses.replace(problem, pair=fastpin.MaterialPair(pin, plate, problem.pair.plane))
+    history = draw(histories(problem))
+    chosen = draw(options(problem.clearance < 0.0))
+    return fastpin.Case(problem, history, chosen, draw(words))
+
+
+def tables_of(case: fastpin.Case) -> Tables:
+    """The sections of the case file of a case, without its loads."""
+    problem = case.problem
+    bodies = {"pin": problem.pair.pin, "plate": problem.pair.plate}
+    tables: Tables = {
+        name: {"rigid": True} if body.is_rigid else {"E": body.E, "nu": body.nu} for name, body in bodies.items()
+    }
+    contact: dict[str, Any] = {"plane": problem.pair.plane, "friction": problem.friction}
+    contact |= {"pin_load": problem.pin_load, "rotation": problem.rotation}
+    if problem.dimensionless:
+        contact["load_parameter"] = problem.clearance
+    else:
+        contact |= {"hole_radius": problem.hole_radius, "clearance": problem.clearance}
+    if problem.hub_radius is not None:
+        contact["hub_radius"] = problem.hub_radius
+    tables["contact"] = contact
+    tables["solve"] = {name: value for name, value in case.options.keywords().items() if value is not None}
+    return tables
+
+
+def text_of(case: fastpin.Case, tables: Tables | None = None) -> str:
+    """The text of the case file of a case. Other `tables` may replace its sections."""
+    parts = [f"title = {as_toml(case.title)}\n"]
+    for name, table in (tables_of(case) if tables is None else tables).items():
+        parts.append(f"[{name}]\n" + "".join(f"{key} = {as_toml(value)}\n" for key, value in table.items()))
+    for block in case.history.blocks:
+        parts += _load_blocks(block)
+    return "\n".join(parts)
+
+
+def _load_blocks(block: Block) -> list[str]:
+    """The [[load]] blocks of a block of a history. The corners of a repeated block give the same loads."""
+    given = ~np.isnan(block.given)
+    if block.cycle:
+        assert all(np.array_equal(row, given[0]) for row in given), "a case file repeats lists only"
+        lists = "".join(
+            f"{name} = {as_toml(block.given[:, k].tolist())}\n" for k, name in enumerate(LOADS) if given[0, k]
+        )
+        return [f"[[load]]\n{lists}repeat = {block.count}\n"]
+    return [
+        "[[load]]\n" + "".join(f"{name} = {as_toml(float(row[k]))}\n" for k, name in enumerate(LOADS) if mask[k])
+        for row, mask in zip(block.given, given, strict=True)
+    ]
+
+
+def as_toml(value: Any) -> str:
+    """A value in TOML."""
+    if isinstance(value, (bool, str)):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(as_toml, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key} = {as_toml(item)}' for key, item in value.items())}}}"
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return f"{value:.1f}"
+    return str(value)
+
+
+scalars = st.one_of(
+    st.booleans(),
+    st.integers(),
+    st.integers(-(10**25), 10**25),
+    st.floats(),
+    words,
+    st.sampled_from([10**400, "inf", "every 3", "corners", "path", "", "\x7f"]),
+)
+"""Values that TOML has, of all kinds and sizes."""
+
+toml_values = scalars | st.lists(scalars, max_size=4) | st.just([[1.0], [2.0]]) | st.just({"P": 1.0})
+"""Scalars, lists and tables that TOML has."""
+
+odd_values = st.one_of(
+    toml_values,
+    st.none(),
+    st.binary(max_size=4),
+    st.complex_numbers(),
+    st.decimals(),
+    st.fractions(),
+    st.sampled_from(
+        [
+            np.float32(0.5), np.int8(3), np.uint64(2**64 - 1), np.True_, np.nan, np.array(0.5), np.array([0.1, 0.2]),
+            np.ones((2, 2)), np.array([]), np.array(["a"]), np.array([None]), np.complex128(1.0),
+            np.timedelta64(5, "s"),            np.datetime64("2020-01-01"), np.ma.masked, Decimal("sNaN"), datetime.date(2020, 1, 1),
+            object(), int, len,
+            {}, set(), range(3), slice(1), bytearray(b"1"), memoryview(b"1"), [[1.0], [1.0, 2.0]], "\ud800", "a\0b",
+        ]
+    ),
+)  # fmt: skip
+"""Values of any class."""
