@@ -204,7 +204,8 @@ odd_values = st.one_of(
         [
             np.float32(0.5), np.int8(3), np.uint64(2**64 - 1), np.True_, np.nan, np.array(0.5), np.array([0.1, 0.2]),
             np.ones((2, 2)), np.array([]), np.array(["a"]), np.array([None]), np.complex128(1.0),
-            np.timedelta64(5, "s"),            np.datetime64("2020-01-01"), np.ma.masked, Decimal("sNaN"), datetime.date(2020, 1, 1),
+            np.timedelta64(5, "s"),
+            np.datetime64("2020-01-01"), np.ma.masked, Decimal("sNaN"), datetime.date(2020, 1, 1),
             object(), int, len,
             {}, set(), range(3), slice(1), bytearray(b"1"), memoryview(b"1"), [[1.0], [1.0, 2.0]], "\ud800", "a\0b",
         ]
