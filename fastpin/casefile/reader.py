@@ -28,6 +28,9 @@ from fastpin.model.problem import MOST_RADIUS, Problem
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
 
+MOST_BYTES = 100_000_000
+"""Most bytes of a case file or a plan."""
+
 _MATERIAL_KEYS = ("material", "E", "nu", "rigid")
 KEYS: dict[str, tuple[str, ...]] = {
     "pin": _MATERIAL_KEYS,
@@ -84,13 +87,16 @@ def read_text(path: Path) -> str:
     Raises
     ------
     CaseFileError
-        If the file can't be read, or is not UTF-8 text.
+        If the file can't be read, is larger than :data:`MOST_BYTES`, or is not UTF-8 text.
     """
     try:
-        raw = path.read_bytes()
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
+    if len(raw) > MOST_BYTES:
+        raise CaseFileError(str(path), [(0, f"is larger than {MOST_BYTES:,} bytes")])
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

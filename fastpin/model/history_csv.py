@@ -14,6 +14,9 @@ from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import number
 from fastpin.model.loads import LOADS, load_index
 
+LONGEST_LINE = 1_000_000
+"""Most characters of a line. A device such as /dev/zero has no end of a line."""
+
 MOST_FAULTS = 20
 """Most faulty lines of a CSV file that an error lists."""
 
@@ -30,7 +33,9 @@ def read_corners(file: TextIO, name: str) -> np.ndarray:
     header: list[int] | None = None
     numbers = array("d")  # grows in place, and becomes the table without a copy
     empty_row = array("d", [math.nan] * len(LOADS))
-    for line_number, line in enumerate(file, start=1):
+    for line_number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE + 1), ""), start=1):
+        if len(line) > LONGEST_LINE:
+            raise CaseFileError(name, [(line_number, f"the line is longer than {LONGEST_LINE:,} characters")])
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         cells = next(csv.reader([line], skipinitialspace=True))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -222,7 +222,9 @@ def _is_empty(values: object) -> bool:
 
 
 def _increasing(field: str, numbers: object, least: int, most: int | None = None) -> tuple[int, ...]:
-    listed = items(field, numbers, "a list of numbers") if isinstance(numbers, Sequence | np.ndarray) else []
+    listed: list[Any] = []
+    if isinstance(numbers, Sequence | np.ndarray) and not isinstance(numbers, (str, bytes)):
+        listed = items(field, numbers, "a list of numbers")
     if len(listed) < LEAST_GRIDS:
         raise InputError(
             field, f"must be at least {LEAST_GRIDS} numbers, not {as_toml(numbers)}: an order takes as many"

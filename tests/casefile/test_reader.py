@@ -11,6 +11,7 @@ import pytest
 
 from fastpin.casefile.reader import EXAMPLE, CaseFileError, builtin_case, parse_case, read_case
 from fastpin.errors import InputError
+from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -383,3 +384,13 @@ def test_a_pair_with_names_keeps_them() -> None:
     pair = parse_case(GOOD).problem.pair
     assert pair == MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
     assert math.isclose(pair.pin.E, 210e9)
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "endless"])
+def test_a_file_without_an_end_is_refused(path, tmp_path, monkeypatch):
+    monkeypatch.setattr("fastpin.casefile.reader.MOST_BYTES", 1000)
+    (tmp_path / "endless").write_text("#" * 2000)
+    with pytest.raises(CaseFileError, match="is larger than 1,000 bytes"):
+        read_case(tmp_path / path)
+    with pytest.raises(CaseFileError, match=r"is longer than 1,000,000 characters|holds no load corners"):
+        LoadHistory.from_csv(tmp_path / path)
