@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sqlite3
 from collections.abc import Callable, Iterator
@@ -208,3 +209,25 @@ def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
         pass
     with Index(tmp_path):
         pass
+
+
+@pytest.mark.parametrize(
+    ("statement", "reason"),
+    [
+        ("UPDATE sweep SET value = '{' WHERE name = 'fields'", "is damaged"),
+        ("UPDATE sweep SET value = '5' WHERE name = 'fields'", "JSON: must be a table, not 5"),
+        ("UPDATE runs SET status = 'fine'", 'status: must be "waiting" or "done" or "failed"'),
+        ("UPDATE runs SET peak_pressure = 'high'", 'peak_pressure: must be a number, not "high"'),
+        ("UPDATE runs SET input = '{'", "is damaged"),
+        ('ALTER TABLE runs RENAME COLUMN "contact.friction" TO "other"', "is damaged"),
+    ],
+)
+def test_a_damaged_row_is_described(tmp_path, statement, reason):
+    plan = parse_plan('[grid]\n"contact.friction" = [0.1, 0.2]\n')
+    with Index(tmp_path, create=True) as index:
+        index.expect(plan, plan.points)
+    with contextlib.closing(sqlite3.connect(tmp_path / "index.sqlite", isolation_level=None)) as database:
+        database.execute(statement)
+    with Index(tmp_path) as index, pytest.raises(InputError, match=reason) as raised:
+        index.rows()
+    assert "\n" not in str(raised.value)
