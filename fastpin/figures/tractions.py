@@ -22,11 +22,13 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.errors import InputError
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, check_figure_text, draw_and_save, fitted_legend, spread
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import acting_loads, scaled, units
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
+from fastpin.states.zones import ALL_ROUND
 
 _SHADE = "0.93"
 
@@ -160,13 +162,15 @@ class _Frame:
         if grid.closed and not touched.all():
             # The circle is cut open in the middle of the longest stretch that is open in all states.
             self.order = np.roll(self.order, -_middle_of_longest_gap(touched))
+        elif grid.closed:  # cut open at the top
+            self.order = np.roll(self.order, -int(np.argmin(np.mod(grid.theta - ALL_ROUND[0] + AT_TOP, 2.0 * math.pi))))
         angle = np.degrees(np.unwrap(grid.theta[self.order])) + 90.0
         if grid.closed:
             self.order = np.append(self.order, self.order[0])
             angle = np.append(angle, angle[0] + 360.0)
         inside = angle[touched[self.order]]
         first, last = (inside[0], inside[-1]) if inside.size else (angle[0], angle[-1])
-        turn = 360.0 * math.floor((0.5 * (first + last) + 180.0) / 360.0)
+        turn = 360.0 * turns_from_bottom(math.radians(0.5 * (first + last) - 90.0))
         self.angle = angle - turn
         margin = 0.04 * (last - first) + 1.0
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)

@@ -15,14 +15,38 @@ def angle_between(angles: np.ndarray | float, angle: np.ndarray | float) -> np.n
 BOTTOM = -0.5 * math.pi
 """Angle of the bottom of the hole, rad."""
 
+AT_TOP = 1e-6
+"""An angle this close to the top of the hole, rad, counts as the top. Rounding then does not choose its side."""
+
+
+def turns_from_bottom(angle: float) -> float:
+    """The whole turns from the bottom of the hole to an angle, rad: 0 for angles in (-3 pi/2, pi/2].
+
+    An angle at the top to within :data:`AT_TOP` counts as pi/2.
+    """
+    return math.ceil((angle - BOTTOM - AT_TOP) / (2.0 * math.pi) - 0.5)
+
+
+def near_bottom(angle: float) -> float:
+    """An angle moved by whole turns into (-3 pi/2, pi/2], rad: at most half a turn from the bottom of the hole."""
+    return angle - 2.0 * math.pi * turns_from_bottom(angle) if math.isfinite(angle) else angle
+
+
+def interval_near_bottom(start: float, stop: float) -> tuple[float, float]:
+    """An interval moved by whole turns, rad. Its middle then lies in (-3 pi/2, pi/2].
+
+    An interval across the top may so begin before -3 pi/2 or end after pi/2.
+    """
+    turn = 2.0 * math.pi * turns_from_bottom(0.5 * (start + stop))
+    return start - turn, stop - turn
+
 
 def from_bottom(angle: float) -> float:
     """An angle in rad as degrees from the bottom of the hole, in (-180, 180]."""
-    degrees = math.degrees(angle) + 90.0
-    return 180.0 - (180.0 - degrees) % 360.0
+    return math.degrees(angle) + 90.0 - 360.0 * turns_from_bottom(angle)
 
 
 def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
-    """An interval in rad as degrees from the bottom of the hole. Its stop may exceed 180."""
-    first = from_bottom(start)
-    return first, first + math.degrees(stop - start)
+    """An interval in rad as degrees from the bottom of the hole. Its middle lies in (-180, 180]."""
+    turn = 360.0 * turns_from_bottom(0.5 * (start + stop))
+    return math.degrees(start) + 90.0 - turn, math.degrees(stop) + 90.0 - turn

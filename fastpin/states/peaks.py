@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fastpin.model.angles import angle_between
+from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.states import fits
 from fastpin.states.zones import Interval, is_all_round, runs, unrolled
@@ -99,7 +99,7 @@ def shear_peak(
         peaks.append(_peak_of_nodes(grid, upright, sticking, top, border_nearby, bent))
     highest = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
-    value, place, node = max(equal, key=lambda peak: _from_bottom(peak[1]))
+    value, place, node = max(equal, key=lambda peak: near_bottom(peak[1]))
     return math.copysign(value, float(shear[node])), place
 
 
@@ -153,12 +153,7 @@ def _peaks_at_borders(
 def _top(grid: Grid, values: np.ndarray) -> int:
     """The node with the largest value. In symmetric contacts two nodes have it: take the one to the right."""
     equal = np.flatnonzero(values >= (1.0 - TIE) * values.max())
-    return int(equal[np.argmax([_from_bottom(angle) for angle in grid.theta[equal]])])
-
-
-def _from_bottom(angle: float) -> float:
-    """Angle from the bottom of the hole, -pi to pi."""
-    return math.remainder(angle + 0.5 * math.pi, 2.0 * math.pi)
+    return int(equal[np.argmax([near_bottom(angle) for angle in grid.theta[equal]])])
 
 
 def _borders(stick: list[Interval]) -> Iterator[tuple[float, int]]:

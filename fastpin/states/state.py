@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
@@ -25,6 +25,10 @@ class State:
 
     The arrays are read-only, because steps that repeat share them. All numbers are in SI units, or in the units of a
     dimensionless problem.
+
+    The angles that are read lie at most half a turn from the bottom of the hole, also if the grid begins elsewhere. The
+    angle of a peak lies in (-3 pi/2, pi/2], and so does the middle of every interval. An interval across the top may so
+    begin before -3 pi/2 or end after pi/2. Intervals are in increasing order. An interval all round is (-3 pi/2, pi/2).
 
     Attributes
     ----------
@@ -123,6 +127,11 @@ class State:
         The pressure is extrapolated to zero, see :mod:`fastpin.states.fits`. A contact round the whole circle is one
         interval of length 2 pi.
         """
+        return zones.in_order(self._contact)
+
+    @cached_property
+    def _contact(self) -> list[Interval]:
+        """The contact intervals of the runs of closed nodes, in their order and in the turns of the grid."""
         return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_exponents, self._sticking)
 
     @cached_property
@@ -132,15 +141,20 @@ class State:
         mu N - |T| is extrapolated to zero, see :mod:`fastpin.states.fits`. Sticking nodes that reach |T| = mu N exactly
         at this load count as slipping.
         """
+        return zones.in_order(self._stick)
+
+    @cached_property
+    def _stick(self) -> list[Interval]:
+        """The stick intervals of the runs of sticking nodes, in their order; inside the intervals of `_contact`."""
         closed = self.status != OPEN
         return zones.stick_intervals(
-            self.grid, self._sticking, self._reserve, closed, self.contact, self._stick_exponents
+            self.grid, self._sticking, self._reserve, closed, self._contact, self._stick_exponents
         )
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:
         """Slip zones (start, stop, sign), rad: the parts of the contact that do not stick, and the sign of the slip."""
-        return zones.complement(self.grid, self.contact, self.stick, self.status)
+        return zones.in_order(zones.complement(self.grid, self._contact, self._stick, self.status))
 
     @property
     def peak_pressure(self) -> float:
@@ -164,17 +178,20 @@ class State:
 
     @cached_property
     def _pressure_peak(self) -> tuple[float, float]:
-        return peaks.pressure_peak(self.grid, self.pressure, self._tilt != 0.0) if self.in_contact else (0.0, math.nan)
+        if not self.in_contact:
+            return 0.0, math.nan
+        peak, place = peaks.pressure_peak(self.grid, self.pressure, self._tilt != 0.0)
+        return peak, near_bottom(place)
 
     @cached_property
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
         peak, place = peaks.shear_peak(
-            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self.stick, self._tilt
+            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self._stick, self._tilt
         )
         most = self.problem.friction * self.peak_pressure
-        return min(max(peak, -most), most), place
+        return min(max(peak, -most), most), near_bottom(place)
 
     @cached_property
     def _tilt(self) -> float:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
-from fastpin.model.angles import angle_between
+from fastpin.model.angles import BOTTOM, angle_between, interval_near_bottom
 from fastpin.model.grid import Grid
 from fastpin.states import fits
 
 Interval = tuple[float, float]
 """Start and stop angle of an interval round the hole, rad, start < stop."""
+
+ALL_ROUND = BOTTOM - math.pi, BOTTOM + math.pi
+"""The interval of a zone round the whole hole, from the top to the top, rad."""
+
+Zone = TypeVar("Zone", bound=tuple[Any, ...])
 
 
 def square_root(run: np.ndarray) -> tuple[float, float]:
@@ -23,6 +29,20 @@ def square_root(run: np.ndarray) -> tuple[float, float]:
 def is_all_round(length: float) -> bool:
     """Whether a zone of a given length, rad, goes all round the hole."""
     return length >= 2.0 * math.pi - 1e-9
+
+
+def in_order(zones: Sequence[Zone]) -> list[Zone]:
+    """Zones with start and stop moved by whole turns, in the order in which they are reported.
+
+    The middle of each zone lies in (-3 pi/2, pi/2], at most half a turn from the bottom of the hole. A zone across the
+    top may so begin before -3 pi/2 or end after pi/2. The angles increase from zone to zone. A zone round the whole
+    hole is :data:`ALL_ROUND`.
+    """
+    moved: list[Any] = [
+        (*(ALL_ROUND if is_all_round(stop - start) else interval_near_bottom(start, stop)), *rest)
+        for start, stop, *rest in zones
+    ]
+    return sorted(moved)
 
 
 def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
@@ -152,8 +172,8 @@ def complement(
     """
     zones = []
     for start, stop in contact:
-        if is_all_round(stop - start) and stick:  # contact all round: begin at the start of a stick zone
-            start = stick[0][0]
+        if is_all_round(stop - start):  # begin at a border, so that no zone is cut in two
+            start = stick[0][0] if stick else _change_of_sign(grid, status)
             stop = start + 2.0 * math.pi
             stick = [
                 (a - t, b - t) for a, b in stick for t in [2.0 * math.pi * math.floor((a - start) / (2.0 * math.pi))]
@@ -164,6 +184,17 @@ def complement(
             if b - a > 1e-9:
                 zones += _by_sign(grid, a, b, status)
     return zones
+
+
+def _change_of_sign(grid: Grid, status: np.ndarray) -> float:
+    """An angle on a circle at which the sign of the slip changes between two nodes, rad; the top if there is none."""
+    slipping = np.flatnonzero(np.abs(status) == 1)
+    changes = slipping[status[slipping] != np.roll(status[slipping], 1)]
+    if changes.size == 0:
+        return ALL_ROUND[0]
+    before = slipping[slipping < changes[0]]
+    last = float(grid.theta[before[-1]]) if before.size else float(grid.theta[slipping[-1]]) - 2.0 * math.pi
+    return 0.5 * (last + float(grid.theta[changes[0]]))
 
 
 def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[tuple[float, float, int]]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin.model.angles import BOTTOM
+from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.states.state import State
 from fastpin.verification import closed_forms, integral_equations
 
@@ -95,8 +95,8 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
         sxx=load["sxx"], syy=load["syy"], sxy=load["sxy"],
     )  # fmt: skip
     ((start, stop),) = state.contact
-    away = (state.theta > start + margin) & (state.theta < stop - margin)
+    away = np.abs(angle_between(state.theta, 0.5 * (start + stop))) < 0.5 * (stop - start) - margin
     for border in np.ravel(state.stick):
-        away &= np.abs(state.theta - border) > margin
+        away &= np.abs(angle_between(state.theta, border)) > margin
     first, second = (float(np.abs(residual[away]).max()) for residual in equations)
     return first, second

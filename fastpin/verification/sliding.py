@@ -28,6 +28,7 @@ from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import InputError
+from fastpin.model.angles import interval_near_bottom, near_bottom
 from fastpin.model.checks import as_toml, number, whole_number
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
@@ -65,7 +66,7 @@ class Sliding:
         Sense in which the pin slides over the plate. 1 is along +theta (counter-clockwise), with T = -mu N; -1 is the
         opposite.
     contact : (float, float)
-        The two ends, rad; -pi/2 is the bottom of the hole.
+        The two ends, rad; -pi/2 is the bottom of the hole. Their middle lies in (-3 pi/2, pi/2].
     exponents : (float, float)
         Powers of the distance with which the pressure falls to zero at the two ends. They add to one. Both are 1/2
         without friction or with alpha* = 0.
@@ -110,7 +111,7 @@ class Sliding:
 
     @property
     def peak_pressure_angle(self) -> float:
-        """Angle of the largest contact pressure, rad."""
+        """Angle of the largest contact pressure, rad, in (-3 pi/2, pi/2]."""
         return self._peak[0]
 
     @cached_property
@@ -124,7 +125,7 @@ class Sliding:
             method="bounded",
             options={"xatol": 1e-12},
         )
-        return float(found.x), -float(found.fun)
+        return near_bottom(float(found.x)), -float(found.fun)
 
 
 def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, terms: int | None = None) -> Sliding:
@@ -182,7 +183,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
             problem,
             given,
             int(slip),
-            (centre - half, centre + half),
+            interval_near_bottom(centre - half, centre + half),
             case.exponents,
             moment,
             patch.coefficients,
