@@ -43,10 +43,15 @@ def interval_near_bottom(start: float, stop: float) -> tuple[float, float]:
 
 def from_bottom(angle: float) -> float:
     """An angle in rad as degrees from the bottom of the hole, in (-180, 180]."""
-    return math.degrees(angle) + 90.0 - 360.0 * turns_from_bottom(angle)
+    return _turned_degrees(angle, turns_from_bottom(angle))
 
 
 def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
     """An interval in rad as degrees from the bottom of the hole. Its middle lies in (-180, 180]."""
-    turn = 360.0 * turns_from_bottom(0.5 * (start + stop))
-    return math.degrees(start) + 90.0 - turn, math.degrees(stop) + 90.0 - turn
+    first = _turned_degrees(start, turns_from_bottom(0.5 * (start + stop)))
+    return first, first + math.degrees(stop - start)
+
+
+def _turned_degrees(angle: float, turns: float) -> float:
+    """Degrees from the bottom of an angle in rad, less a number of whole turns. They are counted from the top."""
+    return 180.0 - (180.0 - (math.degrees(angle) + 90.0) + 360.0 * turns)

@@ -161,7 +161,7 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
         return 0.5 * float(theta[0] + outside)
     spacing = float(theta[1] - theta[0])
     low = (outside - float(theta[0])) / spacing
-    place = _by_two_nodes(float(quantity[0]), float(quantity[1]), exponent, low)
+    place = by_two_nodes(float(quantity[0]), float(quantity[1]), exponent, low)
     most = max(theta.size // 2, min(theta.size - 1, EDGE_LEAST))
     if alike >= sum(EDGE_NEAREST):
         most = min(most, alike)
@@ -187,11 +187,11 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
     return float(theta[0] + spacing * place)
 
 
-def _by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
-    """Zero of the line through two nodes, in node distances from the first one.
+def by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
+    """Zero of the line through two nodes, in node distances from the first one, the outermost node of a zone.
 
     The line goes through the values to the power 1/`exponent`. If it does not fall outwards, the result is halfway to
-    the next open node at `low`.
+    the next node outwards at `low` < 0.
     """
     outer, inner = abs(first) ** (1.0 / exponent), abs(second) ** (1.0 / exponent)
     return max(-outer / (inner - outer), low) if inner > outer else 0.5 * low

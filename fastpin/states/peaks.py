@@ -25,10 +25,25 @@ RIVAL = 0.8
 With less, the cusp at the border is no candidate for the peak.
 """
 
-CUSP_RISE = 1.2
+STEEPEST_RISE = 1.25
 """Largest height of a cusp above the largest nodal value.
 
-The unit is the drop from the largest nodal value to the lower one of its two neighbours.
+The unit is the larger of two drops, from the largest node to its neighbour and on to the next node. On the side where
+the drop is smaller the traction is smooth. It goes on from there to the cusp at most this many node distances: 1.1 in
+the reference cases of docs/accuracy.md.
+"""
+
+BORDER_DOUBT = 0.01
+"""Largest relative difference of mu N at two readings of a border, which then agree.
+
+One is the fit of the border, the other the line through the two outermost sticking nodes. Where they do not agree, the
+lower bound counts.
+"""
+
+LARGEST_FALL = 0.25
+"""Largest depth of a cusp at a border below the largest nodal value, in the unit of STEEPEST_RISE.
+
+The nodal values beside a border have errors of this size. A single high node, or three, is no such error.
 """
 
 DROP_NODES = 3
@@ -96,7 +111,10 @@ def shear_peak(
     peaks, fitted_here, border_nearby = _peaks_at_borders(grid, pressure, shear, sticking, friction, stick, tilt, top)
     if not fitted_here:
         upright, bent = (shear, tilt) if shear[top] >= 0.0 else (-shear, -tilt)
-        peaks.append(_peak_of_nodes(grid, upright, sticking, top, border_nearby, bent))
+        value, place, _ = _peak_of_nodes(grid, upright, sticking, top, border_nearby, bent)
+        if sticking[top]:  # Coulomb's law also holds between the nodes
+            value = min(value, friction * float(pressure[[top - 1, top, (top + 1) % grid.size]].max()))
+        peaks.append((value, place, top))
     highest = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
     value, place, node = max(equal, key=lambda peak: near_bottom(peak[1]))
@@ -126,7 +144,8 @@ def _peaks_at_borders(
     """
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, fitted_here, border_nearby = [], False, False
-    for border, outwards in _borders(stick):
+    bound = friction * pressure
+    for border, outwards, nodes in _borders(grid, sticking, stick):
         offsets = outwards * angle_between(grid.theta, border)
         spacing = float(grid.weights[np.argmin(np.abs(offsets))])
         if not slipping[(offsets >= 0.0) & (offsets <= 1.5 * spacing)].any():
@@ -136,17 +155,21 @@ def _peaks_at_borders(
         border_nearby = border_nearby or abs(offsets[top]) <= 2.0 * spacing
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue
+        exponent = 0.5 + (outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt)
         peak = None
         if tilt != 0.0:
-            bent = outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt
-            peak = _border_peak(grid, friction * pressure, border, outwards, 0.5 + bent, highest)
-        if peak is not None and _likely(grid, magnitude, highest, peak[0]):
-            fitted_here = fitted_here or highest == top
-            peaks.append((*peak, highest))
-            continue
-        at_border = friction * _interpolated(grid, pressure, border)
-        if _likely(grid, magnitude, highest, at_border):
-            peaks.append((at_border, border, highest))
+            peak = _border_peak(grid, bound, border, outwards, exponent, highest)
+        fitted = peak is not None and _likely(grid, magnitude, highest, peak[0])
+        fitted_here = fitted_here or (fitted and highest == top)
+        value, place = (
+            peak if peak is not None and fitted else (friction * _interpolated(grid, pressure, border), border)
+        )
+        if fitted or _likely(grid, magnitude, highest, value):
+            at_two_nodes = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
+            if value > (1.0 + BORDER_DOUBT) * at_two_nodes:
+                value = min(value, max(at_two_nodes, float(magnitude[highest])))
+            most = float(magnitude[highest]) + STEEPEST_RISE * _smaller_drop(grid, magnitude, highest)
+            peaks.append((min(value, most), place, highest))
     return peaks, fitted_here, border_nearby
 
 
@@ -156,14 +179,41 @@ def _top(grid: Grid, values: np.ndarray) -> int:
     return int(equal[np.argmax([near_bottom(angle) for angle in grid.theta[equal]])])
 
 
-def _borders(stick: list[Interval]) -> Iterator[tuple[float, int]]:
-    """Ends of the stick zones, rad, and the direction (1 or -1) from each end out of its zone.
+def _borders(grid: Grid, sticking: np.ndarray, stick: list[Interval]) -> Iterator[tuple[float, int, np.ndarray]]:
+    """Ends of the stick zones, rad, the direction (1 or -1) from each end out of its zone, and the nodes of the zone.
 
-    A contact that sticks all round has none.
+    The nodes begin with the one at that end. A contact that sticks all round has no borders.
     """
-    for start, stop in stick:
+    for run, (start, stop) in zip(runs(grid, sticking), stick, strict=True):
         if not is_all_round(stop - start):
-            yield from ((start, -1), (stop, 1))
+            yield from ((start, -1, run), (stop, 1, run[::-1]))
+
+
+def _bound_by_two_nodes(
+    grid: Grid, bound: np.ndarray, magnitude: np.ndarray, nodes: np.ndarray, outwards: int, exponent: float
+) -> float:
+    """The bound mu N at the border, whose place is read from the two outermost sticking nodes alone.
+
+    The first two of `nodes` are these two. mu N is linear from there to the slipping node beside them.
+    """
+    inner, outer = int(nodes[0]), int(nodes[0] + outwards) % grid.size
+    part = 0.5
+    if nodes.size > 1:
+        left, right = grid.knots()
+        widths = left[inner] - grid.theta[inner], right[inner] - grid.theta[inner]
+        low = widths[outwards > 0] / widths[outwards < 0]
+        first, second = (bound - magnitude)[nodes[:2]]
+        part = fits.by_two_nodes(float(first), float(second), exponent, float(low)) / low
+    return float(bound[inner] + part * (bound[outer] - bound[inner]))
+
+
+def _smaller_drop(grid: Grid, values: np.ndarray, top: int) -> float:
+    """The drop of the values from the node `top`, on the side where it is smaller: the unit of STEEPEST_RISE."""
+    drops = []
+    for side in (-1, 1):
+        first, second, third = (float(values[(top + side * step) % grid.size]) for step in (0, 1, 2))
+        drops.append(max(first - second, second - third))
+    return min(drops)
 
 
 def _peak_of_nodes(
@@ -201,18 +251,16 @@ def _border_peak(
 def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, tilt: float) -> tuple[float, float] | None:
     """Height and angle of the cusp of an earlier border inside a stick zone; None if the fits are not plausible.
 
-    A plausible cusp is not below the largest nodal value. It is above it by at most CUSP_RISE times the drop from
-    there to the lower neighbouring node.
+    A plausible cusp is not below the largest nodal value, and not higher than the values on both sides allow.
     """
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
         return None
-    drop = float(shear[top] - min(shear[top - 1], shear[(top + 1) % grid.size]))
-    best = None
+    highest, best = float(shear[top]) + STEEPEST_RISE * _smaller_drop(grid, shear, top), None
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)
         found = fits.cusp(outwards * x[order], shear[nodes[order]], 0.5 + outwards * tilt)
-        if found is None or not 0.0 <= found.value - shear[top] <= CUSP_RISE * drop:
+        if found is None or not shear[top] <= found.value <= highest:
             continue
         if best is None or found.error < best[0]:
             best = found.error, found.value, float(grid.theta[top] + outwards * found.place * grid.weights[top])
@@ -223,12 +271,12 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
     """Whether a fitted peak is consistent with the nodal values about the largest one, at `top`.
 
     The values fall by some amount within DROP_NODES nodes on either side. The peak may be higher than the largest
-    value by the larger drop, or lower by the smaller drop.
+    value by the larger one of these drops, or lower by LARGEST_FALL.
     """
     steps = np.arange(1, DROP_NODES + 1)
     left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
-    drops = float(values[top] - left.min()), float(values[top] - right.min())
-    return -min(drops) <= peak - values[top] <= max(drops)
+    fall = LARGEST_FALL * _smaller_drop(grid, values, top)
+    return bool(-fall <= peak - values[top] <= values[top] - min(left.min(), right.min()))
 
 
 def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:
