@@ -41,17 +41,17 @@ def interval_near_bottom(start: float, stop: float) -> tuple[float, float]:
     return start - turn, stop - turn
 
 
+def degrees_from_bottom(angle: float, turns: float = 0.0) -> float:
+    """An angle in rad as degrees from the bottom of the hole, less a number of whole turns."""
+    return 180.0 - (180.0 - (math.degrees(angle) + 90.0) + 360.0 * turns)
+
+
 def from_bottom(angle: float) -> float:
     """An angle in rad as degrees from the bottom of the hole, in (-180, 180]."""
-    return _turned_degrees(angle, turns_from_bottom(angle))
+    return degrees_from_bottom(angle, turns_from_bottom(angle))
 
 
 def interval_from_bottom(start: float, stop: float) -> tuple[float, float]:
     """An interval in rad as degrees from the bottom of the hole. Its middle lies in (-180, 180]."""
-    first = _turned_degrees(start, turns_from_bottom(0.5 * (start + stop)))
+    first = degrees_from_bottom(start, turns_from_bottom(0.5 * (start + stop)))
     return first, first + math.degrees(stop - start)
-
-
-def _turned_degrees(angle: float, turns: float) -> float:
-    """Degrees from the bottom of an angle in rad, less a number of whole turns. They are counted from the top."""
-    return 180.0 - (180.0 - (math.degrees(angle) + 90.0) + 360.0 * turns)

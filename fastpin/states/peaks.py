@@ -40,10 +40,10 @@ One is the fit of the border, the other the line through the two outermost stick
 lower bound counts.
 """
 
-LARGEST_FALL = 0.25
-"""Largest depth of a cusp at a border below the largest nodal value, in the unit of STEEPEST_RISE.
+LARGEST_FALL = 0.01
+"""Largest depth of a cusp at a border below the largest nodal value, in parts of this value.
 
-The nodal values beside a border have errors of this size. A single high node, or three, is no such error.
+The nodal values beside a border have errors up to this size. A node that is higher by more is no such error.
 """
 
 DROP_NODES = 3
@@ -156,20 +156,17 @@ def _peaks_at_borders(
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue
         exponent = 0.5 + (outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt)
-        peak = None
-        if tilt != 0.0:
-            peak = _border_peak(grid, bound, border, outwards, exponent, highest)
-        fitted = peak is not None and _likely(grid, magnitude, highest, peak[0])
-        fitted_here = fitted_here or (fitted and highest == top)
-        value, place = (
-            peak if peak is not None and fitted else (friction * _interpolated(grid, pressure, border), border)
-        )
-        if fitted or _likely(grid, magnitude, highest, value):
-            at_two_nodes = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
-            if value > (1.0 + BORDER_DOUBT) * at_two_nodes:
-                value = min(value, max(at_two_nodes, float(magnitude[highest])))
-            most = float(magnitude[highest]) + STEEPEST_RISE * _smaller_drop(grid, magnitude, highest)
-            peaks.append((min(value, most), place, highest))
+        peak = _border_peak(grid, bound, border, outwards, exponent, highest) if tilt != 0.0 else None
+        if peak is not None and _likely(grid, magnitude, highest, peak[0]):
+            fitted_here = fitted_here or highest == top
+            peaks.append((*peak, highest))
+            continue
+        at_border = friction * _interpolated(grid, pressure, border)
+        if _likely(grid, magnitude, highest, at_border):
+            by_two_nodes = _bound_by_two_nodes(grid, bound, magnitude, nodes, outwards, exponent)
+            if at_border > (1.0 + BORDER_DOUBT) * by_two_nodes:
+                at_border = min(at_border, max(by_two_nodes, float(magnitude[highest])))
+            peaks.append((min(at_border, _highest_cusp(grid, magnitude, highest)), border, highest))
     return peaks, fitted_here, border_nearby
 
 
@@ -192,28 +189,28 @@ def _borders(grid: Grid, sticking: np.ndarray, stick: list[Interval]) -> Iterato
 def _bound_by_two_nodes(
     grid: Grid, bound: np.ndarray, magnitude: np.ndarray, nodes: np.ndarray, outwards: int, exponent: float
 ) -> float:
-    """The bound mu N at the border, whose place is read from the two outermost sticking nodes alone.
+    """The bound mu N at a border whose place is read from the two outermost sticking nodes alone.
 
-    The first two of `nodes` are these two. mu N is linear from there to the slipping node beside them.
+    These are the first two of `nodes`. mu N is linear from the first one to the slipping node beside it.
     """
     inner, outer = int(nodes[0]), int(nodes[0] + outwards) % grid.size
     part = 0.5
     if nodes.size > 1:
         left, right = grid.knots()
-        widths = left[inner] - grid.theta[inner], right[inner] - grid.theta[inner]
-        low = widths[outwards > 0] / widths[outwards < 0]
-        first, second = (bound - magnitude)[nodes[:2]]
-        part = fits.by_two_nodes(float(first), float(second), exponent, float(low)) / low
+        before, after = float(grid.theta[inner] - left[inner]), float(right[inner] - grid.theta[inner])
+        low = -after / before if outwards > 0 else -before / after
+        first, second = (float(value) for value in (bound - magnitude)[nodes[:2]])
+        part = fits.by_two_nodes(first, second, exponent, low) / low
     return float(bound[inner] + part * (bound[outer] - bound[inner]))
 
 
-def _smaller_drop(grid: Grid, values: np.ndarray, top: int) -> float:
-    """The drop of the values from the node `top`, on the side where it is smaller: the unit of STEEPEST_RISE."""
+def _highest_cusp(grid: Grid, values: np.ndarray, top: int) -> float:
+    """Largest height of a cusp beside the node `top` that the values on both sides allow, see STEEPEST_RISE."""
     drops = []
     for side in (-1, 1):
         first, second, third = (float(values[(top + side * step) % grid.size]) for step in (0, 1, 2))
         drops.append(max(first - second, second - third))
-    return min(drops)
+    return float(values[top]) + STEEPEST_RISE * min(drops)
 
 
 def _peak_of_nodes(
@@ -256,7 +253,7 @@ def _old_cusp(grid: Grid, sticking: np.ndarray, shear: np.ndarray, top: int, til
     nodes, x = _around(grid, sticking, top)
     if nodes.size < 3:
         return None
-    highest, best = float(shear[top]) + STEEPEST_RISE * _smaller_drop(grid, shear, top), None
+    highest, best = _highest_cusp(grid, shear, top), None
     for outwards in (1.0, -1.0):
         order = slice(None) if outwards > 0.0 else slice(None, None, -1)
         found = fits.cusp(outwards * x[order], shear[nodes[order]], 0.5 + outwards * tilt)
@@ -271,12 +268,12 @@ def _likely(grid: Grid, values: np.ndarray, top: int, peak: float) -> bool:
     """Whether a fitted peak is consistent with the nodal values about the largest one, at `top`.
 
     The values fall by some amount within DROP_NODES nodes on either side. The peak may be higher than the largest
-    value by the larger one of these drops, or lower by LARGEST_FALL.
+    value by the larger drop, or lower by the smaller drop and LARGEST_FALL.
     """
     steps = np.arange(1, DROP_NODES + 1)
     left, right = (values[(top + side * steps) % grid.size] for side in (-1, 1))
-    fall = LARGEST_FALL * _smaller_drop(grid, values, top)
-    return bool(-fall <= peak - values[top] <= values[top] - min(left.min(), right.min()))
+    drops = float(values[top] - left.min()), float(values[top] - right.min())
+    return bool(-min(*drops, LARGEST_FALL * values[top]) <= peak - values[top] <= max(drops))
 
 
 def _around(grid: Grid, mask: np.ndarray, node: int) -> tuple[np.ndarray, np.ndarray]:

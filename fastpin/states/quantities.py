@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.model.angles import angle_between, from_bottom
+from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.states.state import State
 from fastpin.states.zones import Interval, is_all_round
 
@@ -66,7 +66,8 @@ QUANTITIES: dict[str, Quantity] = {
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
 A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",
-"stick_1_start" and so on. They are angles in rad, counted along +theta. A contact all round has no ends.
+"stick_1_start" and so on. They are angles in rad, counted along +theta, in the order of :attr:`State.contact` and
+:attr:`State.stick`. A contact all round has no ends.
 """
 
 ZONES = ("contact", "stick")
@@ -167,10 +168,14 @@ def _match_intervals(mine: Sequence[Interval], theirs: Sequence[Interval]) -> li
 
 
 def in_degrees(name: str, value: float) -> float:
-    """Convert a value for reports: angles (from the bottom of the hole) and widths in degrees, others unchanged."""
+    """Convert a value for reports: angles (from the bottom of the hole) and widths in degrees, others unchanged.
+
+    The angle of a peak lies in (-180, 180]. The ends of an interval across the top may lie beyond.
+    """
     kind = quantity(name).kind
     if kind == "angle":
-        return from_bottom(value) if math.isfinite(value) else math.nan
+        in_turn = from_bottom if name in QUANTITIES else degrees_from_bottom
+        return in_turn(value) if math.isfinite(value) else math.nan
     return math.degrees(value) if kind == "width" else value
 
 

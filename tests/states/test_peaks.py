@@ -1,0 +1,76 @@
+"""Peaks of shear are read beyond the nodes only where the values on both sides allow it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin.model.grid import Grid
+from fastpin.states import peaks
+
+GRID = Grid.arc(-1.0, 1.0, 81)
+X = np.arange(-40.0, 41.0)
+ALL = np.ones(81, dtype=bool)
+
+
+def nodal(values: np.ndarray) -> float:
+    return float(np.abs(values).max())
+
+
+def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, ends=(-1.0, 1.0), tilt=0.0) -> float:
+    """The peak with mu = 1."""
+    return abs(peaks.shear_peak(GRID, pressure, shear, sticking, 1.0, [ends] if sticking.any() else [], tilt)[0])
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize("steepness", [0.02, 0.2, 0.6])
+@pytest.mark.parametrize("place", [-0.9, -0.4, 0.0, 0.3, 0.8])
+def test_a_cusp_inside_a_stick_zone_is_not_far_above_its_smooth_side(sign: int, steepness: float, place: float) -> None:
+    """Noise of a coarse grid is enough for a fit far above the nodes."""
+    x, slope = sign * X, 0.005
+    before = np.maximum(place - x, 0.0)
+    exact = 1.0 - slope * np.maximum(x - place, 0.0) - steepness * np.sqrt(before) / (1.0 + 0.2 * before)
+    for seed in range(6):
+        noise = 0.2 * steepness * np.random.default_rng(seed).uniform(-1.0, 1.0, 81) * (np.abs(X) < 3)
+        shear = np.where(before > 0.0, exact + noise, exact)
+        value = read(shear, 5.0 + 0.0 * X)
+        assert nodal(shear) <= value <= max(1.0, nodal(shear)) + 3.0 * slope
+
+
+def test_a_peak_of_a_stick_zone_is_within_coulombs_bound() -> None:
+    before = np.maximum(0.8 - X, 0.0)
+    shear = 1.0 - 0.02 * X - 0.3 * np.sqrt(before)
+    free, bounded = (read(shear, pressure) for pressure in (5.0 + 0.0 * X, np.maximum(shear, nodal(shear))))
+    assert free > nodal(shear)
+    assert bounded == pytest.approx(nodal(shear))
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.05, -0.05])
+@pytest.mark.parametrize("end", [0.05, 0.2, 0.45, 0.7, 0.95])
+@pytest.mark.parametrize("wrong", [-0.6, 0.0, 0.6])
+def test_a_border_that_is_read_wrongly_does_not_raise_the_peak(tilt: float, end: float, wrong: float) -> None:
+    """mu N falls steeply to the contact edge, three nodes from the border at `end`."""
+    bound = np.where(X > -30.0, np.sqrt(np.maximum(end + 3.0 - X, 0.0) / 3.0), 0.0)
+    sticking = (end > X) & (X > -30.0)
+    shear = np.maximum(bound - 0.6 * np.sqrt(np.maximum(end - X, 0.0)), 0.0)
+    place = float(np.interp(end + wrong, X, GRID.theta))
+    value = read(shear, bound, sticking, (float(GRID.theta[11]), place), tilt)
+    slope = float(bound[40] - bound[41])
+    assert nodal(shear) * 0.98 <= value <= nodal(shear) + 1.3 * slope
+    if wrong < 0.0:
+        assert value <= 1.08  # 1.10 to 1.16 by the wrong border alone
+    if wrong == 0.0 == tilt:
+        assert value == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.05])
+@pytest.mark.parametrize("high", [0.01, 0.07, 0.2])
+def test_three_high_nodes_are_not_read_away(tilt: float, high: float) -> None:
+    """A border beside the three nodes of the first contact: their value is the largest there is."""
+    smooth = 1.0 - 2e-4 * X**2
+    sticking = X < 2.5
+    bound = smooth + high * (np.abs(X) <= 1.0)
+    shear = bound - np.where(sticking, 0.002 * np.sqrt(np.maximum(2.5 - X, 0.0)), 0.0)
+    place = float(np.interp(2.5, X, GRID.theta))
+    value = read(shear, bound, sticking, (-1.0, place), tilt)
+    assert nodal(shear) * 0.99 - 1e-4 <= value <= nodal(shear) * 1.01
