@@ -137,7 +137,7 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
 
 
 def first_contact(
-    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray, least_nodes: int = 3
+    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
 ) -> tuple[Configuration, float]:
     """Find the first contact on the way from load `before` to load `after`: one implicit increment from rest.
 
@@ -148,8 +148,6 @@ def first_contact(
         The pin without contact. It is not changed.
     before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
-    least_nodes : int
-        Nodes of each patch of a contact that the whole step makes, at least.
 
     Returns
     -------
@@ -171,9 +169,9 @@ def first_contact(
         return release(system, floating, after), 1.0
     resting, begins = found
     if not isinstance(system, LargeSystem):
-        return _first_patch(system, resting, (begins, before, after), least_nodes)
+        return _first_patch(system, resting, (begins, before, after))
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after), least_nodes)
+    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after))
     return window.paste(patch, resting), part
 
 
@@ -260,7 +258,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
 
 
 def _first_patch(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], least_nodes: int
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray]
 ) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
@@ -296,9 +294,7 @@ def _first_patch(
         part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
     if best is None:
         raise ResolutionError(NARROW)
-    count, found, fraction = best
-    if fraction == 1.0 and count < patches * least_nodes and not self_similar:
-        raise ResolutionError(NARROW)
+    _, found, fraction = best
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
     if not rough and system.friction > 0.0:

@@ -16,7 +16,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import M, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals, elastic_energy
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, SolveError
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import IncrementStepper
 from fastpin.solver.path import PathStepper
@@ -27,6 +27,7 @@ from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, p
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.states.zones import runs
 
 log = logging.getLogger(__name__)
 
@@ -35,6 +36,12 @@ Progress = Callable[[float, int], None]
 
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps")
 """Counts in the statistics of a run."""
+
+LEAST_CLOSED = 3
+"""Nodes of a contact at a corner, at least. With fewer the pressure is anything."""
+
+NEXT_TO_NOTHING = 1e-6
+"""Force of a contact that may have fewer nodes, in parts of the reference force."""
 
 UNLOADED_PRESSURE = 1e-9
 """Largest pressure of a pin after a complete unloading, in parts of the force before (dimensionless)."""
@@ -184,6 +191,7 @@ class Run:
         try:
             for piece in pieces(before, target):
                 self._follow_piece(piece, step)
+            self._check_resolution()
             known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
                 dissipation, work = self.now.dissipation, self.now.work
@@ -199,6 +207,16 @@ class Run:
             error.args = (f"{where}: {error}",)
             raise
         return known
+
+    def _check_resolution(self) -> None:
+        """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
+        if self.recorder is None or force_of(self.now.load) <= NEXT_TO_NOTHING:
+            return
+        fewest = min((patch.size for patch in runs(self.system.grid, self.now.closed)), default=LEAST_CLOSED)
+        if fewest < LEAST_CLOSED:
+            raise ResolutionError(
+                f"the contact is narrower than the nodes can resolve: it has {fewest}; use more nodes"
+            )
 
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
@@ -227,8 +245,7 @@ class Run:
         """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
         position = self.position
         self.stepper.leave(position)
-        least = 3 if stop == 1.0 else 1
-        position.now, part = first_contact(self.system, self.now, self.now.load, load, least)
+        position.now, part = first_contact(self.system, self.now, self.now.load, load)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:

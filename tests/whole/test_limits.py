@@ -304,10 +304,16 @@ def test_interference_fit_opens_evenly_under_one_sided_stress(titanium_in_alumin
         assert state.work - state.energy - state.dissipation == pytest.approx(0.0, abs=1e-3 * abs(state.energy))
 
 
-def test_a_contact_narrower_than_the_grid_is_said_to_be_so(titanium_in_aluminium):
+def test_a_contact_narrower_than_the_nodes_gets_nodes_where_it_is(titanium_in_aluminium):
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    corners = [{"P": 1e-4}, {"P": 1.0}]
+    first = solve(problem, corners[:1], nodes=401)[-1]
+    last = solve(problem, corners[1:], nodes=401)[-1]
+    result = solve(problem, corners, nodes=101)
+    assert result[0].peak_pressure == pytest.approx(first.peak_pressure, rel=0.01)
+    assert result[1].peak_pressure == pytest.approx(last.peak_pressure, rel=0.01)
     with pytest.raises(ConvergenceError, match="more nodes"):
-        solve(problem, [{"P": 1e-4}, {"P": 1.0}], nodes=101)
+        solve(problem, corners, grid=Grid.arc(-0.5 * np.pi - 1.3, -0.5 * np.pi + 1.3, 101))
 
 
 def test_no_contact_has_no_peak(titanium_in_aluminium):

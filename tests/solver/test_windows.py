@@ -1,0 +1,221 @@
+"""Narrow contacts: graded grids, the survey that chooses them, and the windows on which they are followed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity import large
+from fastpin.elasticity.large import LargeSystem, build_system
+from fastpin.elasticity.system import System
+from fastpin.errors import InputError
+from fastpin.model.grid import Grid, graded_size
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.solver import arc, window
+from fastpin.solver.arc import narrow_grid
+from fastpin.solver.errors import ResolutionError
+from fastpin.solver.solving import solve
+from fastpin.solver.survey import survey
+from fastpin.solver.window import Window
+from fastpin.storage.recording import record, resume
+from fastpin.storage.store import load
+
+BOTTOM = -0.5 * np.pi
+PAIR = MaterialPair(Material(9.0, 0.2), Material(7.0, 0.3))
+SMALL_FIRST = [{"P": 1e-4, "Q": 2e-5}, {"P": 1.0, "Q": 0.1}, {"P": 1e-3, "Q": 4e-4}]
+TRAVELLING = [{"P": 1.0}, {"P": 0.8, "Q": 0.7}, {"P": 0.8, "Q": -0.7}, {"P": 0.02, "Q": 0.01}]
+
+
+def problem(load_parameter=20.0, friction=0.4, pin_load="centre", rotation="fixed"):
+    return Problem.from_load_parameter(PAIR, load_parameter, friction, pin_load, rotation)
+
+
+def worst(state):
+    return max(state.residuals.values())
+
+
+# --- graded grids -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("places", [[(BOTTOM, 0.01)], [(BOTTOM, 0.3), (-1.0, 0.001)], [(1.5, 0.1), (-4.7, 0.02)]])
+def test_a_graded_grid_has_the_wanted_spacing(places):
+    across = 20
+    grid = Grid.graded(places, graded_size(places, across), node_at=places[0][0])
+    spacing = np.diff(np.r_[grid.theta, grid.theta[0] + 2.0 * math.pi])
+    assert grid.closed
+    assert np.abs(grid.theta - places[0][0]).min() < 1e-12
+    for angle, width in places:
+        nearest = np.argmin(np.abs(grid.theta - angle))
+        assert spacing[nearest] <= 1.05 * width / across
+    ratio = spacing / np.roll(spacing, 1)
+    assert ratio.max() < 1.13
+    assert ratio.min() > 0.88
+
+
+def test_places_of_a_graded_grid_are_checked():
+    for places in ([], [(0.0, 0.0)], [(0.0, -1.0)], [0.0, 1.0], [(math.nan, 1.0)]):
+        with pytest.raises(InputError, match="places"):
+            Grid.graded(places, 100)
+    with pytest.raises(InputError, match="nodes"):
+        Grid.graded([(0.0, 0.1)], 3)
+
+
+def test_more_nodes_keep_the_grading():
+    coarse = Grid.graded([(BOTTOM, 0.01)], 120)
+    fine = coarse.with_nodes(240)
+    assert fine.closed
+    assert fine.theta[::2] == pytest.approx(coarse.theta, abs=1e-12)
+    arc_grid = Grid(np.unique(np.r_[np.linspace(-2.0, -1.0, 21), np.linspace(-1.54, -1.46, 8)]))
+    assert arc_grid.with_nodes(arc_grid.size).theta == pytest.approx(arc_grid.theta, abs=1e-12)
+
+
+# --- the survey and the grid it gives -----------------------------------------------------------------------
+
+
+def test_the_survey_finds_the_contacts_of_the_exact_run():
+    case = problem()
+    values = np.array([[corner["P"], corner["Q"], 0, 0, 0, 0, 0] for corner in SMALL_FIRST])
+    places = survey(case, values, 1.0)
+    result = solve(case, SMALL_FIRST, nodes=61)
+    for state in result:
+        ((start, stop),) = state.contact
+        middle, width = 0.5 * (start + stop), stop - start
+        assert any(abs(angle - middle) < 0.3 * width and abs(found - width) < 0.3 * width for angle, found in places)
+
+
+@pytest.mark.parametrize("corners", [SMALL_FIRST, TRAVELLING], ids=["small first", "travelling"])
+@pytest.mark.parametrize("nodes", [61, 101])
+def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
+    case = problem(200.0)
+    result = solve(case, corners, nodes=nodes)
+    assert result.complete
+    assert not result.grid.uniform
+    for state in result:
+        assert worst(state) < 1e-10
+        assert np.count_nonzero(state.pressure) >= 0.6 * arc.LEAST_ACROSS
+    fine = solve(case, corners, grid=result.grid.with_nodes(2 * result.grid.size))
+    for one, two in zip(result, fine, strict=True):
+        assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.02)
+
+
+def test_too_many_nodes_are_refused_with_the_first_error(monkeypatch):
+    monkeypatch.setattr(arc, "MOST_GRADED", 70)
+    with pytest.raises(ResolutionError, match="narrower than the nodes"):
+        solve(problem(200.0), SMALL_FIRST, nodes=61)
+
+
+def test_given_arcs_and_grids_are_kept():
+    for given in ({"arc": (BOTTOM - 0.5, BOTTOM + 0.5), "nodes": 61}, {"grid": Grid.circle(61)}):
+        with pytest.raises(ResolutionError, match="more nodes"):
+            solve(problem(200.0), SMALL_FIRST, **given)
+
+
+def test_states_inside_steps_do_not_change_the_corners():
+    case = problem(200.0)
+    plain, dense = (solve(case, SMALL_FIRST, nodes=61, between=between) for between in (0, 20))
+    corners = [state for state in dense if state.fraction == 1.0]
+    for one, two in zip(plain, corners, strict=True):
+        assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.01)
+
+
+def test_a_contact_on_a_grid_that_is_coarse_elsewhere_starts():
+    """The first contact takes the spacing where the pin touches, not a typical one."""
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        grid = Grid.graded([(BOTTOM + rng.uniform(-0.6, 0.6), 10.0 ** rng.uniform(-2.5, -1.0))], 160)
+        state = solve(problem(0.2), [{"P": 1.0}], grid=grid)[-1]
+        assert worst(state) < 1e-10
+
+
+# --- windows ------------------------------------------------------------------------------------------------
+
+
+def test_columns_on_demand_are_the_operator():
+    case = problem()
+    grid = Grid.graded([(BOTTOM, 0.05)], 150)
+    dense = System.build(case, grid, 1.0)
+    lazy = LargeSystem.build(case, grid, 1.0)
+    rng = np.random.default_rng(0)
+    tractions = np.where(rng.random(300) < 0.7, rng.normal(size=300), 0.0)
+    assert lazy.operator.size == 0
+    assert lazy.elastic(tractions) == pytest.approx(dense.elastic(tractions), abs=1e-13)
+    assert np.array_equal(lazy.elastic(np.zeros(300)), np.zeros(300))
+    nodes = np.r_[140:150, 0:30]
+    assert lazy.window(nodes).grid.theta[0] == grid.theta[140]
+    inner = lazy.window(nodes).operator[1:39, 1:39]
+    whole = dense.operator[np.ix_(nodes[1:39], nodes[1:39])]
+    assert inner == pytest.approx(whole, abs=1e-13)
+
+
+def test_large_graded_grids_are_followed_on_windows():
+    case = problem()
+    assert isinstance(build_system(case, Grid.graded([(BOTTOM, 0.01)], 500), 1.0), LargeSystem)
+    for grid in (Grid.circle(801), Grid.graded([(BOTTOM, 0.01)], 200), Grid.arc(-2.0, -1.0, 801)):
+        assert not isinstance(build_system(case, grid, 1.0), LargeSystem)
+
+
+@pytest.mark.parametrize("pin_load", ["centre", "body"])
+def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
+    case = problem(20.0, 0.4, pin_load, "fixed" if pin_load == "centre" else "free")
+    grid = Grid.graded([(BOTTOM + angle, 0.06) for angle in np.linspace(-0.8, 0.8, 27)], 500, BOTTOM)
+    on_windows = solve(case, TRAVELLING, grid=grid, between=1)
+    monkeypatch.setattr(large, "MOST_DENSE", 1000)
+    whole = solve(case, TRAVELLING, grid=grid, between=1)
+    for one, two in zip(on_windows, whole, strict=True):
+        peak, length = two.pressure.max(), np.abs(two.slip).max()
+        assert np.abs(one.pressure - two.pressure).max() < 1e-8 * peak
+        assert np.abs(one.shear - two.shear).max() < 1e-8 * peak
+        assert np.abs(one.gap - two.gap).max() < 1e-8 * two.gap.max()
+        assert np.abs(one.slip - two.slip).max() < 1e-8 * length
+        assert one.work == pytest.approx(two.work, rel=1e-8)
+        assert one.dissipation == pytest.approx(two.dissipation, rel=1e-7)
+        assert worst(one) < 1e-10
+
+
+def test_a_second_place_opens_a_wider_window(monkeypatch):
+    """Compression across the load presses the pin at two places, which no window round the first place holds."""
+    monkeypatch.setattr(large, "MOST_DENSE", 100)
+    case = problem(1.0, 0.3)
+    corners = [{"P": 1.0}, {"P": 0.2, "sxx": 3.0, "syy": -6.0}]
+    grid = Grid.graded([(BOTTOM, 0.2), (-BOTTOM, 0.2)], 240, BOTTOM)
+    on_windows = solve(case, corners, grid=grid)
+    monkeypatch.setattr(large, "MOST_DENSE", 1000)
+    whole = solve(case, corners, grid=grid)
+    assert len(whole[-1].contact) == 2
+    assert np.abs(on_windows[-1].pressure - whole[-1].pressure).max() < 1e-8 * whole[-1].pressure.max()
+
+
+def test_a_window_holds_the_contact_across_the_first_node():
+    system = LargeSystem.build(problem(), Grid.graded([(math.pi / 2, 0.05)], 300), 1.0)
+    closed = np.zeros(300, dtype=bool)
+    closed[[297, 298, 299, 0, 1]] = True
+    opened = Window(system, closed)
+    inside = np.flatnonzero(closed[opened.nodes])
+    assert inside.tolist() == list(range(window.MARGIN, window.MARGIN + 5))
+    assert np.all(np.diff(opened.system.grid.theta) > 0.0)
+
+
+def test_a_narrow_history_is_stored_resumed_and_continued(tmp_path):
+    case = problem(200.0)
+    path = tmp_path / "narrow.h5"
+    record(case, SMALL_FIRST, path, nodes=61)
+    stored, solved = load(path), solve(case, SMALL_FIRST, nodes=61)
+    for one, two in zip(stored, solved, strict=True):
+        assert np.array_equal(one.pressure, two.pressure)
+        assert np.array_equal(one.slip, two.slip)
+    first = solve(case, SMALL_FIRST[:2], grid=solved.grid)
+    second = solve(case, SMALL_FIRST[2:], start=first)
+    assert np.array_equal(second[-1].shear, solved[-1].shear)
+    with pytest.raises(InputError, match="finished"):
+        resume(path)
+
+
+def test_an_interference_fit_needs_no_survey():
+    values = np.array([[1.0, 0, 0, 0, 0, 0, 0]])
+    fit = Problem.from_load_parameter(PAIR, -0.5, 0.4)
+    grid = narrow_grid(fit, values, 1.0, SolveOptions())
+    assert grid is None or grid.closed
