@@ -40,7 +40,7 @@ MOST_CORNERS = 200
 LEAST_ACROSS = 16
 """Nodes across the narrowest contact of a graded grid, at least."""
 
-MOST_GRADED = 12_000
+MOST_GRADED = 20_000
 """Nodes of a graded grid, at most, unless the user asks for more."""
 
 DIRECTIONS = 16

@@ -544,8 +544,9 @@ class PathStepper:
         if lost.code != exchange.CYCLING or self._statistics["jumps"] >= MOST_JUMPS:
             return False
         system, now = self._system, position.now
-        finite = FiniteStep(system, now)
-        ways = [(part, finite.to) for part in JUMPS]
+        near, far = FiniteStep(system, now), FiniteStep(system, now, everywhere=True)
+        ways = [(part, near.to) for part in JUMPS]
+        ways += [(part, far.to) for part in JUMPS[LONG_JUMPS]]
         ways += [(part, lambda load: implicit_step(system, now, load)) for part in JUMPS[LONG_JUMPS]]
         for part, way in ways:
             reached = min(position.reached + part * (piece.end - position.reached), stop)

@@ -13,7 +13,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import M, complete_load, named_load
+from fastpin.model.loads import M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals, elastic_energy
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
@@ -245,7 +245,9 @@ class Run:
         """Bring the floating pin into contact on the way to `load`. It may also reach `load` without contact."""
         position = self.position
         self.stepper.leave(position)
-        position.now, part = first_contact(self.system, self.now, self.now.load, load)
+        before = self.now.load.copy()
+        before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
+        position.now, part = first_contact(self.system, self.now, before, load)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:

@@ -17,18 +17,19 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
+from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, P, Q, complete_load
+from fastpin.model.loads import LOADS, M, P, Q, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration, resting_status
 from fastpin.solver.errors import SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
-from fastpin.solver.rest import hole_gap, unloaded_configuration
+from fastpin.solver.rest import hole_gap, release, unloaded_configuration
 from fastpin.solver.result import Restart
-from fastpin.solver.run import Progress, Run
+from fastpin.solver.run import LEAST_CLOSED, Progress, Run
 from fastpin.solver.settling import FiniteStep
 from fastpin.states.zones import runs
 
@@ -46,11 +47,20 @@ FEWEST, MOST = 11, 60
 LARGEST_PART = 0.25
 """Largest part of a step that is followed on one grid."""
 
-LEAST_PART = 1e-7
+MOST_GROWTH = 3.0
+"""Largest growth of the force while the contact stays on one grid."""
+
+MOST_RELEASES = 10
+"""Times in one step that a contact is released where it can't be followed."""
+
+LEAST_PART = 1e-6
 """Smallest part of a step that is tried."""
 
-MOST_TRIALS = 400
+MOST_TRIALS = 1500
 """Trials for one step, at most."""
+
+MOST_BETWEEN = 400
+"""Places between two states of the survey, at most."""
 
 LEAST_WIDTH = 1e-6
 """Smallest width of a contact, rad. A narrower one is not resolved."""
@@ -96,6 +106,7 @@ class _Survey:
 
     def __init__(self, problem: Problem, force: float, first_part: float) -> None:
         self.places: list[Place] = []
+        self._last: Place | None = None
         self._first_part = first_part
         self._problem, self._force = problem, force
         self._system = System.build(problem, Grid.circle(10 * ACROSS + 1), force)
@@ -105,13 +116,16 @@ class _Survey:
 
     def follow(self, before: np.ndarray, target: np.ndarray) -> bool:
         """Follow a step between two loads, SI. Returns whether its end was reached."""
-        done, finer = 0.0, 1.0
+        done, finer, releases = 0.0, 1.0, 0
         for _ in range(MOST_TRIALS):
             if done >= 1.0:
                 return True
             floats = not self._now.closed.any()
             stop = min(1.0, done + min(self._part, self._first_part if floats else 1.0))
             load = target if stop == 1.0 else before + stop * (target - before)
+            if not floats and _force(load) > MOST_GROWTH * _force(self._load) > 0.0 and stop - done > LEAST_PART:
+                self._part *= 0.5
+                continue
             if floats:
                 self._look_where_it_begins(load, finer)
             if self._advance(load):
@@ -119,8 +133,11 @@ class _Survey:
                 continue
             self._part *= 0.5
             if self._part < LEAST_PART:
-                return False
-            if self._now.closed.any():
+                if floats or releases == MOST_RELEASES:
+                    return False
+                self._let_go()
+                self._part, releases = LARGEST_PART, releases + 1
+            elif not floats:
                 finer *= 0.5
                 self._look_at_contact(finer)
         return False
@@ -136,13 +153,30 @@ class _Survey:
             return False
         patches = runs(self._system.grid, run.now.closed)
         counts = [patch.size for patch in patches]
-        if counts and min(counts) < 3:
+        if counts and max(counts) < LEAST_CLOSED:
             return False
         self._now, self._load = run.now, load
-        self.places += [self._place(patch) for patch in patches]
+        self._note([self._place(patch) for patch in patches])
         if counts and (min(counts) < FEWEST or min(counts) > MOST):
             self._look_at_contact(1.0)
         return True
+
+    def _note(self, places: list[Place]) -> None:
+        """Note the present places, and the way of a single contact from its last place."""
+        if len(places) == 1 and self._last is not None:
+            (angle, width), (before, last_width) = places[0], self._last
+            away = float(angle_between(angle, before))
+            count = min(int(0.6 * abs(away) / min(width, last_width)), MOST_BETWEEN)
+            for part in np.arange(1, count) / max(count, 1):
+                self.places.append((before + part * away, last_width + part * (width - last_width)))
+        self.places += places
+        self._last = places[0] if len(places) == 1 else None
+
+    def _let_go(self) -> None:
+        """Release the contact. The next one begins from no force on the pin."""
+        self._load = self._load.copy()
+        self._load[[P, Q, M]] = 0.0
+        self._now = release(self._system, self._now, self._load / self._system.scales.loads)
 
     def _place(self, patch: np.ndarray) -> Place:
         """Middle and width of a patch of closed nodes."""
@@ -159,7 +193,7 @@ class _Survey:
 
     def _look_where_it_begins(self, load: np.ndarray, finer: float) -> None:
         """Go to a grid that is dense where a force will press the floating pin on the hole, on the way to `load`."""
-        force = math.hypot(load[P], load[Q])
+        force = _force(load)
         if force == 0.0:
             return
         angle = math.atan2(-load[P], load[Q])
@@ -177,6 +211,11 @@ class _Survey:
         carried = _carry(self._system, self._now, system)
         if carried is not None:
             self._system, self._now = system, carried
+
+
+def _force(load: np.ndarray) -> float:
+    """Size of the force on the pin, in the units of `load`."""
+    return math.hypot(load[P], load[Q])
 
 
 def _carry(old: System, now: Configuration, system: System) -> Configuration | None:
@@ -203,4 +242,4 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         return new
     if not closed.any():
         return None
-    return implicit_step(system, new, now.load) or FiniteStep(system, new).to(now.load)
+    return implicit_step(system, new, now.load) or FiniteStep(system, new, everywhere=True).to(now.load)
