@@ -21,7 +21,7 @@ from fastpin.solver.step import Piece, Position, Report
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
 
-WIDEST = 2500
+WIDEST = 4000
 """Nodes of a window, at most."""
 
 PENETRATION = 1e-9
