@@ -1,76 +1,209 @@
 """Random histories: does the path solver return a wrong state, raise an error, or hang?
 
-``python -m scripts.random_histories [--count 1000] [--first 0]`` solves `count` random problems with fixed seeds on
-small grids. It checks every state independently of the solver's own residuals, and prints every error raised.
+``python -m scripts.random_histories [--count 300] [--first 0] [--classes general,extreme] [--dense] [--processes 2]``
+solves `count` random cases of each class of ``scripts/histories.py``. It recomputes the contact conditions of every
+state without the matrices of the solver, see ``scripts/conditions.py``. With ``--dense`` there are many states inside
+each step, and the direction of slip and the dissipation are checked too.
 """
 
 from __future__ import annotations
 
 import argparse
 import collections
+import concurrent.futures
+import os
+import signal
 import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
 
-import numpy as np
 from tqdm import tqdm
 
 from fastpin.errors import FastpinError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.states.state import State
-from scripts.histories import NODES, random_case
+from scripts.conditions import TOLERANCE, check_direction, check_dissipation, check_states
+from scripts.histories import GENERATORS, RandomCase, generate
+
+BETWEEN = 39
+"""States inside each step with ``--dense``."""
+
+TOLERANCES = collections.defaultdict(lambda: TOLERANCE, {"balance": 0.05, "dissipated": 0.02})
+"""Largest violations that are not reported. The energies are sums over the nodes: second order in their distance."""
+
+LONGEST = 60
+"""Time after which a case counts as hanging, s."""
 
 
-def violation(state: State) -> float:
-    """Return the largest relative violation of Signorini, Coulomb and equilibrium, from the fields a user reads."""
-    if not state.in_contact:
-        return max(
-            -state.gap.min() / state.problem.clearance,
-            np.abs(state.pressure).max(),
-            np.abs(state.shear).max(),
-        )
-    peak, length = state.pressure.max(), max(np.abs(state.slip).max(), np.abs(state.gap).max())
-    mu = state.problem.friction
-    force = np.hypot(state.load["P"], state.load["Q"])
-    balance = max(abs(state.resultants[name] - state.load[name]) for name in ("P", "Q"))
-    if state.problem.rotation == "free":
-        balance = max(balance, abs(state.resultants["M"] - state.load["M"]))
-    return max(
-        -state.pressure.min() / peak,
-        float((np.abs(state.shear) - mu * state.pressure).max()) / peak,
-        -state.gap.min() / length,
-        float((state.gap * state.pressure).max()) / (length * peak),
-        balance / force,
-    )
+class HangError(BaseException):
+    """A case took too long. No solver may catch it."""
 
 
-def outcome(seed: int) -> tuple[str, float, Result | None]:
-    """Solve a case. Return its ending ("solved", or the error's name and message), largest violation and result."""
-    problem, history = random_case(seed)
+@dataclass
+class Outcome:
+    """The outcome of one case.
+
+    Attributes
+    ----------
+    ending : str
+        "solved", "spins", "hang", or the name of the error.
+    message : str
+        The message of the error.
+    states, nodes : int
+        Number of states that were checked, and of nodes.
+    jumps : float
+        Snaps of the pin.
+    worst : dict of str to (float, int)
+        Largest violation of each condition, and the state where it is.
+    seconds : float
+        Time of the solution.
+    """
+
+    kind: str
+    seed: int
+    ending: str = "solved"
+    message: str = ""
+    states: int = 0
+    nodes: int = 0
+    jumps: float = 0.0
+    worst: dict[str, tuple[float, int]] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def violations(self) -> dict[str, tuple[float, int]]:
+        """The violations beyond their tolerances."""
+        return {name: found for name, found in self.worst.items() if not found[0] <= TOLERANCES[name]}
+
+
+def ending_of(error: FastpinError) -> str:
+    """The name of an error; "spins" where a moment exceeds the friction."""
+    return "spins" if "spins" in str(error) else type(error).__name__
+
+
+def examine(kind: str, seed: int, dense: bool = False) -> Outcome:
+    """Solve a case and check all its states."""
+    case, outcome = generate(kind, seed), Outcome(kind, seed)
+    began = time.perf_counter()
+    result: Result | None = None
     try:
-        result, ending = solve(problem, history, nodes=NODES), "solved"
+        with_stops = {"between": BETWEEN} if dense else {}
+        result = solve(case.problem, case.history, **case.options, **with_stops)
     except FastpinError as error:
-        result, ending = getattr(error, "result", None), f"{type(error).__name__}: {error}"
-    return ending, max((violation(state) for state in result or []), default=0.0), result
+        outcome.ending, outcome.message = ending_of(error), str(error)
+        result = getattr(error, "result", None)
+    outcome.seconds = time.perf_counter() - began
+    if result is not None and result.states:
+        _check(outcome, case, result, dense)
+    return outcome
+
+
+def _check(outcome: Outcome, case: RandomCase, result: Result, dense: bool) -> None:
+    """Note the largest violation of each condition."""
+    outcome.states, outcome.nodes, outcome.jumps = len(result), result.grid.size, result.statistics["jumps"]
+    for place, conditions in enumerate(check_states(result.states)):
+        for name, value in conditions.items():
+            if name not in outcome.worst or not value <= outcome.worst[name][0]:
+                outcome.worst[name] = value, place
+    if outcome.jumps:
+        outcome.worst.pop("balance", None)  # a snap sets energy free
+    if dense and outcome.ending == "solved" and not case.problem.frictionless:
+        outcome.worst["direction"] = check_direction(result)
+        if not outcome.jumps:
+            outcome.worst["dissipated"] = check_dissipation(result.states), len(result) - 1
+
+
+def within_time(job: Callable[..., Any], *arguments: Any) -> Any | None:
+    """What the job returns, or None if it takes longer than :data:`LONGEST`."""
+
+    def stop(*_: object) -> None:
+        raise HangError
+
+    signal.signal(signal.SIGALRM, stop)
+    signal.alarm(LONGEST)
+    try:
+        return job(*arguments)
+    except HangError:
+        return None
+    finally:
+        signal.alarm(0)
+
+
+def examine_in_time(kind: str, seed: int, dense: bool) -> Outcome:
+    """As :func:`examine`, with the ending "hang" after a long time."""
+    return within_time(examine, kind, seed, dense) or Outcome(kind, seed, "hang", seconds=LONGEST)
+
+
+def run_jobs(job: Callable[..., Any], tasks: list[tuple[Any, ...]], processes: int) -> Iterator[Any]:
+    """What the job returns for each task, in order, with a progress bar."""
+    bar = {"total": len(tasks), "disable": None, "delay": 2.0}
+    if processes == 1:
+        yield from tqdm((job(*task) for task in tasks), **bar)
+        return
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    with concurrent.futures.ProcessPoolExecutor(processes) as pool:
+        yield from tqdm(pool.map(job, *zip(*tasks, strict=True)), **bar)
+
+
+def table(outcomes: Iterable[Outcome]) -> str:
+    """The table of all classes, a column each."""
+    kinds: dict[str, list[Outcome]] = {}
+    for outcome in outcomes:
+        kinds.setdefault(outcome.kind, []).append(outcome)
+    everything = [outcome for some in kinds.values() for outcome in some]
+    rows: dict[str, Callable[[list[Outcome]], str]] = {
+        "cases": lambda some: str(len(some)),
+        "states": lambda some: str(sum(one.states for one in some)),
+        "with snaps": lambda some: str(sum(one.jumps > 0 for one in some)),
+    }
+    for ending in ["solved", *sorted({one.ending for one in everything} - {"solved"})]:
+        rows[ending] = lambda some, ending=ending: str(sum(one.ending == ending for one in some))
+    for name in dict.fromkeys(name for one in everything for name in one.worst):
+        rows[name] = lambda some, name=name: (
+            f"{max((one.worst[name][0] for one in some if name in one.worst), default=0.0):.0e}"
+        )
+    rows["slowest, s"] = lambda some: f"{max(one.seconds for one in some):.1f}"
+    rows["its seed"] = lambda some: str(max(some, key=lambda one: one.seconds).seed)
+    columns = {**kinds, "all": everything}
+    lines = [f"{'':18}" + "".join(f"{kind.split('_')[0]:>10}" for kind in columns)]
+    lines += [f"{name:18}" + "".join(f"{cell(some):>10}" for some in columns.values()) for name, cell in rows.items()]
+    return "\n".join(lines)
+
+
+def classes(text: str) -> list[str]:
+    """Names of classes, separated by commas."""
+    kinds = text.split(",")
+    unknown = set(kinds) - set(GENERATORS)
+    if unknown:
+        raise argparse.ArgumentTypeError(f"unknown: {', '.join(sorted(unknown))}; there are {', '.join(GENERATORS)}")
+    return kinds
+
+
+def options_for(description: str | None, count: int, kinds: Iterable[str]) -> argparse.ArgumentParser:
+    """The options of the commands that run random cases."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=count, help="cases of each class")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--classes", type=classes, default=list(kinds))
+    parser.add_argument("--processes", type=int, default=1)
+    return parser
 
 
 def main() -> None:
     """Run the command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0)
+    parser = options_for(__doc__, 300, GENERATORS)
+    parser.add_argument("--dense", action="store_true", help="check the way between the corners too")
     options = parser.parse_args()
-    endings: collections.Counter[str] = collections.Counter()
-    worst, slowest, states = 0.0, 0.0, 0
-    for seed in tqdm(range(options.first, options.first + options.count), disable=None, delay=2.0):
-        began = time.perf_counter()
-        ending, violated, result = outcome(seed)
-        slowest = max(slowest, time.perf_counter() - began)
-        worst = max(worst, violated)
-        states += len(result or [])
-        endings[ending.split(":")[0]] += 1
-        if ending != "solved" or violated > 1e-8:
-            print(f"seed {seed}: {ending} (violation {violated:.1e})")
-    print(dict(endings), f"{states} states, largest violation {worst:.1e}, slowest case {slowest:.2f} s")
+    seeds = range(options.first, options.first + options.count)
+    outcomes = []
+    tasks = [(kind, seed, options.dense) for kind in options.classes for seed in seeds]
+    for outcome in run_jobs(examine_in_time, tasks, options.processes):
+        outcomes.append(outcome)
+        if outcome.ending != "solved":
+            tqdm.write(f"{outcome.kind} {outcome.seed}: {outcome.ending}: {outcome.message}")
+        for name, (value, state) in outcome.violations().items():
+            tqdm.write(f"VIOLATION {outcome.kind} {outcome.seed}, state {state}: {name} by {value:.1e}")
+    print(table(outcomes))
 
 
 if __name__ == "__main__":

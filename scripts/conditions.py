@@ -1,0 +1,342 @@
+"""The contact conditions of results, recomputed without the matrices of the solver.
+
+:func:`check_states` checks the states of a result. :func:`check_direction` and :func:`check_dissipation` check the
+way between states that lie close together. All read the public fields of states only. The displacements (9)-(12) are
+integrals of the piecewise linear tractions by Gauss quadrature, graded towards the logarithm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+
+TOLERANCE = 1e-8
+"""Largest relative violation of a condition that rounding explains."""
+
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(10)
+POINTS, WEIGHTS = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
+"""Gauss points and weights on (0, 1)."""
+
+HALVINGS = 44
+"""Halvings of a segment towards a logarithm at its end."""
+
+LEAST_LENGTH = 1e-6
+"""Least size of displacements, in parts of the clearance: below it the clearance leaves no digits."""
+
+
+def _graded_rule() -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights on (0, 1) for a logarithm at 0 or beyond."""
+    ends = np.r_[0.0, 0.5 ** np.arange(HALVINGS, -1, -1)]
+    lengths = np.diff(ends)[:, None]
+    return (ends[:-1, None] + lengths * POINTS).ravel(), (lengths * WEIGHTS).ravel()
+
+
+GRADED = _graded_rule()
+
+
+class Integrals:
+    """Displacements and resultants of piecewise linear tractions on the nodes of a result.
+
+    Parameters
+    ----------
+    problem : Problem
+    theta : ndarray, shape (n,)
+    closed : bool
+        Whether the nodes go all round.
+    loaded : ndarray of bool, shape (n,)
+        The nodes that ever carry tractions.
+    """
+
+    def __init__(self, problem: Problem, theta: np.ndarray, closed: bool, loaded: np.ndarray) -> None:
+        self.problem, self.theta, self.loaded = problem, theta, np.flatnonzero(loaded)
+        pair, n = problem.pair, theta.size
+        # 1/G and Kolosov's constant of pin and plate; the constants of (32).
+        soft = [2.0 * (1.0 + body.nu) / body.E for body in (pair.pin, pair.plate)]
+        strain = pair.plane == "strain"
+        kappas = [
+            3.0 - 4.0 * body.nu if strain else (3.0 - body.nu) / (1.0 + body.nu) for body in (pair.pin, pair.plate)
+        ]
+        self.pin, self.kappa_pin = soft[0], kappas[0]
+        self.alpha = (kappas[1] - 1.0) * soft[1] - (kappas[0] - 1.0) * soft[0]
+        self.beta = 0.5 * ((kappas[1] + 1.0) * soft[1] + (kappas[0] + 1.0) * soft[0])
+        self.plate = problem.hole_radius * 0.25 * (kappas[1] + 1.0) * soft[1]  # R k'/(2G) of (42)
+        self.share = 1.0 if problem.pin_load == "centre" else 0.5
+        first = np.arange(n if closed else n - 1)
+        second = (first + 1) % n
+        length = np.diff(np.r_[theta, theta[0] + 2.0 * math.pi])[first]
+        self.moments = np.zeros((3, n))  # integrals of every hat times 1, cos, sin
+        places = theta[first, None] + length[:, None] * POINTS
+        for share, nodes in ((1.0 - POINTS, first), (POINTS, second)):
+            for row, values in zip(self.moments, (np.ones_like(places), np.cos(places), np.sin(places)), strict=True):
+                np.add.at(row, nodes, length * (values @ (WEIGHTS * share)))
+        self.direct, self.cross = np.zeros((2, n, self.loaded.size))
+        column = np.full(n, -1)
+        column[self.loaded] = np.arange(self.loaded.size)
+        for k in first[(column[first] >= 0) | (column[second] >= 0)]:
+            self._add_segment(first[k], second[k], length[k], (column[first[k]], column[second[k]]))
+
+    def _add_segment(self, start: int, stop: int, length: float, columns: tuple[int, int]) -> None:
+        """Add the integrals over the segment between two nodes to the `columns` of its hats; -1 for none."""
+        offsets = [(self.theta - self.theta[end] + math.pi) % (2.0 * math.pi) - math.pi for end in (start, stop)]
+        for end, offset in zip((start, stop), offsets, strict=True):
+            offset[end] = 0.0
+        from_start = np.abs(offsets[0]) <= np.abs(offsets[1])
+        nearest = np.where(from_start, *offsets)
+        near = np.abs(nearest) < 0.99 * length
+        for rows, (points, weights) in ((np.flatnonzero(~near), (POINTS, WEIGHTS)), (np.flatnonzero(near), GRADED)):
+            phi = nearest[rows, None] - np.where(from_start[rows], 1.0, -1.0)[:, None] * length * points
+            C, S = np.cos(phi), np.sin(phi)
+            L, A = 2.0 * np.log(2.0 * np.abs(np.sin(0.5 * phi))), 0.5 * phi - 0.5 * math.pi * np.sign(phi)
+            kernels = self.alpha * S * A - self.beta * C * L, self.alpha * C * A + self.beta * S * L
+            for matrix, values in zip((self.direct, self.cross), kernels, strict=True):
+                near_hat, far_hat = length * (values @ np.column_stack([weights * (1.0 - points), weights * points])).T
+                hats = np.where(from_start[rows], near_hat, far_hat), np.where(from_start[rows], far_hat, near_hat)
+                for place, hat in zip(columns, hats, strict=True):
+                    if place >= 0:
+                        matrix[rows, place] += hat
+
+    def elastic(self, state: State) -> tuple[np.ndarray, np.ndarray]:
+        """v_r - u_r and u_theta - v_theta of (9)-(12), without the terms of the force (w)."""
+        N, T = state.pressure[self.loaded], state.shear[self.loaded]
+        scale = self.problem.hole_radius / (4.0 * math.pi)
+        swelling = 0.5 * (self.kappa_pin + 1.0) * self.pin * float(self.moments[0] @ state.pressure)
+        gap = scale * (self.direct @ N + self.cross @ T - swelling)
+        return gap, scale * (self.direct @ T - self.cross @ N)
+
+    def loads(self, state: State) -> tuple[np.ndarray, np.ndarray]:
+        """The parts of gap and slip that the loads determine: terms of the force (w), and remote stress (42)."""
+        load, cos, sin = state.load, np.cos(self.theta), np.sin(self.theta)
+        double, double_sin = np.cos(2.0 * self.theta), np.sin(2.0 * self.theta)
+        point = self.share * self.pin / (4.0 * math.pi)
+        total, oval, diagonal = load["sxx"] + load["syy"], load["sxx"] - load["syy"], 2.0 * load["sxy"]
+        gap = self.plate * (0.5 * total + oval * double + diagonal * double_sin)
+        slip = self.plate * (oval * double_sin - diagonal * double)
+        return gap + point * (load["P"] * sin - load["Q"] * cos), slip + point * (load["P"] * cos + load["Q"] * sin)
+
+    def resultants(self, state: State) -> tuple[np.ndarray, float]:
+        """P, Q and M/R of the tractions, (50) and (51), shape (3,); and the resultant of their sizes."""
+        one, cos, sin = self.problem.hole_radius * self.moments
+        N, T = state.pressure, state.shear
+        return np.array([cos @ T - sin @ N, sin @ T + cos @ N, -(one @ T)]), float(one @ (np.abs(N) + np.abs(T)))
+
+
+def integrals_of(states: Sequence[State]) -> Integrals:
+    """The integrals for the states of one result."""
+    loaded = np.any([(state.pressure != 0.0) | (state.shear != 0.0) for state in states], axis=0)
+    return Integrals(states[0].problem, states[0].theta, states[0].grid.closed, loaded)
+
+
+class _Checked:
+    """One state with its recomputed displacements."""
+
+    def __init__(self, integrals: Integrals, state: State) -> None:
+        self.state, self.problem, self._integrals = state, state.problem, integrals
+        self.elastic = integrals.elastic(state)
+        self.loads = integrals.loads(state)
+        cos, sin = np.cos(state.theta), np.sin(state.theta)
+        radius = self.problem.hole_radius
+        # Gap and slip from the first resting position of the pin. The place of that position is not known.
+        self.gap = self.problem.clearance - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
+        self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
+        self.length = max(
+            *(float(np.abs(part).max()) for part in self.elastic), abs(state.dx), abs(state.dy),
+            radius * abs(state.rotation), LEAST_LENGTH * abs(self.problem.clearance), 1e-300,
+        )  # fmt: skip
+        self.peak = max(float(np.abs(state.pressure).max()), 1e-300)
+        self.touches = bool(np.any(state.status != OPEN))
+
+    @cached_property
+    def conditions(self) -> dict[str, float]:
+        """Largest relative violations of the conditions at this state alone."""
+        state, mu = self.state, self.problem.friction
+        N, T, status, peak = state.pressure, state.shear, state.status, self.peak
+        is_open, slips = status == OPEN, (status != OPEN) & (status != STICK)
+        found = {
+            "N >= 0": max(0.0, -N.min() / peak),
+            "gap >= 0": max(0.0, -state.gap.min() / self.length),
+            "N gap = 0": np.minimum(np.abs(N) / peak, np.abs(state.gap) / self.length).max(),
+            "open": max(np.abs(N[is_open]).max(initial=0.0), np.abs(T[is_open]).max(initial=0.0)) / peak,
+            "|T| <= mu N": max((np.abs(T) - mu * N).max(), 0.0) / (max(mu, 1.0) * peak),
+            "slipping": np.abs(T + status * mu * N)[slips].max(initial=0.0) / (max(mu, 1.0) * peak),
+        }
+        forces, size = self._integrals.resultants(state)
+        wrong = forces - np.array([state.load["P"], state.load["Q"], state.load["M"] / self.problem.hole_radius])
+        free = self.problem.rotation == "free"
+        if self.touches:
+            found["equilibrium"] = np.abs(wrong[: 3 if free else 2]).max() / max(size, 1e-300)
+        if not free and self.touches:
+            turned = state.rotation - state.load["rotation"] - self._hub_turn(-float(forces[2]))
+            found["rotation"] = abs(turned) * self.problem.hole_radius / self.length
+        found["energy"] = self._energy_error(size)
+        return {name: float(value) for name, value in found.items()}
+
+    def _hub_turn(self, shear_force: float) -> float:
+        """Rotation that a hub of a given radius adds; the force is R int T."""
+        problem, integrals = self.problem, self._integrals
+        if problem.hub_radius is None:
+            return 0.0
+        factor = (problem.hole_radius / problem.hub_radius) ** 2 - (integrals.kappa_pin + 1.0)
+        return factor * integrals.pin / (4.0 * math.pi) * shear_force / problem.hole_radius
+
+    def _energy_error(self, size: float) -> float:
+        """Energy of the tractions on their displacements, up to a part of the loads alone, against the state's."""
+        state = self.state
+        parts = zip((state.pressure, state.shear), self.elastic, self.loads, strict=True)
+        weights = self.problem.hole_radius * self._integrals.moments[0]
+        energy = sum(float(weights @ (traction * (0.5 * own + given))) for traction, own, given in parts)
+        return abs(energy - state.energy) / max(size * self.length, 1e-300)
+
+
+def check_states(states: Sequence[State]) -> list[dict[str, float]]:
+    """Largest relative violation of each condition at each state.
+
+    "gap" and "slip" compare the fields of the states with the recomputed displacements. The first resting position of
+    the pin is fitted once for all states. The slip may differ by its reference, which changes only where contact was
+    lost.
+    """
+    if not states:
+        return []
+    integrals = integrals_of(states)
+    checked = [_Checked(integrals, state) for state in states]
+    found = [dict(one.conditions) for one in checked]
+    _check_gaps(checked, found)
+    _check_slips(checked, found)
+    _check_energy_balance(checked, found)
+    return found
+
+
+def _check_gaps(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+    """Compare the gaps. Before the first contact the pin is in the middle; its later datum is fitted."""
+    began = next((place for place, one in enumerate(checked) if one.touches), len(checked))
+    for one, conditions in zip(checked[:began], found, strict=False):
+        conditions["gap"] = float(np.abs(one.gap - one.state.gap).max()) / one.length
+    if began == len(checked):
+        return
+    theta = checked[0].state.theta
+    columns = np.column_stack([np.cos(theta), np.sin(theta)])
+    best = min(checked[began:], key=lambda one: one.length)
+    datum = np.linalg.lstsq(columns, best.gap - best.state.gap, rcond=None)[0]
+    for one, conditions in zip(checked[began:], found[began:], strict=True):
+        conditions["gap"] = float(np.abs(one.gap - columns @ datum - one.state.gap).max()) / one.length
+
+
+def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+    """Compare the slips. Their reference is a rigid motion and a remote stress: five functions of the angle."""
+    theta = checked[0].state.theta
+    columns = np.column_stack([np.ones_like(theta), *(f(k * theta) for k in (1.0, 2.0) for f in (np.cos, np.sin))])
+    basis = np.linalg.qr(columns)[0]
+    last: np.ndarray | None = None
+    previous: _Checked | None = None
+    for one, conditions in zip(checked, found, strict=True):
+        if one.problem.frictionless or not one.touches:
+            last, previous = None, one
+            continue
+        difference = one.slip - one.state.slip
+        if last is None or (previous is not None and _may_lose_contact(previous.state, one.state)):
+            last = basis @ (basis.T @ difference)
+        conditions["slip"] = float(np.abs(difference - last).max()) / one.length
+        last, previous = difference, one
+
+
+def _may_lose_contact(before: State, after: State) -> bool:
+    """Whether the force passes through zero between two states with clearance: the pin may float in between."""
+    if before.problem.clearance < 0.0:
+        return False
+    first, last = (np.array([state.load["P"], state.load["Q"]]) for state in (before, after))
+    way = last - first
+    part = min(max(float(-(first @ way)) / max(float(way @ way), 1e-300), 0.0), 1.0)
+    return float(np.hypot(*(first + part * way))) <= 1e-9 * max(float(np.abs([first, last]).max()), 1e-300)
+
+
+def _check_energy_balance(checked: list[_Checked], found: list[dict[str, float]]) -> None:
+    """Work = energy + dissipation. The sizes of energies are products of resultant and displacement."""
+    size = 0.0
+    for one, conditions in zip(checked, found, strict=True):
+        state = one.state
+        size = max(size, abs(state.work), abs(state.energy), abs(state.dissipation), 1e-300)
+        conditions["balance"] = abs(state.work - state.energy - state.dissipation) / size
+        conditions["dissipation >= 0"] = max(-state.dissipation / size, 0.0)
+
+
+def wrong_slips(states: Sequence[State]) -> list[tuple[int, int, float]]:
+    """State, node and amount of slips against the shear, and of movements of sticking nodes.
+
+    The states lie close together. A node that slips at one state and sticks at the next may slip in one direction only.
+    A node that slips in opposite directions at two consecutive states is not judged.
+    """
+    found = []
+    for place, (before, after) in enumerate(pairwise(states), start=1):
+        if _may_lose_contact(before, after):
+            continue
+        judged = (before.status != OPEN) & (after.status != OPEN) & (before.status * after.status != -1)
+        slid = after.slip - before.slip
+        sense = np.sign(before.status + after.status)
+        wrong = np.where(judged, np.where(sense == 0, np.abs(slid), np.maximum(-sense * slid, 0.0)), 0.0)
+        node = int(np.argmax(wrong))
+        found.append((place, node, float(wrong[node])))
+    return found
+
+
+def check_direction(result: Result) -> tuple[float, int]:
+    """Largest slip in a wrong direction in a result with many stops, in parts of the largest slip; and its step.
+
+    A node may slip and stick again between two stops. So the worst step is followed once more, with stops that lie a
+    hundred times closer in the worst interval. The amount that is left there counts.
+    """
+    if result.problem.frictionless:
+        return 0.0, -1
+    states = result.states
+    size = slip_size(states)
+    wrong = max(wrong_slips(states), key=lambda found: found[2], default=(0, 0, 0.0))
+    if wrong[2] <= TOLERANCE * size:
+        return 0.0, -1
+    before, after = states[wrong[0] - 1], states[wrong[0]]
+    begin = before.fraction if before.step == after.step else 0.0
+    stops = np.linspace(begin, after.fraction, 101)
+    stops = stops[(stops > 0.0) & (stops < 1.0)]
+    closer = solve(result.problem, result.history[: after.step + 1], grid=result.grid, between=list(stops))
+    first = stops[0] if begin == 0.0 else begin  # the rest of the first interval is as wide as the others
+    inside = [s for s in closer.states if s.step == after.step and first <= s.fraction <= after.fraction]
+    left = max((amount for _, _, amount in wrong_slips([*inside])), default=0.0)
+    return (left / size if left > 0.3 * wrong[2] else 0.0), after.step
+
+
+def slip_size(states: Sequence[State]) -> float:
+    """Natural size of slips: the largest change of slip between states in contact."""
+    largest = 0.0
+    for before, after in pairwise(states):
+        both = (before.status != OPEN) & (after.status != OPEN)
+        largest = max(largest, float(np.abs(after.slip - before.slip)[both].max(initial=0.0)))
+    return max(largest, 1e-300)
+
+
+def check_dissipation(states: Sequence[State]) -> float:
+    """Difference of int |T ds| and the dissipation of the last state, in parts of it, beyond the error of the integral.
+
+    The error is four times the difference of the integrals with all states and with every second one: the integral may
+    converge slowly where the contact wanders.
+    """
+    fine, coarse = (_dissipated(some) for some in (states, states[len(states) % 2 :: 2]))
+    last = states[-1].dissipation
+    beyond = abs(fine - last) - 4.0 * abs(fine - coarse)
+    return max(beyond, 0.0) / max(abs(last), 1e-300)
+
+
+def _dissipated(states: Sequence[State]) -> float:
+    """int -T ds by the trapezoidal rule, with the slip since the state before also where contact begins or ends."""
+    weights = states[0].problem.hole_radius * states[0].grid.weights
+    total = 0.0
+    for before, after in pairwise(states):
+        if not _may_lose_contact(before, after):
+            total -= 0.5 * float(weights @ ((after.slip - before.slip) * (before.shear + after.shear)))
+    return total
