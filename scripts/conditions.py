@@ -148,12 +148,13 @@ class _Checked:
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
         self.gap = self.problem.clearance - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
         self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
+        self.touches = bool(np.any(state.status != OPEN))
+        least = LEAST_LENGTH if self.touches else 1.0
         self.length = max(
             *(float(np.abs(part).max()) for part in self.elastic), abs(state.dx), abs(state.dy),
-            radius * abs(state.rotation), LEAST_LENGTH * abs(self.problem.clearance), 1e-300,
+            radius * abs(state.rotation), least * abs(self.problem.clearance), 1e-300,
         )  # fmt: skip
         self.peak = max(float(np.abs(state.pressure).max()), 1e-300)
-        self.touches = bool(np.any(state.status != OPEN))
 
     @cached_property
     def conditions(self) -> dict[str, float]:
