@@ -1,0 +1,268 @@
+"""Pairs of cases with a known relation: turned, mirrored, scaled, split and renumbered.
+
+``python -m scripts.metamorphic [--count 100] [--first 0] [--classes general,extreme] [--processes 2]`` solves `count`
+random cases of each class, each with one changed case for every relation, on the same nodes. The states must agree.
+"""
+
+from __future__ import annotations
+
+import collections
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from tqdm import tqdm
+
+from fastpin.errors import FastpinError
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from scripts.histories import generate
+from scripts.random_histories import ending_of, options_for, run_jobs, within_time
+
+CLASSES = ("general", "extreme", "moderate_stress", "fixed", "remote")
+"""Classes that are run unless others are given."""
+
+MOST_NODES = 300
+"""Cases with more nodes are left out."""
+
+TOLERANCE = 1e-8
+"""Largest relative difference of two states."""
+
+
+@dataclass
+class Fields:
+    """What is compared of a state, in the frame of the first case: arrays (n,), and the motion (dx, dy, rotation)."""
+
+    arrays: dict[str, np.ndarray]
+    motion: np.ndarray
+    energies: np.ndarray
+
+
+@dataclass
+class Changed:
+    """A changed case, and the way back from its states to the first case.
+
+    Attributes
+    ----------
+    loads : ndarray, shape (corners, loads)
+    places : ndarray of int
+        The corners that correspond to the corners of the first case.
+    order : ndarray of int
+        The node of the changed grid at each node of the first.
+    sign : float
+        -1 for a mirrored case.
+    angle : float
+        Angle of a turned case, rad.
+    traction, displacement, radius : float
+        Factors of a scaled case.
+    split : int
+        Number of corners that are solved first; 0 for all.
+    """
+
+    problem: Problem
+    loads: np.ndarray
+    grid: Grid
+    places: np.ndarray
+    order: np.ndarray = field(default_factory=lambda: np.array([], dtype=int))
+    sign: float = 1.0
+    angle: float = 0.0
+    traction: float = 1.0
+    displacement: float = 1.0
+    radius: float = 1.0
+    split: int = 0
+
+    def states(self) -> list[State]:
+        """The states of the changed case at the corners of the first case."""
+        history = LoadHistory.from_array(_acting(self.problem, self.loads))
+        if self.split:
+            first = solve(self.problem, history[: self.split], grid=self.grid)
+            states = [*first, *solve(self.problem, history[self.split :], start=first)]
+        else:
+            states = solve(self.problem, history, grid=self.grid).states
+        return [states[place] for place in self.places]
+
+    def fields(self, state: State) -> Fields:
+        """The fields of a state, in the frame and units of the first case."""
+        order = self.order if self.order.size else slice(None)
+        scale = {"pressure": self.traction, "gap": self.displacement}
+        arrays = {name: getattr(state, name)[order] / value for name, value in scale.items()}
+        arrays["shear"] = self.sign * state.shear[order] / self.traction
+        arrays["slip"] = self.sign * state.slip[order] / self.displacement
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        moved = np.array([cos * state.dx + sin * state.dy, cos * state.dy - sin * state.dx]) / self.displacement
+        turned = self.sign * state.rotation * self.radius / self.displacement
+        energy = self.traction * self.radius * self.displacement
+        energies = np.array([state.dissipation, state.energy, state.work]) / energy
+        return Fields(arrays, np.array([self.sign * moved[0], moved[1], turned]), energies)
+
+
+def _acting(problem: Problem, loads: np.ndarray) -> np.ndarray:
+    """The loads with NaN for the ones that can't act in the problem."""
+    loads = loads.copy()
+    if problem.rotation == "fixed":
+        loads[:, M] = np.nan
+    else:
+        loads[:, ROTATION] = np.nan
+    if problem.pin_load == "body":
+        loads[:, M] = np.nan
+    return loads
+
+
+def turned(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
+    """All turned by any angle."""
+    angle = rng.uniform(-math.pi, math.pi)
+    cos, sin = math.cos(angle), math.sin(angle)
+    new = loads.copy()
+    new[:, Q], new[:, P] = cos * loads[:, Q] + sin * loads[:, P], cos * loads[:, P] - sin * loads[:, Q]
+    xx, yy, xy = loads[:, SXX], loads[:, SYY], loads[:, SXY]
+    new[:, SXX] = cos * cos * xx + sin * sin * yy - 2.0 * sin * cos * xy
+    new[:, SYY] = sin * sin * xx + cos * cos * yy + 2.0 * sin * cos * xy
+    new[:, SXY] = sin * cos * (xx - yy) + (cos * cos - sin * sin) * xy
+    return Changed(problem, new, Grid(grid.theta + angle, grid.closed), np.arange(len(loads)), angle=angle)
+
+
+def mirrored(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
+    """Left and right exchanged."""
+    del rng
+    new, n = loads.copy(), grid.size
+    new[:, [Q, M, SXY, ROTATION]] *= -1.0
+    order = np.arange(n)[::-1]
+    return Changed(
+        problem, new, Grid(-math.pi - grid.theta[::-1], grid.closed), np.arange(len(loads)), order, sign=-1.0
+    )
+
+
+def scaled(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
+    """All loads and the clearance times a factor; in half of the cases another radius and other moduli too."""
+    factor = 10.0 ** rng.uniform(-3.0, 3.0)
+    radius, modulus = (10.0 ** rng.uniform(-3.0, 0.0), 10.0 ** rng.uniform(0.0, 11.0)) if rng.random() < 0.5 else (1, 1)
+    pair = problem.pair
+    bodies = (Material(body.E * modulus, body.nu) for body in (pair.pin, pair.plate))
+    displacement = factor * radius / modulus
+    hub = None if problem.hub_radius is None else problem.hub_radius * radius
+    new_problem = replace(
+        problem, pair=MaterialPair(*bodies, pair.plane), hole_radius=problem.hole_radius * radius,
+        clearance=problem.clearance * displacement, hub_radius=hub,
+    )  # fmt: skip
+    factors = dict.fromkeys(LOADS, factor) | {"rotation": factor / modulus}
+    factors |= {"P": factor * radius, "Q": factor * radius, "M": factor * radius**2}
+    new = loads * np.array([factors[name] for name in LOADS])
+    return Changed(
+        new_problem, new, grid, np.arange(len(loads)), traction=factor, displacement=displacement, radius=radius
+    )
+
+
+def split(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
+    """One more corner inside a step, where the solution is cut in two."""
+    step, part = int(rng.integers(len(loads))), rng.uniform(0.1, 0.9)
+    before = loads[step - 1] if step else np.zeros(loads.shape[1])
+    new = np.insert(loads, step, before + part * (loads[step] - before), axis=0)
+    places = np.delete(np.arange(len(new)), step)
+    return Changed(problem, new, grid, places, split=step + 1)
+
+
+def renumbered(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
+    """The circle begins at another node. An arc becomes a circle with one wide interval first."""
+    first = int(rng.integers(1, grid.size - 1))
+    theta = np.r_[grid.theta[first:], grid.theta[:first] + 2.0 * math.pi]
+    order = (np.arange(grid.size) - first) % grid.size
+    return Changed(problem, loads, Grid(theta, closed=True), np.arange(len(loads)), order)
+
+
+RELATIONS: dict[str, Callable[[np.random.Generator, Problem, np.ndarray, Grid], Changed]] = {
+    function.__name__: function for function in (turned, mirrored, scaled, split, renumbered)
+}
+"""The relations, by name."""
+
+
+def difference(one: Fields, two: Fields) -> float:
+    """Largest relative difference of two states."""
+    largest_of = {name: float(np.abs(array).max()) for name, array in one.arrays.items()}
+    traction = max(largest_of["pressure"], 1e-300)
+    length = max(largest_of["gap"], largest_of["slip"], float(np.abs(one.motion).max()), 1e-300)
+    size = {"pressure": traction, "shear": traction, "gap": length, "slip": length}
+    largest = max(float(np.abs(one.arrays[name] - two.arrays[name]).max()) / size[name] for name in size)
+    energy = max(float(np.abs(one.energies).max()), 1e-300)
+    apart = float(np.abs(one.motion - two.motion).max()) / length
+    return max(largest, apart, float(np.abs(one.energies - two.energies).max()) / energy)
+
+
+@dataclass
+class Pair:
+    """The outcome of one pair: the ending, the largest difference, its state, and the snaps of the first case."""
+
+    kind: str
+    seed: int
+    relation: str
+    ending: str
+    difference: float = 0.0
+    state: int = -1
+    jumps: float = 0.0
+
+
+def compare(kind: str, seed: int, relations: tuple[str, ...] = tuple(RELATIONS)) -> list[Pair]:
+    """Solve a case and its changed cases, and compare the states."""
+    case = generate(kind, seed)
+    loads = case.history.values()
+    try:
+        grid = solve(case.problem, case.history, **case.options).grid
+    except FastpinError:
+        return [Pair(kind, seed, "", "refused")]
+    if grid.size > MOST_NODES:
+        return [Pair(kind, seed, "", "large")]
+    own = Changed(case.problem, loads, grid, np.arange(len(loads)))
+    try:
+        result = solve(case.problem, case.history, grid=grid)
+    except FastpinError as error:
+        return [Pair(kind, seed, "", f"refused on its own grid: {ending_of(error)}")]
+    pairs = []
+    for relation in relations:
+        rng = np.random.default_rng([seed, len(relation)])
+        pair = Pair(kind, seed, relation, "compared", jumps=result.statistics["jumps"])
+        pairs.append(pair)
+        changed = RELATIONS[relation](rng, case.problem, loads, grid)
+        try:
+            others = changed.states()
+        except FastpinError as error:
+            pair.ending = f"one refused: {error}"
+            continue
+        apart = [difference(own.fields(a), changed.fields(b)) for a, b in zip(result, others, strict=True)]
+        pair.state = int(np.argmax(np.array(apart) > TOLERANCE)) if max(apart) > TOLERANCE else -1
+        pair.difference = max(apart)
+    return pairs
+
+
+def compare_in_time(kind: str, seed: int) -> list[Pair]:
+    """As :func:`compare`, with the ending "hang" after a long time."""
+    return within_time(compare, kind, seed) or [Pair(kind, seed, "", "hang")]
+
+
+def main() -> None:
+    """Run the command line."""
+    options = options_for(__doc__, 40, CLASSES).parse_args()
+    tasks = [(k, s) for k in options.classes for s in range(options.first, options.first + options.count)]
+    pairs: list[Pair] = []
+    for some in run_jobs(compare_in_time, tasks, options.processes):
+        pairs += some
+        for pair in some:
+            if pair.difference > TOLERANCE or pair.ending.startswith(("one", "hang", "refused on")):
+                what = f"differ by {pair.difference:.1e} from state {pair.state} on, {pair.jumps:.0f} snaps"
+                tqdm.write(f"{pair.kind} {pair.seed} {pair.relation}: {what if pair.difference else pair.ending}")
+    for kind in options.classes:
+        for relation in ("", *RELATIONS):
+            some = [pair for pair in pairs if (pair.kind, pair.relation) == (kind, relation)]
+            endings = dict(collections.Counter(pair.ending.split(":")[0] for pair in some))
+            wrong = sum(pair.difference > TOLERANCE for pair in some)
+            largest = max((p.difference for p in some if p.difference <= TOLERANCE), default=0.0)
+            if some:
+                print(f"{kind:16}{relation or 'left out':12}{endings}, {wrong} differ, the others by {largest:.0e}")
+
+
+if __name__ == "__main__":
+    main()
