@@ -13,7 +13,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from scripts.histories import NODES, random_case
-from scripts.random_histories import outcome
+from scripts.random_histories import examine
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
@@ -225,11 +225,10 @@ def test_a_circle_with_a_wide_seam_is_not_taken_for_a_uniform_one(similar):
 def test_random_histories(block):
     """No wrong state, and no error: all of these have an equilibrium. scripts/random_histories.py runs a thousand."""
     for seed in range(1000 + 12 * block, 1012 + 12 * block):
-        ending, violation, result = outcome(seed)
-        assert ending == "solved", f"seed {seed}"
-        assert violation < 1e-9
-        assert result.complete
-        assert len(result) == len(random_case(seed)[1])
+        outcome = examine("general", seed)
+        assert outcome.ending == "solved", f"seed {seed}"
+        assert outcome.violations() == {}, f"seed {seed}"
+        assert outcome.states == len(random_case(seed)[1])
 
 
 @pytest.mark.parametrize("seed", [3, 11, 19, 24, 30, 42])
