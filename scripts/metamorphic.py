@@ -181,27 +181,54 @@ RELATIONS: dict[str, Callable[[np.random.Generator, Problem, np.ndarray, Grid], 
 """The relations, by name."""
 
 
-def difference(one: Fields, two: Fields) -> float:
-    """Largest relative difference of two states."""
-    largest_of = {name: float(np.abs(array).max()) for name, array in one.arrays.items()}
+def differences(one: list[Fields], two: list[Fields]) -> tuple[np.ndarray, np.ndarray]:
+    """Largest relative difference of each pair of states, shape (states,), and the same of a pin that floats.
+
+    The second holds the position of a pin without contact, and the rotation since it floated first. Sizes are the
+    largest of all states.
+    """
+    largest_of = {name: max(float(np.abs(f.arrays[name]).max()) for f in one) for name in one[0].arrays}
     traction = max(largest_of["pressure"], 1e-300)
-    length = max(largest_of["gap"], largest_of["slip"], float(np.abs(one.motion).max()), 1e-300)
+    length = max(largest_of["gap"], largest_of["slip"], *(float(np.abs(f.motion).max()) for f in one), 1e-300)
+    energy = max(*(float(np.abs(f.energies).max()) for f in one), 1e-300)
     size = {"pressure": traction, "shear": traction, "gap": length, "slip": length}
-    largest = max(float(np.abs(one.arrays[name] - two.arrays[name]).max()) / size[name] for name in size)
-    energy = max(float(np.abs(one.energies).max()), 1e-300)
-    apart = float(np.abs(one.motion - two.motion).max()) / length
-    return max(largest, apart, float(np.abs(one.energies - two.energies).max()) / energy)
+    apart, floating = np.zeros(len(one)), np.zeros(len(one))
+    floated = False
+    for place, (a, b) in enumerate(zip(one, two, strict=True)):
+        touches = bool(a.arrays["pressure"].any()) and bool(b.arrays["pressure"].any())
+        floated |= not touches
+        arrays = [float(np.abs(a.arrays[name] - b.arrays[name]).max()) / size[name] for name in size]
+        motion = np.abs(a.motion - b.motion) / length
+        energies = float(np.abs(a.energies - b.energies).max()) / energy
+        apart[place] = max(*arrays, motion[:2].max(), energies) if touches else energies
+        floating[place] = motion[2] if touches else max(*arrays, motion.max())
+        if not floated:
+            apart[place], floating[place] = max(apart[place], floating[place]), 0.0
+    return apart, floating
 
 
 @dataclass
 class Pair:
-    """The outcome of one pair: the ending, the largest difference, its state, and the snaps of the first case."""
+    """The outcome of one pair.
+
+    Attributes
+    ----------
+    ending : str
+        "compared", or the reason why the pair was not.
+    difference, floating : float
+        Largest difference of the states, and of a floating pin, see :func:`differences`.
+    state : int
+        The first state that differs; -1 if none.
+    jumps : float
+        Snaps of the first case.
+    """
 
     kind: str
     seed: int
     relation: str
     ending: str
     difference: float = 0.0
+    floating: float = 0.0
     state: int = -1
     jumps: float = 0.0
 
@@ -232,9 +259,10 @@ def compare(kind: str, seed: int, relations: tuple[str, ...] = tuple(RELATIONS))
         except FastpinError as error:
             pair.ending = f"one refused: {error}"
             continue
-        apart = [difference(own.fields(a), changed.fields(b)) for a, b in zip(result, others, strict=True)]
-        pair.state = int(np.argmax(np.array(apart) > TOLERANCE)) if max(apart) > TOLERANCE else -1
-        pair.difference = max(apart)
+        apart, floating = differences([own.fields(a) for a in result], [changed.fields(b) for b in others])
+        pair.difference, pair.floating = float(apart.max()), float(floating.max())
+        if pair.difference > TOLERANCE:
+            pair.state = int(np.argmax(apart > TOLERANCE))
     return pairs
 
 
@@ -254,14 +282,17 @@ def main() -> None:
             if pair.difference > TOLERANCE or pair.ending.startswith(("one", "hang", "refused on")):
                 what = f"differ by {pair.difference:.1e} from state {pair.state} on, {pair.jumps:.0f} snaps"
                 tqdm.write(f"{pair.kind} {pair.seed} {pair.relation}: {what if pair.difference else pair.ending}")
+            if pair.floating > TOLERANCE:
+                tqdm.write(f"{pair.kind} {pair.seed} {pair.relation}: the floating pin differs by {pair.floating:.1e}")
     for kind in options.classes:
         for relation in ("", *RELATIONS):
             some = [pair for pair in pairs if (pair.kind, pair.relation) == (kind, relation)]
             endings = dict(collections.Counter(pair.ending.split(":")[0] for pair in some))
-            wrong = sum(pair.difference > TOLERANCE for pair in some)
+            wrong, apart = (sum(getattr(p, name) > TOLERANCE for p in some) for name in ("difference", "floating"))
             largest = max((p.difference for p in some if p.difference <= TOLERANCE), default=0.0)
             if some:
-                print(f"{kind:16}{relation or 'left out':12}{endings}, {wrong} differ, the others by {largest:.0e}")
+                counts = f"{wrong} differ, {apart} float apart, the others by {largest:.0e}"
+                print(f"{kind:16}{relation or 'left out':12}{endings}, {counts}")
 
 
 if __name__ == "__main__":
