@@ -112,7 +112,7 @@ def _check(outcome: Outcome, case: RandomCase, result: Result, dense: bool) -> N
     if dense and outcome.ending == "solved" and not case.problem.frictionless:
         outcome.worst["direction"] = check_direction(result)
         if not outcome.jumps:
-            outcome.worst["dissipated"] = check_dissipation(result.states), len(result) - 1
+            outcome.worst["dissipated"] = check_dissipation(result), len(result) - 1
 
 
 def within_time(job: Callable[..., Any], *arguments: Any) -> Any | None:
