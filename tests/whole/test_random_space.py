@@ -16,7 +16,7 @@ from scripts.histories import GENERATORS, generate
 from scripts.random_histories import Outcome, examine, table
 from tests.support.potentials import displacement_kernels
 
-FEW, MANY = range(1, 4), range(2000, 2027)
+FEW, MANY = range(1, 4), range(300, 327)
 
 
 def assert_right(outcome: Outcome) -> None:
@@ -40,6 +40,21 @@ def test_random_histories_of_each_class(kind):
         assert_right(outcome)
     assert sum(outcome.ending in ("solved", "spins") for outcome in outcomes) >= 0.8 * len(outcomes)
     assert kind.split("_")[0] in table(outcomes)
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(strict=False, reason="a narrow contact that rolls off its nodes is lost, and begins anew elsewhere")
+@pytest.mark.parametrize("seed", [371, 373])
+def test_a_contact_under_force_is_not_lost(seed):
+    assert_right(examine("scales", seed))
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(strict=False, reason="the first contact of three nodes may take a large part of the load at once")
+@pytest.mark.parametrize("seed", [47, 58])
+def test_one_more_corner_changes_no_first_contact(seed):
+    (pair,) = metamorphic.compare("moderate_stress", seed, ("split",))
+    assert pair.difference < metamorphic.TOLERANCE
 
 
 @pytest.mark.slow
