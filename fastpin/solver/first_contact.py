@@ -47,6 +47,9 @@ GROWN_NODES = 19
 GROWN_FIT = np.arange(4, 7)
 """Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
 
+STEADY = 0.1
+"""Largest relative change of the hole's curvature against the pin's while the first nodes close."""
+
 LEAST_PART = 1e-12
 """Smallest part of a step at which a first contact is tried."""
 
@@ -137,7 +140,7 @@ def _lowest_places(system: System, gap: np.ndarray) -> np.ndarray:
 
 
 def first_contact(
-    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray
+    system: System, floating: Configuration, before: np.ndarray, after: np.ndarray, strict: bool = False
 ) -> tuple[Configuration, float]:
     """Find the first contact on the way from load `before` to load `after`: one implicit increment from rest.
 
@@ -148,6 +151,8 @@ def first_contact(
         The pin without contact. It is not changed.
     before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
+    strict : bool
+        Whether the hole must keep its shape while the first nodes close.
 
     Returns
     -------
@@ -169,9 +174,9 @@ def first_contact(
         return release(system, floating, after), 1.0
     resting, begins = found
     if not isinstance(system, LargeSystem):
-        return _first_patch(system, resting, (begins, before, after))
+        return _first_patch(system, resting, (begins, before, after), strict)
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after))
+    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after), strict)
     return window.paste(patch, resting), part
 
 
@@ -258,7 +263,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
 
 
 def _first_patch(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray]
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], strict: bool
 ) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
@@ -277,6 +282,8 @@ def _first_patch(
         system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
     )  # everything grows in proportion
     part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
+    most_part = _steady_part(system, resting, after - before) if strict and not self_similar else 1.0
+    part = min(part, most_part)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
@@ -289,12 +296,14 @@ def _first_patch(
         count = int(found.closed.sum())
         if best is None or abs(count - wanted) < abs(best[0] - wanted):
             best = (count, found, fraction)
-        if self_similar or least <= count <= most or (count < least and part == 1.0):
+        if self_similar or least <= count <= most or (count < least and part == most_part):
             break
-        part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), 1.0)
+        part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), most_part)
     if best is None:
         raise ResolutionError(NARROW)
-    _, found, fraction = best
+    count, found, fraction = best
+    if count < least and most_part < 1.0:
+        raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
     if not rough and system.friction > 0.0:
@@ -375,6 +384,16 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     else:
         part = math.pi * bend * half**2 / force
     return min(max(part, LEAST_PART), 1.0)
+
+
+def _steady_part(system: System, resting: Configuration, change: np.ndarray) -> float:
+    """The part of a change of the load during which the hole keeps its shape, by :data:`STEADY` of its bend."""
+    theta = system.grid.theta
+    gap, _, curvature = hole_gap(system, resting.load, theta)
+    later, _, bent = hole_gap(system, resting.load + change, theta)
+    bend = max(float((gap + curvature)[np.argmin(resting.gap)]), 0.0)
+    changed = float(np.abs(later + bent - gap - curvature).max())
+    return 1.0 if changed <= STEADY * bend else max(STEADY * bend / changed, LEAST_PART)
 
 
 def _width(system: System, node: int) -> float:

@@ -479,12 +479,16 @@ class PathStepper:
     ----------
     system : System
     statistics : dict of str to float
-        Statistics of the run. The stepper counts "events", "exchanges", "rebuilds", "resettled" and "jumps" in it.
+        Statistics of the run. The stepper counts "events", "exchanges", "rebuilds", "resettled", "jumps" and
+        "released" in it.
+    strict : bool
+        Whether a narrow contact that carries next to nothing is an error. If not, it is let go.
     """
 
-    def __init__(self, system: System, statistics: dict[str, float]) -> None:
+    def __init__(self, system: System, statistics: dict[str, float], strict: bool = False) -> None:
         self._system = system
         self._statistics = statistics
+        self._strict = strict
         self._memory = TableauMemory(system.grid.size)
         self._step: PathStep | None = None
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
@@ -574,7 +578,11 @@ class PathStepper:
         if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_NODES or self._releases == MOST_RELEASES:
             return False
         self._releases += 1
-        return unloading or force_of(now.load) <= NEGLIGIBLE * max(force_of(piece.before), force_of(piece.after))
+        if unloading or self._strict:
+            return unloading
+        small = force_of(now.load) <= NEGLIGIBLE * max(force_of(piece.before), force_of(piece.after))
+        self._statistics["released"] += small
+        return small
 
 
 def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:

@@ -82,7 +82,8 @@ class Result(Sequence[State]):
         "events" (changes of status that the load reached), "exchanges" (changes made in the tableau), "rebuilds"
         (tableaus built anew, and states computed by a factorisation), "increments", "repeated" (steps taken from the
         period before, not solved), "resettled" (events at which Lemke's method found the statuses), "jumps" (snaps of
-        the pin to a state at a finite distance) and "seconds".
+        the pin to a state at a finite distance), "released" (narrow contacts that carried next to nothing and lost
+        their memory) and "seconds".
     complete : bool
         Whether the whole history was followed; False in the result that an error carries.
     restart : Restart or None

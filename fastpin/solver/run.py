@@ -34,7 +34,7 @@ log = logging.getLogger(__name__)
 Progress = Callable[[float, int], None]
 """Called with the number of steps that are done, parts included, and the number of all steps."""
 
-COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps")
+COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps", "released")
 """Counts in the statistics of a run."""
 
 LEAST_CLOSED = 3
@@ -89,6 +89,9 @@ class Run:
         The restart from which the run continues. Without it the run starts from no load.
     stops : collection of int
         Numbers of corners at which the recorder wants to see the run.
+    strict : bool
+        Whether the run ends where the contact is too narrow for the nodes. If not, a contact that carries next to
+        nothing is let go, and a new one begins without memory.
 
     Attributes
     ----------
@@ -117,6 +120,7 @@ class Run:
         progress: Progress | None = None,
         start: Restart | None = None,
         stops: Collection[int] = (),
+        strict: bool = False,
     ) -> None:
         self.history = history
         self.system = system
@@ -124,6 +128,7 @@ class Run:
         self.recorder = recorder
         self.progress = progress
         self.stops = stops
+        self.strict = strict
         self.keep = options.keep_rule
         self.fractions = options.fractions if self.keep.inside else options.fractions[-1:]
         start = _without_load(system) if start is None else start
@@ -135,7 +140,7 @@ class Run:
         self.position = Position(start.configuration, start.configuration.closed.copy())
         self.complete = False
         self.statistics = {**dict.fromkeys(COUNTED, 0.0), **start.statistics}
-        self.stepper = _stepper(system, options, self.statistics)
+        self.stepper = _stepper(system, options, self.statistics, strict)
 
     @property
     def now(self) -> Configuration:
@@ -247,7 +252,7 @@ class Run:
         self.stepper.leave(position)
         before = self.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
-        position.now, part = first_contact(self.system, self.now, before, load)
+        position.now, part = first_contact(self.system, self.now, before, load, self.strict)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:
@@ -374,14 +379,14 @@ class Run:
         return state
 
 
-def _stepper(system: System, options: SolveOptions, statistics: dict[str, float]) -> Stepper:
+def _stepper(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:
     """The solver of the method that the options name."""
     if options.method == "increment":
         assert options.increments is not None
         return IncrementStepper(system, options.increments, statistics)
     if isinstance(system, LargeSystem):
-        return WindowStepper(system, statistics)
-    return PathStepper(system, statistics)
+        return WindowStepper(system, statistics, strict)
+    return PathStepper(system, statistics, strict)
 
 
 def _without_load(system: System) -> Restart:

@@ -146,7 +146,7 @@ class _Survey:
         """Follow the load, SI, on the present grid. Returns whether the contact was never lost between the nodes."""
         start = Restart(0, self._load, self._force, replace(self._now), 0.0, 0.0, Repeats(), {}, {})
         corner = {name: float(value) for name, value in zip(LOADS, load, strict=True)}
-        run = Run(LoadHistory([corner]), self._system, SolveOptions(), start=start)
+        run = Run(LoadHistory([corner]), self._system, SolveOptions(), start=start, strict=True)
         try:
             run.follow()
         except SolveError:

@@ -94,18 +94,39 @@ class Task:
             given = None if unfit is not None else self.grid
             task = replace(self, grid=given)
             try:
-                task._follow_candidates(recorder, progress, unfit)
+                task._follow_candidates(recorder, progress, unfit, strict=True)
             except ConvergenceError as error:
-                if given is not None or self.options.arc is not None or self.options.method != "path":
-                    raise
-                grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options, progress)
-                if grid is None or (unfit is not None and _is_same(grid, unfit[0])):
-                    raise
-                log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
-                self._follow_on(grid, self.force, recorder, None, progress)
+                if self.options.method != "path" or task._follow_narrow(recorder, progress, unfit, error):
+                    return
+                released = task._follow_candidates(recorder, progress, None, strict=False).statistics["released"]
+                if released:
+                    log.warning(
+                        "%d times a narrow contact that carried less than 0.1 %% of the force was let go and lost its "
+                        "memory",
+                        released,
+                    )
 
-    def _follow_candidates(self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None) -> None:
-        """Follow the history on the candidates one after the other, until one is wide enough."""
+    def _follow_narrow(
+        self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None, error: ConvergenceError
+    ) -> bool:
+        """Follow the history on a graded grid, after an `error` on others. Returns whether its end was reached."""
+        if self.grid is not None or self.options.arc is not None:
+            return False
+        grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options, progress)
+        if grid is None or (unfit is not None and _is_same(grid, unfit[0])):
+            return False
+        log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
+        try:
+            self._follow_on(grid, recorder, progress, strict=True)
+        except ConvergenceError as second:
+            log.info("%s", second)
+            return False
+        return True
+
+    def _follow_candidates(
+        self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None, strict: bool
+    ) -> Run:
+        """Follow the history on the candidates one after the other, until one is wide enough. Returns that run."""
         if unfit is not None and not isinstance(unfit[1], ArcError):
             raise unfit[1]
         beyond = None if unfit is None else unfit[0]
@@ -116,8 +137,7 @@ class Task:
                 continue
             log.info("%d nodes from %.5g to %.5g rad", grid.size, grid.theta[0], grid.theta[-1])
             try:
-                self._follow_on(grid, self.force, recorder, None, progress)
-                return
+                return self._follow_on(grid, recorder, progress, strict=strict)
             except ArcError:
                 if self.options.arc is not None or self.grid is not None:
                     raise
@@ -141,8 +161,10 @@ class Task:
         """The reference force of the history, N/m."""
         return reference_force(self.problem, self.history.distinct())
 
-    def continue_from(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
+    def continue_from(self, recorder: Recorder, start: Restart, grid: Grid, strict: bool = False) -> None:
         """Continue the history from a corner that another run reached, on the grid of that run.
+
+        With `strict`, a contact that gets too narrow for the nodes is an error, also where it carries next to nothing.
 
         Raises
         ------
@@ -150,7 +172,7 @@ class Task:
             See :meth:`follow`.
         """
         with deferred_interrupts() as request, _one_blas_thread():
-            self._follow_on(grid, start.force, recorder, start, self._stoppable_progress(request))
+            self._continue(recorder, start, grid, self._stoppable_progress(request), strict)
 
     def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
         """Follow the history from the end of another history, on the grid of that history.
@@ -177,15 +199,27 @@ class Task:
             See :meth:`follow`.
         """
         with deferred_interrupts() as request, _one_blas_thread():
-            return self._follow_on(grid, start.force, None, start, self._stoppable_progress(request)).restart()
+            return self._continue(None, start, grid, self._stoppable_progress(request)).restart()
+
+    def _continue(
+        self, recorder: Recorder | None, start: Restart, grid: Grid, progress: Progress, strict: bool = False
+    ) -> Run:
+        """Follow the history from a corner; not `strict`, once more with narrow contacts let go."""
+        try:
+            return self._follow_on(grid, recorder, progress, start)
+        except ConvergenceError:
+            if strict:
+                raise
+            return self._follow_on(grid, recorder, progress, start, strict=False)
 
     def _follow_on(
-        self, grid: Grid, force: float, recorder: Recorder | None, start: Restart | None, progress: Progress
-    ) -> Run:
-        """Follow the history on one grid, from `start` or from no load."""
+        self, grid: Grid, recorder: Recorder | None, progress: Progress, start: Restart | None = None,
+        strict: bool = True,
+    ) -> Run:  # fmt: skip
+        """Follow the history on one grid, from `start` or from no load; see :class:`Run` for `strict`."""
         build = build_system if self.options.method == "path" else System.build
-        system = build(self.problem, grid, force)
-        run = Run(self.history, system, self.options, recorder, progress, start, self.stops)
+        system = build(self.problem, grid, self.force if start is None else start.force)
+        run = Run(self.history, system, self.options, recorder, progress, start, self.stops, strict)
         if recorder is not None:
             recorder.begin(run)
         run.follow()

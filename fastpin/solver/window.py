@@ -101,13 +101,14 @@ class WindowStepper:
     Parameters
     ----------
     system : LargeSystem
-    statistics : dict of str to float
-        Statistics of the run, see :class:`fastpin.solver.path.PathStepper`.
+    statistics, strict
+        See :class:`fastpin.solver.path.PathStepper`.
     """
 
-    def __init__(self, system: LargeSystem, statistics: dict[str, float]) -> None:
+    def __init__(self, system: LargeSystem, statistics: dict[str, float], strict: bool) -> None:
         self._system = system
         self._statistics = statistics
+        self._strict = strict
         self._window: Window | None = None
         self._stepper: PathStepper | None = None
         self._inside: Position | None = None
@@ -173,7 +174,7 @@ class WindowStepper:
         window = self._window = Window(self._system, closed)
         if window.nodes.size > WIDEST:
             raise ResolutionError(f"the contacts are narrow and far apart: {window.nodes.size} nodes at a time")
-        self._stepper = PathStepper(window.system, self._statistics)
+        self._stepper = PathStepper(window.system, self._statistics, self._strict)
         return window
 
     def _paste(self, position: Position) -> None:

@@ -125,7 +125,7 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
         log.info("continuing from corner %d of %d", restart.corner, len(task.history))
         assert task.grid is not None
         try:
-            task.continue_from(writer, restart, task.grid)
+            task.continue_from(writer, restart, task.grid, strict=writer.chosen_arc)
         except (ArcError, ConvergenceError) as error:
             if not writer.chosen_arc:
                 raise

@@ -43,14 +43,12 @@ def test_random_histories_of_each_class(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=False, reason="a narrow contact that rolls off its nodes is lost, and begins anew elsewhere")
 @pytest.mark.parametrize("seed", [371, 373])
 def test_a_contact_under_force_is_not_lost(seed):
     assert_right(examine("scales", seed))
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=False, reason="the first contact of three nodes may take a large part of the load at once")
 @pytest.mark.parametrize("seed", [47, 58])
 def test_one_more_corner_changes_no_first_contact(seed):
     (pair,) = metamorphic.compare("moderate_stress", seed, ("split",))
