@@ -53,7 +53,7 @@ MOST_GROWTH = 3.0
 MOST_RELEASES = 10
 """Times in one step that a contact is released where it can't be followed."""
 
-LEAST_PART = 1e-6
+LEAST_PART = 1e-9
 """Smallest part of a step that is tried."""
 
 MOST_TRIALS = 1500
