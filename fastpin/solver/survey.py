@@ -242,4 +242,4 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         return new
     if not closed.any():
         return None
-    return implicit_step(system, new, now.load) or FiniteStep(system, new, everywhere=True).to(now.load)
+    return implicit_step(system, new, now.load) or FiniteStep(system, new).to(now.load)
