@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy
 
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
@@ -22,7 +21,7 @@ MAX_NODES = 20_000
 MOST_WIDTH = 2.0
 """Largest width of a place of a graded grid, rad. Wider contacts need no grading."""
 
-GRADED_SAMPLES = 200
+GRADED_SAMPLES = 400
 """Angles round each place at which the spacing of a graded grid is computed."""
 
 
@@ -110,14 +109,14 @@ class Grid:
             turned = theta[0] + (number("node_at", node_at) - theta[0]) % (2.0 * math.pi)
             shift = float(np.interp(turned, theta, number_below)) / number_below[-1] * count % 1.0
         wanted = (np.arange(count) + shift) / count * number_below[-1]
-        return cls(scipy.interpolate.PchipInterpolator(number_below, theta)(wanted), closed=True)
+        return cls(np.interp(wanted, number_below, theta), closed=True)
 
     def with_nodes(self, nodes: int) -> Grid:
         """A grid of `nodes` nodes on the same arc or circle. Its spacings are in proportion to the present ones."""
         if not self.uniform:
             ends = np.r_[self.theta, self.theta[0] + 2.0 * math.pi] if self.closed else self.theta
             places = np.linspace(0.0, ends.size - 1.0, nodes + 1 if self.closed else nodes)
-            finer = scipy.interpolate.PchipInterpolator(np.arange(ends.size), ends)(places)
+            finer = np.interp(places, np.arange(ends.size), ends)
             return Grid(finer[:-1] if self.closed else finer, self.closed)
         if self.closed:
             return Grid.circle(nodes, float(self.theta[0]))

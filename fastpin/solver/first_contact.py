@@ -306,9 +306,9 @@ def _first_patch(
         raise ResolutionError(NARROW)
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
+    dissipated = dissipation_between(system, resting, found)
     if not rough and system.friction > 0.0:
         found = _with_grown_slip(system, found, before + begins * (after - before)) or found
-    dissipated = dissipation_between(system, resting, found)
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated
     return found, fraction

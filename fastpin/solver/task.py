@@ -96,7 +96,9 @@ class Task:
             try:
                 task._follow_candidates(recorder, progress, unfit, strict=True)
             except ConvergenceError as error:
-                if self.options.method != "path" or task._follow_narrow(recorder, progress, unfit, error):
+                if self.options.method != "path":
+                    raise
+                if task._follow_narrow(recorder, progress, unfit, error):
                     return
                 released = task._follow_candidates(recorder, progress, None, strict=False).statistics["released"]
                 if released:
