@@ -1,0 +1,106 @@
+"""The first contact: the slip of its first nodes, pins that the hole grips, and holes that change while it begins."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin.model.grid import Grid
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver import first_contact, path
+from fastpin.solver.errors import ArcError
+from fastpin.solver.solving import solve
+
+BOTTOM = -0.5 * np.pi
+SOFT_PIN = MaterialPair(Material(1.0, 0.1), Material(10.0, 0.3))
+GRIPPED = MaterialPair(Material(10.0, 0.3), Material(6.5, 0.47), "stress")
+
+
+def error_beside_the_first_node(case, load):
+    """Largest error of the shear at the two nodes beside the first one, with 101 nodes, in parts of the peak shear."""
+    direction = np.arctan2(-load["P"], load.get("Q", 0.0))
+    arc = (direction - 1.2, direction + 1.2)
+    coarse, fine = (solve(case, [load], nodes=nodes, arc=arc)[-1] for nodes in (101, 801))
+    middle = int(np.argmin(np.abs(coarse.theta - direction)))
+    beside = np.array([middle - 1, middle + 1])
+    return np.abs(coarse.shear[beside] - fine.shear[8 * beside]).max() / np.abs(fine.shear).max()
+
+
+STICKING = {"down": {"P": 1.0}, "inclined": {"P": 1.0, "Q": 0.3}}
+
+
+@pytest.mark.parametrize("load", STICKING.values(), ids=STICKING)
+@pytest.mark.parametrize("pair", ["unlike", "soft pin"])
+def test_the_first_nodes_have_no_kink(monkeypatch, titanium_in_aluminium, pair, load):
+    case = {
+        "unlike": Problem.from_load_parameter(titanium_in_aluminium, 0.5, 1.0, "centre", "fixed"),
+        "soft pin": Problem.from_load_parameter(SOFT_PIN, 2.0, 0.6, "body"),
+    }[pair]
+    error = error_beside_the_first_node(case, load)
+    monkeypatch.setattr(first_contact, "_with_grown_slip", lambda *_: None)
+    kinked = error_beside_the_first_node(case, load)
+    assert error < 2e-3
+    assert kinked > 5e-3
+    assert kinked > 10.0 * error
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("nodes", [60, 61, 101, 158, 200, 401])
+def test_a_hole_grips_a_pin_without_force(nodes, friction):
+    case = Problem.from_load_parameter(GRIPPED, 2.54, friction)
+    state = solve(case, [{"sxx": -5.11, "syy": 7.13}], nodes=nodes)[-1]
+    assert max(state.residuals.values()) < 1e-12
+    assert len(state.contact) == 2
+    assert state.peak_pressure == pytest.approx(5.615 if friction == 0.0 else 5.359, rel=0.02)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.01, 0.3])
+def test_the_gripping_does_not_depend_on_where_the_nodes_begin(start):
+    case = Problem.from_load_parameter(GRIPPED, 2.54, 0.3)
+    state = solve(case, [{"sxx": -5.11, "syy": 7.13}], grid=Grid.circle(301, start))[-1]
+    assert state.peak_pressure == pytest.approx(5.359, rel=2e-3)
+
+
+def test_a_hole_that_grips_outside_the_arc_is_said_to():
+    case = Problem.from_load_parameter(GRIPPED, 2.54, 0.3)
+    with pytest.raises(ArcError, match="outside the arc"):
+        solve(case, [{"sxx": -5.11, "syy": 7.13}], grid=Grid.arc(BOTTOM - 0.5, BOTTOM + 0.5, 61))
+
+
+def test_a_pin_that_stays_free_is_not_gripped():
+    case = Problem.from_load_parameter(GRIPPED, 2.54, 0.3)
+    state = solve(case, [{"sxx": -0.5, "syy": 0.7}], nodes=61)[-1]
+    assert not state.in_contact
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_corner_on_the_way_changes_no_first_contact_in_a_hole_that_changes(seed):
+    rng = np.random.default_rng(seed)
+    pair = MaterialPair(Material(14.7, 0.27), Material(4.6, 0.37))
+    case = Problem.from_load_parameter(pair, 9.8, 0.8, "centre", "fixed")
+    end = {
+        "P": 0.46,
+        "Q": -0.37,
+        "sxx": -37.0 * rng.uniform(0.5, 1.0),
+        "syy": 2.2,
+        "sxy": -16.7 * rng.uniform(0.5, 1.0),
+    }
+    half = {name: 0.5 * value for name, value in end.items()}
+    grid = Grid.circle(201)
+    whole, split = solve(case, [end], grid=grid)[-1], solve(case, [half, end], grid=grid)[-1]
+    assert split.peak_pressure == pytest.approx(whole.peak_pressure, rel=1e-6)
+    assert split.dx == pytest.approx(whole.dx, rel=1e-6)
+
+
+def test_a_drifted_step_goes_back_to_the_last_check(monkeypatch, titanium_in_aluminium):
+    """Drift that is called severe too early: the same states, from tableaus that are built anew more often."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    history = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}]
+    plain = solve(case, history, nodes=201)
+    measured = path.PathStep._drift
+    monkeypatch.setattr(path.PathStep, "_drift", lambda step: 1.0 if step._room is None else measured(step))
+    again = solve(case, history, grid=plain.grid)
+    assert again.statistics["rebuilds"] > plain.statistics["rebuilds"]
+    for one, two in zip(plain, again, strict=True):
+        assert one.shear == pytest.approx(two.shear, abs=1e-12 * one.pressure.max())
