@@ -226,12 +226,7 @@ class PathStep:
                     checked = updates // exchange.CHUNK
                     if report is not None:
                         report(self.fraction)
-                    drift = self._drift()
-                    if drift > SEVERE_DRIFT and self._go_back():
-                        checked = 0
-                        continue
-                    if not drift <= MOST_DRIFT:
-                        self._mend()
+                    if self._repair():
                         checked = 0
                         continue
                     self._remember()
@@ -360,6 +355,16 @@ class PathStep:
         counts[exchange.NEXT] = counts[exchange.QUEUED] = counts[exchange.ROUND] = counts[exchange.SETTLED] = 0
         self._book()
         self._rebuild()
+        return True
+
+    def _repair(self) -> bool:
+        """Go back or compute the configuration anew, if its error is too large. Returns whether it was."""
+        drift = self._drift()
+        if drift > SEVERE_DRIFT and self._go_back():
+            return True
+        if drift <= MOST_DRIFT:
+            return False
+        self._mend()
         return True
 
     def _mend(self) -> None:
