@@ -23,7 +23,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
-from fastpin.model.problem import MOST_RADIUS, Problem
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
@@ -45,6 +45,7 @@ KEYS: dict[str, tuple[str, ...]] = {
         "pin_load",
         "rotation",
         "hub_radius",
+        "hub_stiffness",
     ),
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
@@ -302,17 +303,24 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
         contact.require(key, " (or give load_parameter)" if key in ("hole_radius", "clearance") else "")
     values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed}}
     pin_load = contact.choice("pin_load", ("centre", "body"))
-    rotation = contact.choice("rotation", ("free", "fixed"))
-    hub_radius = contact.number("hub_radius")
+    rotation = contact.choice("rotation", ("free", "fixed", "spring"))
+    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness")}
+    if rotation == "spring" and "hub_stiffness" not in contact:
+        contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
+    radius = values.get("hole_radius", 1.0)
+    if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
+        radius, hub = MOST_RADIUS, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
+    unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     held = pin_load is not None and rotation is not None
     if held:
-        values |= {"pin_load": pin_load, "rotation": rotation, "hub_radius": hub_radius}
+        values |= {"pin_load": pin_load, "rotation": rotation, **hub}
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,
         "load_parameter": 0.0,
         "friction": 0.0,
         "hub_radius": None,
+        "hub_stiffness": unit if rotation == "spring" else None,
     }
     problem = _built(contact, make, values, harmless)
     return problem if held else None

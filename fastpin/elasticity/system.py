@@ -53,7 +53,7 @@ class System:
 
         equilibrium @ (N, T) + motion_rows @ motion = forces @ load.
 
-    For a pin whose rotation is held, the third row prescribes the rotation instead.
+    For a pin whose rotation is held, the third row prescribes the rotation of the hub, or of the far end of the spring.
 
     Attributes
     ----------
@@ -131,9 +131,11 @@ class System:
             equilibrium[2, n:] = -weights  # M
             forces[2, M] = 1.0
         else:
-            motion_rows[2, 2] = 1.0
-            equilibrium[2, n:] = -problem.hub_compliance * weights
-            forces[2, ROTATION] = 1.0
+            # In units of 1 + compliance of the spring: a soft spring leaves the condition of a free pin.
+            unit = 1.0 if problem.hub_stiffness is None else 1.0 / (1.0 + problem.spring_compliance)
+            motion_rows[2, 2] = unit
+            equilibrium[2, n:] = -unit * problem.hub_compliance * weights
+            forces[2, ROTATION] = unit
         scales = Scales.of(problem, force)
         return cls(
             problem, grid, scales, problem.clearance / scales.displacement, problem.friction,

@@ -477,10 +477,12 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
             "a body-loaded pin can't carry a moment: uniform body forces leave the moment's singularity at the centre "
             '(section 4 of the paper); use pin_load = "centre"',
         )
-    if problem.rotation == "fixed" and not all(np.all(np.isnan(moment)) for moment in moments):
-        raise InputError("M", 'the moment is a reaction where rotation = "fixed"; leave it out or let the pin rotate')
-    if problem.rotation == "free" and not all(np.all(np.isnan(rotation)) for rotation in rotations):
-        raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed"')
+    if problem.held and not all(np.all(np.isnan(moment)) for moment in moments):
+        raise InputError(
+            "M", f'the moment is a reaction where rotation = "{problem.rotation}"; leave it out or let the pin rotate'
+        )
+    if not problem.held and not all(np.all(np.isnan(rotation)) for rotation in rotations):
+        raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed" or "spring"')
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:

@@ -24,7 +24,8 @@ LOAD_KIND = {
 * ``Q``: force on the pin along +x, N/m.
 * ``M``: moment on the pin, counter-clockwise, N (per unit thickness); only for a pin that rotates freely.
 * ``sxx``, ``syy``: remote normal stresses in the plate, Pa.
-* ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed.
+* ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed, or of
+  the far end of the spring that holds it.
 * ``sxy``: remote shear stress in the plate, Pa.
 
 Files hold load vectors, so a new load stands at the end.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from fastpin.errors import InputError
@@ -13,7 +13,7 @@ from fastpin.model.materials import MaterialPair
 PinLoad = Literal["centre", "body"]
 """Kinds of pin load."""
 
-Rotation = Literal["free", "fixed"]
+Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
 
 LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
@@ -27,6 +27,9 @@ MOST_FRICTION = 1e6
 
 LEAST_HUB = 1e-5
 """Least hub radius, in parts of R. The pin turns by 1/r^2 per moment: a smaller hub holds it by rounding only."""
+
+LEAST_STIFFNESS, MOST_STIFFNESS = 1e-30, 1e30
+"""Limits of the stiffness of a hub's spring, in parts of R^2/beta*. At a limit the pin is free or fixed."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -44,15 +47,20 @@ class Problem:
         Coefficient of friction, 0 to :data:`MOST_FRICTION`.
     pin_load : {"centre", "body"}
         The pin's load acts at its centre, or as a uniform body force (section 4 of the paper).
-    rotation : {"free", "fixed"}
-        A free pin carries the moment M (0 unless given). A fixed pin has a prescribed rotation (0 unless given).
-        A body-loaded pin must be free: its potentials have a moment singularity otherwise (section 4).
+    rotation : {"free", "fixed", "spring"}
+        A free pin carries the moment M (0 unless given). A fixed pin has a prescribed rotation (0 unless given). A
+        spring holds the pin at its hub; the load ``rotation`` then turns the far end of the spring. A body-loaded pin
+        must be free: its potentials have a moment singularity otherwise (section 4).
     hub_radius : float, optional
-        Radius, m, of the circle whose mean rotation is prescribed; only with ``rotation="fixed"``. The rotation of a
-        pin under a centre moment depends on where it is measured. The default is the paper's datum,
-        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R.
+        Radius, m, of the circle whose mean rotation is held, by a fixed hub or a spring. The rotation of a pin under a
+        centre moment depends on where it is measured. The default is the paper's datum, R / sqrt(kappa_I + 1). For the
+        whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R.
     dimensionless : bool
         Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
+    hub_stiffness : float, optional
+        Stiffness of the spring, N (moment per unit thickness per rad), :data:`LEAST_STIFFNESS` to
+        :data:`MOST_STIFFNESS` R^2/beta*; only with ``rotation="spring"``, and needed there. In a dimensionless problem
+        its unit is R^2/beta*.
 
     Raises
     ------
@@ -68,6 +76,7 @@ class Problem:
     rotation: Rotation = "free"
     hub_radius: float | None = None
     dimensionless: bool = False
+    hub_stiffness: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, MaterialPair, "a MaterialPair")
@@ -92,31 +101,47 @@ class Problem:
                 f"must not be negative, not {clearance:g}",
             )
         choice("pin_load", self.pin_load, ("centre", "body"))
-        choice("rotation", self.rotation, ("free", "fixed"))
-        if self.pin_load == "body" and self.rotation == "fixed":
+        choice("rotation", self.rotation, ("free", "fixed", "spring"))
+        if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",
                 'a body-loaded pin must rotate freely (rotation = "free"): holding it takes a moment, and uniform body '
                 "forces leave that moment's singularity at the centre (section 4 of the paper)",
             )
+        object.__setattr__(self, "hole_radius", radius)
+        self._check_hub(radius)
+        object.__setattr__(self, "clearance", clearance)
+        object.__setattr__(self, "friction", friction)
+        object.__setattr__(self, "dimensionless", bool(self.dimensionless))
+
+    def _check_hub(self, radius: float) -> None:
+        """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
         if self.hub_radius is not None:
             hub = number("hub_radius", self.hub_radius)
-            if self.rotation == "free":
-                raise InputError("hub_radius", 'only a pin with rotation = "fixed" is held at a hub')
+            if not self.held:
+                raise InputError("hub_radius", 'only a pin with rotation = "fixed" or "spring" is held at a hub')
             if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
             object.__setattr__(self, "hub_radius", hub)
-        object.__setattr__(self, "hole_radius", radius)
-        object.__setattr__(self, "clearance", clearance)
-        object.__setattr__(self, "friction", friction)
-        object.__setattr__(self, "dimensionless", bool(self.dimensionless))
+        if self.hub_stiffness is not None:
+            stiffness = number("hub_stiffness", self.hub_stiffness)
+            if self.rotation != "spring":
+                raise InputError("hub_stiffness", 'only a pin with rotation = "spring" is held by a spring')
+            if stiffness <= 0.0:
+                raise InputError("hub_stiffness", f"must be positive, not {stiffness:g}")
+            natural = self.natural_loads()["moment"]
+            number("hub_stiffness", stiffness, LEAST_STIFFNESS * natural, MOST_STIFFNESS * natural)
+            object.__setattr__(self, "hub_stiffness", stiffness)
+        elif self.rotation == "spring":
+            raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
         if not self.dimensionless:
             size = f"hole radius {self.hole_radius:.6g} m, clearance {self.clearance:.6g} m"
-        hub = "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
+        hub = "" if self.hub_stiffness is None else f" of stiffness {self.hub_stiffness:.6g}"
+        hub += "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
         return (
             f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
             f" load at the {self.pin_load}, rotation {self.rotation}{hub}>"
@@ -131,15 +156,24 @@ class Problem:
         pin_load: PinLoad = "centre",
         rotation: Rotation = "free",
         hub_radius: float | None = None,
+        *,
+        hub_stiffness: float | None = None,
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
-        tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R.
+        tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R, and a hub's
+        stiffness in R^2/beta*.
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
-        return cls(pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, dimensionless=True)
+        scaled = pair.scaled(1.0)
+        return cls(scaled, 1.0, value, friction, pin_load, rotation, hub_radius, True, hub_stiffness=hub_stiffness)
+
+    @property
+    def held(self) -> bool:
+        """Whether the rotation of the pin is held, by a fixed hub or a spring."""
+        return self.rotation != "free"
 
     @property
     def frictionless(self) -> bool:
@@ -163,10 +197,19 @@ class Problem:
     def hub_compliance(self) -> float:
         """Rotation of a held pin per int T dtheta, in units of beta*: C_omega = hub_compliance * int T dtheta.
 
-        It is zero for the paper's datum, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r.
+        It is zero for the paper's datum, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r. A
+        spring of stiffness k adds R^2 / (k beta*).
         """
-        if self.hub_radius is None:
+        compliance = 0.0
+        if self.hub_radius is not None:
+            ratio = (self.hole_radius / self.hub_radius) ** 2
+            stiffness = 4.0 * math.pi * self.pair.beta_star
+            compliance = (ratio - (self.pair.pin_kolosov + 1.0)) * self.pair.pin_compliance / stiffness
+        return compliance + self.spring_compliance
+
+    @property
+    def spring_compliance(self) -> float:
+        """The part of the hub's spring in :attr:`hub_compliance`; 0 without a spring."""
+        if self.hub_stiffness is None:
             return 0.0
-        ratio = (self.hole_radius / self.hub_radius) ** 2
-        stiffness = 4.0 * math.pi * self.pair.beta_star
-        return (ratio - (self.pair.pin_kolosov + 1.0)) * self.pair.pin_compliance / stiffness
+        return self.hole_radius**2 / (self.hub_stiffness * self.pair.beta_star)

@@ -26,7 +26,6 @@ def describe(case: Case) -> str:
     problem, options = case.problem, case.options
     pair = problem.pair
     alpha, beta = pair.dundurs()
-    unit = units(problem)
     if problem.dimensionless:
         scale = "dimensionless: R = 1, F = 1, beta* = 1"
         size = f"load parameter {problem.clearance:.4g}"
@@ -35,13 +34,6 @@ def describe(case: Case) -> str:
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
         size = f"hole radius {with_unit(problem.hole_radius, 'm')}, {kind} {with_unit(problem.clearance, 'm')}"
     pin_load = {"centre": "force at the centre", "body": "uniform body force"}[problem.pin_load]
-    hub = ""
-    if problem.rotation == "fixed":
-        hub = (
-            " at the paper's datum"
-            if problem.hub_radius is None
-            else f" at radius {problem.hub_radius:g} {unit['length']}"
-        )
     if options.arc is None:
         where = "arc chosen by the solver"
     elif options.is_full_turn:
@@ -54,7 +46,7 @@ def describe(case: Case) -> str:
         ("plate", _material(pair.plate, problem.dimensionless)),
         ("pair", f"plane {pair.plane}, Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
         ("contact", f"{size}, friction {problem.friction:g}"),
-        ("loading", f"{pin_load}, rotation {problem.rotation}{hub}"),
+        ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
         ("loads", f"{len(case.history):,} corners, reached one after the other from no load"),
     ]
@@ -63,6 +55,18 @@ def describe(case: Case) -> str:
     text = [case.title] if case.title else []
     text += [f"{name:8s} {value}" for name, value in rows]
     return "\n".join([*text, "", _load_table(problem, case.history)])
+
+
+def _hub(problem: Problem) -> str:
+    """Return the words that say how the hub of a pin is held; empty if the pin rotates freely."""
+    if not problem.held:
+        return ""
+    spring, unit = "", units(problem)
+    if problem.hub_stiffness is not None:
+        spring = f" of stiffness {with_unit(problem.hub_stiffness, unit['stiffness'])}"
+    if problem.hub_radius is None:
+        return f"{spring} at the paper's datum"
+    return f"{spring} at radius {problem.hub_radius:g} {unit['length']}"
 
 
 def _load_table(problem: Problem, history: LoadHistory) -> str:

@@ -75,6 +75,7 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
         ("contact", "deg", [_intervals(state, "contact") for state in states]),
         ("stick", "deg", [_intervals(state, "stick") for state in states]),
         column("rotation", 4, strain),
+        *([column("M", 4)] if problem.rotation == "spring" else []),
         column("dissipation", 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]

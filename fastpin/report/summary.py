@@ -58,6 +58,7 @@ def document(
             "pin_load": problem.pin_load,
             "rotation": problem.rotation,
             "hub_radius": problem.hub_radius,
+            "hub_stiffness": problem.hub_stiffness,
             "dimensionless": problem.dimensionless,
         },
         "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},

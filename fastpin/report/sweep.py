@@ -33,7 +33,13 @@ MOST_PANELS = 12
 MOST_CURVES = 20
 """Most curves in one figure."""
 
-_KIND = {"hole_radius": "length", "clearance": "length", "hub_radius": "length", "E": "traction"} | LOAD_KIND
+_KIND = {
+    "hole_radius": "length",
+    "clearance": "length",
+    "hub_radius": "length",
+    "hub_stiffness": "stiffness",
+    "E": "traction",
+} | LOAD_KIND
 """The kind of every key of a case that has a unit."""
 
 _SHOWN = {

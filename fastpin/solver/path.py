@@ -535,7 +535,7 @@ class PathStepper:
                 self.leave(position)
                 position.now = release(self._system, position.now, position.now.load)
             elif not self._jump(position, piece, stop, lost):
-                raise _solve_error(lost.code, position.now, self._system.problem.rotation == "fixed") from None
+                raise _solve_error(lost.code, position.now, self._system.problem.held) from None
 
     def leave(self, position: Position) -> None:
         """End the present path: note the nodes that it touched, count its events, and forget it."""

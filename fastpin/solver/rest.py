@@ -89,7 +89,7 @@ def put_at_rest(
     """
     n = system.grid.size
     configuration.rest, configuration.rest_gap = rest, rest_gap
-    held = system.problem.rotation == "fixed"
+    held = system.problem.held
     configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
     free = system.loads @ load
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)

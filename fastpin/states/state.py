@@ -54,6 +54,8 @@ class State:
     dissipation, work, energy : float
         Energy dissipated by friction so far, work of the loads so far and elastic energy now, J/m. Work and energy
         leave out the part that depends on the load alone (infinite for a load at a point), so they may be negative.
+        The work counts the moment that holds the pin, times C_omega. A spring at the hub lies outside: its own energy
+        M^2/(2 k) is in neither.
         An interference fit begins with the energy of its assembly in both work and energy.
     residuals : dict of str to float
         Largest violations of the contact conditions, recomputed from the matrices. "gap" and "slip" are relative to
@@ -220,7 +222,7 @@ class State:
     def resultants(self) -> dict[str, float]:
         """The loads that the tractions balance, (50), (51): "P" and "Q" in N/m, "M" in N.
 
-        If the rotation of the pin is held, M is the moment that holds it.
+        If the rotation of the pin is held, M is the moment that holds it: the moment of the spring, if there is one.
         """
         cos, sin = self.grid.trig_moments()
         radius = self.problem.hole_radius

@@ -107,6 +107,7 @@ _PROBLEM_FIELDS = (
     "pin_load",
     "rotation",
     "hub_radius",
+    "hub_stiffness",
     "dimensionless",
 )
 

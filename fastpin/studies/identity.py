@@ -45,6 +45,7 @@ def canonical(case: Case) -> dict[str, Any]:
         "pin_load": problem.pin_load,
         "rotation": problem.rotation,
         "hub_radius": problem.hub_radius,
+        **({} if problem.hub_stiffness is None else {"hub_stiffness": problem.hub_stiffness}),
         "dimensionless": problem.dimensionless,
         "loads": _loads(case.history),
         "solve": _options(case.options),

@@ -1,0 +1,211 @@
+"""A torsional spring that holds the rotation of the pin at its hub."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.case import Case
+from fastpin.model.problem import Problem
+from fastpin.report.case import describe
+from fastpin.report.states import state_table
+from fastpin.report.summary import document
+from fastpin.solver.solving import solve
+from fastpin.studies.identity import canonical
+from fastpin.studies.plan import parse_plan
+from fastpin.verification.sliding import solve_sliding
+from tests.support.programs import assert_same
+
+HISTORY = [{"P": 1.0}, {"Q": 0.25}, {"Q": -0.25}, {"Q": 0.25}, {"P": 0.6, "Q": -0.2}]
+TURNED = [*HISTORY[:2], {"Q": -0.25, "rotation": 0.02}, *HISTORY[3:]]
+INCREMENTS = {"method": "increment", "increments": 10}
+
+
+def joint(pair, rotation, hub_radius=None, stiffness=None, friction=0.4):
+    return Problem.from_load_parameter(
+        pair, 0.3, friction, "centre", rotation, hub_radius, hub_stiffness=stiffness
+    )  # fmt: skip
+
+
+def hub_rotation(state):
+    """The mean rotation of the circle of the hub, (T8)."""
+    problem = state.problem
+    if problem.hub_radius is None:
+        return state.rotation
+    shear = -state.resultants["M"] / problem.hole_radius**2
+    inside = problem.pair.pin_kolosov + 1.0 - (problem.hole_radius / problem.hub_radius) ** 2
+    return state.rotation + inside * problem.pair.pin_compliance * shear / (4.0 * math.pi)
+
+
+def difference(one, two):
+    """Largest difference of tractions between two results on one grid, over the peak."""
+    peak = max(state.peak_pressure for state in one)
+    return max(
+        float(np.abs(getattr(first, name) - getattr(second, name)).max()) / peak
+        for first, second in zip(one, two, strict=True)
+        for name in ("pressure", "shear")
+    )
+
+
+@pytest.mark.parametrize("options", [{}, INCREMENTS], ids=["path", "increment"])
+@pytest.mark.parametrize("hub_radius", [None, 0.3])
+@pytest.mark.parametrize("stiffness", [1e-3, 0.3, 10.0])
+def test_the_moment_is_the_spring_s(titanium_in_aluminium, hub_radius, stiffness, options):
+    problem = joint(titanium_in_aluminium, "spring", hub_radius, stiffness)
+    result = solve(problem, TURNED, nodes=101, **options)
+    moments = [state.resultants["M"] for state in result]
+    springs = [stiffness * (state.load["rotation"] - hub_rotation(state)) for state in result]
+    assert moments == pytest.approx(springs, abs=1e-12)
+    assert abs(moments[1]) > 1e-6
+
+
+@pytest.mark.parametrize("options", [{}, INCREMENTS], ids=["path", "increment"])
+def test_stiff_and_soft_springs(titanium_in_aluminium, options):
+    """A stiff spring is a fixed hub, and a soft one a free pin; the differences fall with the first power."""
+    fixed = solve(joint(titanium_in_aluminium, "fixed", 0.3), TURNED, nodes=101, **options)
+    free = solve(joint(titanium_in_aluminium, "free"), HISTORY, grid=fixed.grid, **options)
+    for limit, history, powers in ((fixed, TURNED, (3, 4, 14)), (free, HISTORY, (-3, -4, -14))):
+        springs = [joint(titanium_in_aluminium, "spring", 0.3, 10.0**power) for power in powers]
+        worst = [difference(limit, solve(spring, history, grid=fixed.grid, **options)) for spring in springs]
+        assert worst[1] == pytest.approx(0.1 * worst[0], rel=0.05)
+        assert worst[2] < 1e-11
+
+
+def test_the_methods_agree(titanium_in_aluminium):
+    problem = joint(titanium_in_aluminium, "spring", None, 0.5)
+    path = solve(problem, TURNED, nodes=101)
+    worst = [
+        difference(path, solve(problem, TURNED, grid=path.grid, method="increment", increments=count))
+        for count in (20, 80)
+    ]
+    assert worst[1] < 0.01
+    assert worst[1] < 0.4 * worst[0]
+
+
+def test_work_is_energy_plus_dissipation(titanium_in_aluminium):
+    worst = []
+    for nodes in (101, 401):
+        result = solve(joint(titanium_in_aluminium, "spring", 0.4, 0.3), TURNED, nodes=nodes)
+        worst.append(max(abs(s.work - s.energy - s.dissipation) / s.energy for s in result))
+    assert worst[1] < 2e-5
+    assert worst[1] < 0.2 * worst[0]
+
+
+def test_a_cycle_dissipates_the_work_of_the_force(titanium_in_aluminium):
+    """The spring gives back what it takes: in a periodic cycle the work is the dissipation."""
+    problem = joint(titanium_in_aluminium, "spring", None, 30.0)
+    cycle = [{"Q": -0.25}, {"Q": 0.25}]
+    result = solve(problem, [{"P": 1.0}, {"Q": 0.25}, *cycle, *cycle, *cycle], nodes=201)
+    work, lost = (getattr(result[-1], name) - getattr(result[-3], name) for name in ("work", "dissipation"))
+    assert lost > 1e-4
+    assert work == pytest.approx(lost, rel=1e-3)
+
+
+def test_full_sliding(titanium_in_aluminium):
+    """A spring whose far end turns on and on brings the pin into full sliding, at the moment of (58)."""
+    problem = joint(titanium_in_aluminium, "spring", None, 0.2)
+    state = solve(problem, [{"P": 1.0}, {"rotation": 5.0}], nodes=401)[-1]
+    assert not state.stick
+    found = solve_sliding(problem, {"P": 1.0}, 1)
+    assert np.ravel(state.contact) == pytest.approx(found.contact, abs=1e-4)
+    assert state.resultants["M"] == pytest.approx(found.moment, rel=1e-5)
+    assert found.moment == pytest.approx(0.2 * (5.0 - state.rotation), rel=1e-5)
+
+
+def test_without_friction_the_spring_carries_nothing(titanium_in_aluminium):
+    problem = joint(titanium_in_aluminium, "spring", None, 0.2, friction=0.0)
+    state = solve(problem, [{"P": 1.0}, {"rotation": 0.1}], nodes=61)[-1]
+    assert (state.rotation, state.resultants["M"]) == pytest.approx((0.1, 0.0), abs=1e-12)
+
+
+def test_si_units(titanium_in_aluminium):
+    """Moment and rotation in SI units are those of the dimensionless problem, with k in R^2/beta*."""
+    radius, force, beta = 10e-3, 1e6, titanium_in_aluminium.beta_star
+    small = solve(joint(titanium_in_aluminium, "spring", 0.4, 0.3), HISTORY, nodes=61)
+    clearance, hub, stiffness = 0.3 * force * beta, 0.4 * radius, 0.3 * radius**2 / beta
+    problem = Problem(
+        titanium_in_aluminium, radius, clearance, 0.4, "centre", "spring", hub, hub_stiffness=stiffness
+    )  # fmt: skip
+    large = solve(problem, [{k: force * v for k, v in corner.items()} for corner in HISTORY], nodes=61)
+    for one, two in zip(small, large, strict=True):
+        assert two.resultants["M"] == pytest.approx(one.resultants["M"] * force * radius, abs=1e-10 * force * radius)
+        assert two.rotation == pytest.approx(one.rotation * force * beta / radius, abs=1e-10 * force * beta / radius)
+
+
+# --- what is asked for, and where it is shown ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rotation", "stiffness", "words"),
+    [
+        ("spring", None, "hub_stiffness.*needs the stiffness"),
+        ("spring", 0.0, "hub_stiffness.*must be positive"),
+        ("spring", -1.0, "hub_stiffness.*must be positive"),
+        ("spring", math.inf, "hub_stiffness.*finite"),
+        ("spring", "stiff", "hub_stiffness.*number"),
+        ("fixed", 1.0, 'hub_stiffness.*only a pin with rotation = "spring"'),
+        ("free", 1.0, 'hub_stiffness.*only a pin with rotation = "spring"'),
+    ],
+)
+def test_bad_values(titanium_in_aluminium, rotation, stiffness, words):
+    with pytest.raises(InputError, match=words) as caught:
+        joint(titanium_in_aluminium, rotation, None, stiffness)
+    assert caught.value.field == "hub_stiffness"
+
+
+def test_a_moment_can_not_be_given(titanium_in_aluminium):
+    with pytest.raises(InputError, match='reaction where rotation = "spring"'):
+        solve(joint(titanium_in_aluminium, "spring", None, 1.0), [{"P": 1.0, "M": 0.1}])
+    with pytest.raises(InputError, match="must rotate freely"):
+        Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "body", "spring", hub_stiffness=1.0)
+
+
+SPRING = 'rotation = "spring"\nhub_stiffness = 2e5\nhub_radius = 4e-3\n#'
+CASE = EXAMPLE.replace('pin_load = "body"  ', 'pin_load = "centre"').replace('rotation = "free"', SPRING)
+
+
+def test_case_file_tables_and_files(tmp_path):
+    case = parse_case(CASE.replace("nodes = 401", "nodes = 61"))
+    assert (case.problem.rotation, case.problem.hub_stiffness) == ("spring", 2e5)
+    assert "spring of stiffness 200 kN/rad at radius 0.004 m" in describe(case)
+    assert "of stiffness 200000 at radius 0.004" in repr(case.problem)
+    result = solve(case.problem, case.history, **case.options.keywords())
+    assert document(case, result)["problem"]["hub_stiffness"] == 2e5
+    assert " M " in state_table(case.problem, result).splitlines()[0]
+    json.dumps(canonical(case))
+    path = tmp_path / "case.h5"
+    fastpin.record(case.problem, case.history, path, **case.options.keywords())
+    assert fastpin.load(path).problem == case.problem
+    assert_same(fastpin.load(path), result)
+    half = solve(case.problem, case.history[:2], grid=result.grid)
+    rest = solve(case.problem, case.history[2:], start=half)
+    assert np.array_equal(rest[-1].shear, result[-1].shear)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (CASE.replace("hub_stiffness = 2e5\n", ""), "needs the stiffness of the spring"),
+        (CASE.replace("hub_stiffness = 2e5", "hub_stiffness = -2"), "must be positive"),
+        (CASE.replace('rotation = "spring"', 'rotation = "fixed"'), 'only a pin with rotation = "spring"'),
+    ],
+)
+def test_faults_of_case_files(text, words):
+    with pytest.raises(CaseFileError, match=words) as caught:
+        parse_case(text)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_plan_varies_the_stiffness(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    plan = parse_plan('case = "case.toml"\n[grid]\ncontact.hub_stiffness = [1e4, 1e6]\n', folder=tmp_path)
+    cases = [plan.case(point) for point in plan.points]
+    assert [case.problem.hub_stiffness for case in cases] == [1e4, 1e6]
+    assert len({json.dumps(canonical(case)) for case in cases}) == 2
+    assert "hub_stiffness" not in canonical(Case(joint(cases[0].problem.pair, "fixed"), cases[0].history))
