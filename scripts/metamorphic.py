@@ -17,7 +17,7 @@ from tqdm import tqdm
 from fastpin.errors import FastpinError
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
+from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, UX, UY, M, P, Q
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
@@ -103,9 +103,10 @@ class Changed:
 
 
 def _acting(problem: Problem, loads: np.ndarray) -> np.ndarray:
-    """The loads with NaN for the ones that can't act in the problem."""
+    """The loads with NaN for the ones that can't act in the problem. Forces push the pin."""
     loads = loads.copy()
-    if problem.rotation == "fixed":
+    loads[:, [UX, UY]] = np.nan
+    if problem.held:
         loads[:, M] = np.nan
     else:
         loads[:, ROTATION] = np.nan

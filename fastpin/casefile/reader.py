@@ -46,6 +46,8 @@ KEYS: dict[str, tuple[str, ...]] = {
         "rotation",
         "hub_radius",
         "hub_stiffness",
+        "drive",
+        "gauge_radius",
     ),
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
@@ -288,7 +290,7 @@ def _dundurs(section: Section, contact: Section, plane: str) -> MaterialPair | N
 
 
 def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
-    """The problem. None if [contact] is missing, or if pin_load or rotation is wrong: the loads depend on both."""
+    """The problem. None if [contact] is missing, or pin_load, rotation or drive is wrong: the loads depend on them."""
     if not contact.present:
         return None
     make: Callable[..., Problem] = Problem
@@ -304,16 +306,17 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
     values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed}}
     pin_load = contact.choice("pin_load", ("centre", "body"))
     rotation = contact.choice("rotation", ("free", "fixed", "spring"))
-    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness")}
+    drive = contact.choice("drive", ("force", "ux", "uy", "both"))
+    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness", "gauge_radius")}
     if rotation == "spring" and "hub_stiffness" not in contact:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
         radius, hub = MOST_RADIUS, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
-    held = pin_load is not None and rotation is not None
+    held = None not in (pin_load, rotation, drive)
     if held:
-        values |= {"pin_load": pin_load, "rotation": rotation, **hub}
+        values |= {"pin_load": pin_load, "rotation": rotation, "drive": drive, **hub}
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,
@@ -321,6 +324,7 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
         "friction": 0.0,
         "hub_radius": None,
         "hub_stiffness": unit if rotation == "spring" else None,
+        "gauge_radius": None,
     }
     problem = _built(contact, make, values, harmless)
     return problem if held else None

@@ -44,7 +44,8 @@ class LargeSystem(System):
             )  # fmt: skip
             gap += direct @ pressure[nodes] + cross @ shear[nodes]
             slip += direct @ shear[nodes] - cross @ pressure[nodes]
-        return np.r_[gap, slip]
+        found = np.r_[gap, slip]
+        return found if self.drive is None else found + self.drive.translation @ (self.drive.coupling @ tractions)
 
     def window(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""

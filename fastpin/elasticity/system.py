@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
 from fastpin.kernels import influence
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
@@ -41,6 +42,7 @@ class Scales:
         radius, beta = problem.hole_radius, problem.pair.beta_star
         traction, rotation = force / radius, force * beta / radius
         unit = {"force": force, "moment": force * radius, "traction": traction, "rotation": rotation}
+        unit["displacement"] = force * beta
         loads = np.array([unit[kind] for kind in LOAD_KIND.values()])
         return cls(force, traction, force * beta, rotation, force * force * beta, loads)
 
@@ -82,6 +84,9 @@ class System:
         Integrals of the hat functions of the nodes, rad.
     plate : float
         Size R kappa'/(2 G) of the hole's displacement per remote stress, Eq. (42).
+    drive : Drive or None
+        The prescribed displacements. Then the first two components of the motion are the reactions of the driven axes;
+        see :mod:`fastpin.elasticity.drive`. None if forces push the pin.
     """
 
     problem: Problem
@@ -97,6 +102,7 @@ class System:
     forces: np.ndarray
     weights: np.ndarray
     plate: float
+    drive: Drive | None = None
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
@@ -136,10 +142,14 @@ class System:
             motion_rows[2, 2] = unit
             equilibrium[2, n:] = -unit * problem.hub_compliance * weights
             forces[2, ROTATION] = unit
+        drive = None
+        if problem.drive != "force":
+            drive = replace_forces(problem, grid, operator, motion, loads, motion_rows)
+            forces[:2] *= ~drive.axes[:, None]
         scales = Scales.of(problem, force)
         return cls(
             problem, grid, scales, problem.clearance / scales.displacement, problem.friction,
-            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate,
+            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, drive,
         )  # fmt: skip
 
     @staticmethod
@@ -156,10 +166,35 @@ class System:
 
     def without_friction(self) -> System:
         """The same system without friction (mu = 0). The rotation is held at the load's ``rotation``."""
-        equilibrium, motion_rows, forces = self.equilibrium.copy(), np.zeros((3, 3)), self.forces.copy()
-        equilibrium[2], forces[2] = 0.0, 0.0
+        equilibrium, motion_rows, forces = self.equilibrium.copy(), self.motion_rows.copy(), self.forces.copy()
+        equilibrium[2], motion_rows[2], forces[2] = 0.0, 0.0, 0.0
         motion_rows[2, 2] = forces[2, ROTATION] = 1.0
         return replace(self, friction=0.0, equilibrium=equilibrium, motion_rows=motion_rows, forces=forces)
+
+    def load_displacement(self, load: np.ndarray, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
+        """Gap and slip, shape (2n,) or only some `rows`, of a load (loads,) or its rate."""
+        acting = self._acting
+        return self.loads[rows][:, :acting] @ load[:acting]
+
+    def held_displacement(self, load: np.ndarray) -> np.ndarray:
+        """Gap and slip, shape (2n,), of a load (loads,) or its rate, without the prescribed displacements."""
+        return self.load_displacement(load) if self.drive is None else self.drive.columns @ load
+
+    def load_forces(self, load: np.ndarray) -> np.ndarray:
+        """Right sides of the conditions of equilibrium, shape (3,), of a load (loads,) or its rate."""
+        acting = self._acting
+        return self.forces[:, :acting] @ load[:acting]
+
+    @property
+    def _acting(self) -> int:
+        """Number of loads in products. Under forces the displacements, at the end, are left out: zeros cost bits."""
+        stand_last = max(DISPLACEMENTS) == len(LOADS) - 1
+        return min(DISPLACEMENTS) if self.drive is None and stand_last else len(LOADS)
+
+    @property
+    def translation(self) -> np.ndarray:
+        """Gap and slip per displacement of the pin along x and y, shape (2n, 2)."""
+        return self.motion[:, :2] if self.drive is None else self.drive.translation
 
     def displacement(
         self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest_gap: np.ndarray | float
@@ -185,6 +220,6 @@ class System:
 
         The other arguments are as in :meth:`displacement`.
         """
-        result = elastic + self.motion @ motion + self.loads @ load
+        result = elastic + self.motion @ motion + self.load_displacement(load)
         result[: self.grid.size] += rest_gap
         return result

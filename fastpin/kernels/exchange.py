@@ -122,6 +122,9 @@ class LoadTerms(NamedTuple):
         Growth of ``force`` along the step.
     weights : ndarray, shape (n,)
         Weights of the nodes.
+    reactions : ndarray, shape (2, 2n+3)
+        Along x and y: weights of the traction rates per reaction, growth of the prescribed displacement, compliance g,
+        and 1 if a displacement is prescribed. The motion then holds the reaction.
     """
 
     column: np.ndarray
@@ -129,6 +132,7 @@ class LoadTerms(NamedTuple):
     force: np.ndarray
     force_rate: np.ndarray
     weights: np.ndarray
+    reactions: np.ndarray
 
 
 class Queue(NamedTuple):
@@ -412,6 +416,21 @@ def _advance(contact, rates, friction, weights, step):
 
 
 @inner
+def _reaction_work(contact, rates, friction, load, axis, step):
+    """Work of the reaction to a prescribed displacement, per unit of time, over `step`."""
+    status, terms = contact.status, load.reactions[axis]
+    n = status.size
+    moved = terms[2 * n] - terms[2 * n + 1] * rates[2 * n + axis]
+    for i in range(n):
+        if status[i] != OPEN:
+            shear_rate = -status[i] * friction * rates[i]
+            if status[i] == STICK:
+                shear_rate = _shear_rate(rates, contact, friction, i)
+            moved += terms[i] * rates[i] + terms[n + i] * shear_rate
+    return (contact.motion[axis] + 0.5 * step * rates[2 * n + axis]) * moved
+
+
+@inner
 def _work(contact, rates, friction, load, time, step):
     """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`."""
     status = contact.status
@@ -429,7 +448,10 @@ def _work(contact, rates, friction, load, time, step):
             work += (load.column[i] + middle * load.column_rate[i]) * rates[i]
             work += (load.column[n + i] + middle * load.column_rate[n + i]) * shear_rate
     for k in range(2):
-        work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
+        if load.reactions[k, 2 * n + 2] != 0.0:
+            work += _reaction_work(contact, rates, friction, load, k, step)
+        else:
+            work += (load.force[k] + middle * load.force_rate[k]) * rates[2 * n + k]
     work += (moment + 0.5 * step * moment_rate) * rates[2 * n + 2]
     return work * step
 

@@ -483,6 +483,15 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
         )
     if not problem.held and not all(np.all(np.isnan(rotation)) for rotation in rotations):
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed" or "spring"')
+    for place, is_driven in enumerate(problem.driven):
+        force, displacement = ("Q", "P")[place], ("ux", "uy")[place]
+        refused = force if is_driven else displacement
+        if all(np.all(np.isnan(block.given[:, LOADS.index(refused)])) for block in history.blocks):
+            continue
+        if is_driven:
+            raise InputError(force, f'the force is a reaction where drive = "{problem.drive}"; give {displacement}')
+        words = f'a displacement can be prescribed only where drive = "{displacement}" or "both"; give {force}'
+        raise InputError(displacement, words)
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:

@@ -17,6 +17,8 @@ LOAD_KIND = {
     "syy": "traction",
     "rotation": "rotation",
     "sxy": "traction",
+    "ux": "displacement",
+    "uy": "displacement",
 }
 """The kind of quantity of every load. The kinds are keys of :func:`fastpin.model.units.units`.
 
@@ -27,6 +29,8 @@ LOAD_KIND = {
 * ``rotation``: prescribed rotation of the pin, rad, counter-clockwise; only for a pin whose rotation is fixed, or of
   the far end of the spring that holds it.
 * ``sxy``: remote shear stress in the plate, Pa.
+* ``ux``, ``uy``: prescribed displacement of the pin along +x and +y, m, from the concentric position; only where the
+  problem's ``drive`` says so. Q is then the reaction to ``ux``, and P to ``uy``.
 
 Files hold load vectors, so a new load stands at the end.
 """
@@ -34,7 +38,7 @@ Files hold load vectors, so a new load stands at the end.
 LOADS = tuple(LOAD_KIND)
 """Names of the loads, in the order of every load vector."""
 
-P, Q, M, SXX, SYY, ROTATION, SXY = range(len(LOADS))
+P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY = range(len(LOADS))
 """Places of the loads in a load vector."""
 
 REMOTE = tuple(place for place, kind in enumerate(LOAD_KIND.values()) if kind == "traction")

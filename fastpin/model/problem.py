@@ -31,6 +31,12 @@ LEAST_HUB = 1e-5
 LEAST_STIFFNESS, MOST_STIFFNESS = 1e-30, 1e30
 """Limits of the stiffness of a hub's spring, in parts of R^2/beta*. At a limit the pin is free or fixed."""
 
+MOST_GAUGE = 1e30
+"""Largest gauge radius, in parts of R. The displacement grows like its logarithm: a larger circle is no plate."""
+
+Drive = Literal["force", "ux", "uy", "both"]
+"""Ways to drive the pin: by the forces P and Q, or by displacements in place of Q (ux), of P (uy) or of both."""
+
 
 @dataclass(frozen=True, repr=False)
 class Problem:
@@ -52,15 +58,26 @@ class Problem:
         spring holds the pin at its hub; the load ``rotation`` then turns the far end of the spring. A body-loaded pin
         must be free: its potentials have a moment singularity otherwise (section 4).
     hub_radius : float, optional
-        Radius, m, of the circle whose mean rotation is held, by a fixed hub or a spring. The rotation of a pin under a
-        centre moment depends on where it is measured. The default is the paper's datum, R / sqrt(kappa_I + 1). For the
-        whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R.
+        Radius, m, of the hub: the circle in the pin whose mean rotation is held, by a fixed hub or a spring, and whose
+        mean displacement is prescribed. Only with one of these. Rotation and displacement of a pin under loads at its
+        centre depend on where they are measured. The default is the paper's datum of the rotation,
+        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R. The
+        displacement of a body-loaded pin is its mean over the pin, and takes no hub.
     dimensionless : bool
         Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
     hub_stiffness : float, optional
         Stiffness of the spring, N (moment per unit thickness per rad), :data:`LEAST_STIFFNESS` to
         :data:`MOST_STIFFNESS` R^2/beta*; only with ``rotation="spring"``, and needed there. In a dimensionless problem
         its unit is R^2/beta*.
+    drive : {"force", "ux", "uy", "both"}
+        "force": the loads P and Q push the pin. "ux": the load ``ux`` prescribes the displacement of the hub along x.
+        Q is then the reaction, and P is a force. "uy": ``uy`` prescribes the displacement along y, P is the reaction,
+        and Q is a force. "both": ``ux`` and ``uy`` prescribe both. The displacement is relative to the mean
+        displacement of the gauge circle, and counts from the concentric position.
+    gauge_radius : float, optional
+        Radius, m, of the gauge circle round the hole, in the plate, from the hole radius R, which is the default, to
+        :data:`MOST_GAUGE` R. Only with a prescribed displacement. Far away the plate's displacement under a force grows
+        like the logarithm of the distance. So a displacement relative to the plate needs a radius.
 
     Raises
     ------
@@ -77,6 +94,8 @@ class Problem:
     hub_radius: float | None = None
     dimensionless: bool = False
     hub_stiffness: float | None = field(default=None, kw_only=True)
+    drive: Drive = field(default="force", kw_only=True)
+    gauge_radius: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, MaterialPair, "a MaterialPair")
@@ -102,6 +121,7 @@ class Problem:
             )
         choice("pin_load", self.pin_load, ("centre", "body"))
         choice("rotation", self.rotation, ("free", "fixed", "spring"))
+        choice("drive", self.drive, ("force", "ux", "uy", "both"))
         if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",
@@ -110,6 +130,7 @@ class Problem:
             )
         object.__setattr__(self, "hole_radius", radius)
         self._check_hub(radius)
+        self._check_drive(radius)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
@@ -118,8 +139,10 @@ class Problem:
         """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
         if self.hub_radius is not None:
             hub = number("hub_radius", self.hub_radius)
-            if not self.held:
+            if not self.held and self.drive == "force":
                 raise InputError("hub_radius", 'only a pin with rotation = "fixed" or "spring" is held at a hub')
+            if self.pin_load == "body":
+                raise InputError("hub_radius", "the displacement of a body-loaded pin is its mean: leave the hub out")
             if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
@@ -136,15 +159,28 @@ class Problem:
         elif self.rotation == "spring":
             raise InputError("hub_stiffness", 'a pin with rotation = "spring" needs the stiffness of the spring')
 
+    def _check_drive(self, radius: float) -> None:
+        """Check the radius of the gauge circle. `radius` is the radius of the hole."""
+        if self.gauge_radius is not None:
+            gauge = number("gauge_radius", self.gauge_radius)
+            if self.drive == "force":
+                raise InputError("gauge_radius", 'only a displacement has a gauge: drive = "ux" or "uy" or "both"')
+            if gauge < radius:
+                raise InputError("gauge_radius", f"must be at least the hole radius {radius:g}, not {gauge:g}")
+            number("gauge_radius", gauge, radius, MOST_GAUGE * radius)
+            object.__setattr__(self, "gauge_radius", gauge)
+
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
         if not self.dimensionless:
             size = f"hole radius {self.hole_radius:.6g} m, clearance {self.clearance:.6g} m"
         hub = "" if self.hub_stiffness is None else f" of stiffness {self.hub_stiffness:.6g}"
         hub += "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
+        driven = "" if self.drive == "force" else f", driven by {self.drive.replace('both', 'ux and uy')}"
+        driven += "" if self.gauge_radius is None else f" over radius {self.gauge_radius:.6g}"
         return (
             f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
-            f" load at the {self.pin_load}, rotation {self.rotation}{hub}>"
+            f" load at the {self.pin_load}, rotation {self.rotation}{hub}{driven}>"
         ).replace("load at the body", "body load")
 
     @classmethod
@@ -158,6 +194,8 @@ class Problem:
         hub_radius: float | None = None,
         *,
         hub_stiffness: float | None = None,
+        drive: Drive = "force",
+        gauge_radius: float | None = None,
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
@@ -167,13 +205,39 @@ class Problem:
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
-        scaled = pair.scaled(1.0)
-        return cls(scaled, 1.0, value, friction, pin_load, rotation, hub_radius, True, hub_stiffness=hub_stiffness)
+        return cls(
+            pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, True,
+            hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius,
+        )  # fmt: skip
 
     @property
     def held(self) -> bool:
         """Whether the rotation of the pin is held, by a fixed hub or a spring."""
         return self.rotation != "free"
+
+    @property
+    def driven(self) -> tuple[bool, bool]:
+        """Whether the displacement of the pin along x, and along y, is prescribed."""
+        return self.drive in ("ux", "both"), self.drive in ("uy", "both")
+
+    @property
+    def drive_compliances(self) -> tuple[float, float]:
+        """The compliances g and k of a prescribed displacement, in units of beta*; docs/theory.md (T29).
+
+        The displacement of the hub over the gauge circle is c + g F - k (int of the tractions), where c is the mean
+        displacement of the pin's rim over that of the hole, and F the force on the pin.
+        """
+        kolosov, pin = self.pair.pin_kolosov, self.pair.pin_compliance / (4.0 * math.pi * self.pair.beta_star)
+        if self.pin_load == "body":
+            own = coupling = 0.5 * pin
+        else:
+            part = 1.0 / math.sqrt(kolosov + 1.0) if self.hub_radius is None else self.hub_radius / self.hole_radius
+            coupling = (1.0 - part**2) * pin
+            own = 2.0 * (1.0 - part**2 - kolosov * math.log(part)) / (kolosov + 1.0) * pin
+        if self.gauge_radius is not None:
+            kolosov, plate = self.pair.plate_kolosov, self.pair.plate_compliance / (2.0 * math.pi * self.pair.beta_star)
+            own += kolosov * math.log(self.gauge_radius / self.hole_radius) / (kolosov + 1.0) * plate
+        return own, coupling
 
     @property
     def frictionless(self) -> bool:
@@ -191,7 +255,13 @@ class Problem:
     def natural_loads(self) -> dict[str, float]:
         """The load of each kind that strains the bodies by about 1, SI, by the kinds of ``LOAD_KIND``."""
         radius, stress = self.hole_radius, 1.0 / self.pair.beta_star
-        return {"force": radius * stress, "moment": radius * radius * stress, "traction": stress, "rotation": 1.0}
+        return {
+            "force": radius * stress,
+            "moment": radius * radius * stress,
+            "traction": stress,
+            "rotation": 1.0,
+            "displacement": radius,
+        }
 
     @property
     def hub_compliance(self) -> float:

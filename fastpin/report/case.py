@@ -46,7 +46,7 @@ def describe(case: Case) -> str:
         ("plate", _material(pair.plate, problem.dimensionless)),
         ("pair", f"plane {pair.plane}, Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
         ("contact", f"{size}, friction {problem.friction:g}"),
-        ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}"),
+        ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}{_drive(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
         ("loads", f"{len(case.history):,} corners, reached one after the other from no load"),
     ]
@@ -67,6 +67,20 @@ def _hub(problem: Problem) -> str:
     if problem.hub_radius is None:
         return f"{spring} at the paper's datum"
     return f"{spring} at radius {problem.hub_radius:g} {unit['length']}"
+
+
+def _drive(problem: Problem) -> str:
+    """Return the words that say which displacements are prescribed; empty if forces push the pin."""
+    if problem.drive == "force":
+        return ""
+    names = {"ux": "ux in place of Q", "uy": "uy in place of P", "both": "ux and uy in place of Q and P"}
+    length = units(problem)["length"]
+    words = f", {names[problem.drive]}"
+    if problem.gauge_radius is not None:
+        words += f" over radius {problem.gauge_radius:g} {length}"
+    if problem.hub_radius is not None and not problem.held:
+        words += f", hub of radius {problem.hub_radius:g} {length}"
+    return words
 
 
 def _load_table(problem: Problem, history: LoadHistory) -> str:

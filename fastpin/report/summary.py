@@ -59,6 +59,8 @@ def document(
             "rotation": problem.rotation,
             "hub_radius": problem.hub_radius,
             "hub_stiffness": problem.hub_stiffness,
+            "drive": problem.drive,
+            "gauge_radius": problem.gauge_radius,
             "dimensionless": problem.dimensionless,
         },
         "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},

@@ -38,6 +38,7 @@ _KIND = {
     "clearance": "length",
     "hub_radius": "length",
     "hub_stiffness": "stiffness",
+    "gauge_radius": "length",
     "E": "traction",
 } | LOAD_KIND
 """The kind of every key of a case that has a unit."""

@@ -16,9 +16,10 @@ from fastpin.elasticity.system import System
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import REMOTE, M, P, Q
+from fastpin.model.loads import REMOTE, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.run import Progress, Run
 from fastpin.solver.survey import survey
@@ -74,11 +75,11 @@ def candidate_grids(
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
     arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
-        shift = _shift_to_node(arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
+        shift = _shift_to_node(problem, arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
         yield Grid.arc(arc[0] + shift, arc[1] + shift, nodes)
         arc = _widened(arc, 1.25)
     start = -1.5 * math.pi
-    yield Grid.circle(nodes, start + _shift_to_node(start, 2.0 * math.pi / nodes, values))
+    yield Grid.circle(nodes, start + _shift_to_node(problem, start, 2.0 * math.pi / nodes, values))
 
 
 def narrow_grid(
@@ -99,7 +100,7 @@ def narrow_grid(
         None if the history could not be surveyed, or takes too many nodes.
     """
     first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
-    places = survey(problem, _outline(values), force, first_part, progress)
+    places = survey(problem, _outline(problem, values), force, first_part, progress)
     if not places:
         return None
     distinct = _distinct_places(places)
@@ -107,7 +108,7 @@ def narrow_grid(
     if needed > max(MOST_GRADED, options.nodes):
         log.info("the narrow contacts of this history take %d nodes: too many", needed)
         return None
-    return Grid.graded(distinct, max(options.nodes, needed), first_direction(values))
+    return Grid.graded(distinct, max(options.nodes, needed), first_direction(problem, values))
 
 
 def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -126,7 +127,7 @@ def _touched_arc(
 
     `progress` sees each coarse run as a separate run before the fine run.
     """
-    arc, history = _estimated_arc(problem, values), LoadHistory.from_array(_outline(values))
+    arc, history = _estimated_arc(problem, values), LoadHistory.from_array(_outline(problem, values))
     for _ in range(12):
         if arc is not None and arc[1] - arc[0] >= WHOLE:
             arc = None
@@ -160,13 +161,14 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     The half-angle of Hertz's contact is taken at the largest force. None if no force acts on the pin, or if the remote
     stress makes the hole too oval for this estimate.
     """
-    pin = np.hypot(values[:, P], values[:, Q])
+    force = pushes(problem, values)
+    pin = np.hypot(force[:, 1], force[:, 0])
     remote = 0.5 * problem.pair.plate_compliance * (problem.pair.plate_kolosov + 1.0)
     ovality = problem.hole_radius * remote * float(np.abs(values[:, REMOTE]).max())
     if not pin.any() or ovality > 0.2 * problem.clearance:
         return None
     loaded = pin > 0.0
-    angles = np.unwrap(np.arctan2(-values[loaded, P], values[loaded, Q]))
+    angles = np.unwrap(np.arctan2(force[loaded, 1], force[loaded, 0]))
     # Under a moment the pin climbs the hole, by the angle of friction that carries the moment.
     climbed = angles + np.arcsin(np.clip(-values[loaded, M] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
     angles = np.r_[angles, climbed]
@@ -175,7 +177,7 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     return float(angles.min()) - 1.3 * half, float(angles.max()) + 1.3 * half
 
 
-def _outline(values: np.ndarray) -> np.ndarray:
+def _outline(problem: Problem, values: np.ndarray) -> np.ndarray:
     """The outermost corners of a long history, in their order. All loads of the history lie between them."""
     if len(values) <= MOST_CORNERS:
         return values
@@ -185,28 +187,30 @@ def _outline(values: np.ndarray) -> np.ndarray:
     for turn in np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False):
         for first, second in itertools.combinations_with_replacement(range(scaled.shape[1]), 2):
             chosen.add(int(np.argmax(math.cos(turn) * scaled[:, first] + math.sin(turn) * scaled[:, second])))
-    pushed = np.flatnonzero(values[:, [P, Q]].any(axis=1))
+    force = pushes(problem, values)
+    pushed = np.flatnonzero(force.any(axis=1))
     if pushed.size:
-        directions = np.unwrap(np.arctan2(-values[pushed, P], values[pushed, Q]))
+        directions = np.unwrap(np.arctan2(force[pushed, 1], force[pushed, 0]))
         chosen |= {int(pushed[np.argmin(directions)]), int(pushed[np.argmax(directions)])}
     return values[sorted(chosen)]
 
 
-def first_direction(values: np.ndarray) -> float | None:
+def first_direction(problem: Problem, values: np.ndarray) -> float | None:
     """The angle, rad, at which the first force of a history meets the hole; None without a force.
 
     `values` are the loads at the corners, SI, shape (corners, loads).
     """
-    loaded = np.flatnonzero(np.hypot(values[:, P], values[:, Q]))
-    return math.atan2(-values[loaded[0], P], values[loaded[0], Q]) if loaded.size else None
+    force = pushes(problem, values)
+    loaded = np.flatnonzero(np.hypot(force[:, 1], force[:, 0]))
+    return math.atan2(force[loaded[0], 1], force[loaded[0], 0]) if loaded.size else None
 
 
-def _shift_to_node(start: float, spacing: float, values: np.ndarray) -> float:
+def _shift_to_node(problem: Problem, start: float, spacing: float, values: np.ndarray) -> float:
     """The shift, rad, that brings a node to the angle of the first force; at most half a `spacing`.
 
     The first node is at `start`. Without a force the shift is 0.
     """
-    direction = first_direction(values)
+    direction = first_direction(problem, values)
     if direction is None:
         return 0.0
     place = (direction - start) / spacing

@@ -29,7 +29,8 @@ class Configuration:
     status : ndarray of int8, shape (n,)
         Status of each node, see :mod:`fastpin.kernels.status`.
     motion : ndarray, shape (3,)
-        Motion of the pin, (c_x, c_y, omega). It counts from ``rest``.
+        Motion of the pin, (c_x, c_y, omega). It counts from ``rest``. The reaction takes the place of c_x or c_y where
+        the displacement is prescribed.
     load : ndarray, shape (loads,)
         Loads in the order of :data:`fastpin.model.loads.LOADS`.
     origin : ndarray, shape (2,)
@@ -121,10 +122,10 @@ def solve_unknowns(
 ) -> Solution:
     """Solve for tractions and motion with the unknowns `active`, as :func:`solve_statuses` does."""
     n = system.grid.size
-    known = system.loads[active.rows] @ load
+    known = system.load_displacement(load, active.rows)
     known[: active.normal.size] += np.broadcast_to(rest_gap, n)[active.normal]
     known[active.normal.size :] -= stuck_slip[active.tangential]
-    unknowns = active.solve(np.r_[-known, system.forces @ load])
+    unknowns = active.solve(np.r_[-known, system.load_forces(load)])
     tractions = active.expand(unknowns)
     motion = unknowns[-3:]
     displacement = system.displacement(tractions, motion, load, rest_gap)
@@ -155,9 +156,13 @@ def work_between(system: System, before: Configuration, after: Configuration) ->
     moved = after.motion - before.motion
     moment = -0.5 * float(system.weights @ (before.shear + after.shear))
     change = np.r_[after.pressure - before.pressure, after.shear - before.shear]
-    column = system.loads @ load
+    column = system.held_displacement(load)
     internal = float((system.weights * column[:n]) @ change[:n] + (system.weights * column[n:]) @ change[n:])
-    return float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
+    work = float(load[Q] * moved[0] - load[P] * moved[1] + moment * moved[2]) + internal
+    if system.drive is not None:
+        columns = system.drive.work_columns(np.r_[system.weights, system.weights]) @ change
+        work += system.drive.work(columns, 0.5 * (before.motion + after.motion), moved, after.load - before.load)
+    return work
 
 
 def dissipation_between(system: System, before: Configuration, after: Configuration) -> float:
@@ -169,8 +174,10 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
 def elastic_energy(system: System, configuration: Configuration) -> float:
     """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
     tractions = np.r_[configuration.pressure, configuration.shear]
-    elastic = 0.5 * system.elastic(tractions) + system.loads @ configuration.load
-    return float(np.sum(np.r_[system.weights, system.weights] * tractions * elastic))
+    elastic = 0.5 * system.elastic(tractions) + system.held_displacement(configuration.load)
+    weights = np.r_[system.weights, system.weights]
+    energy = float(np.sum(weights * tractions * elastic))
+    return energy if system.drive is None else energy + system.drive.energy(weights, tractions, configuration.motion)
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:
@@ -199,7 +206,7 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
     on_cone = np.where(slipping, np.abs(shear + status * mu * pressure), np.abs(shear) - mu * pressure)
     cone_error = np.where(closed, np.maximum(on_cone, -pressure), np.maximum(np.abs(pressure), np.abs(shear)))
     balance = system.equilibrium @ tractions + system.motion_rows @ configuration.motion
-    balance_error = np.abs(balance - system.forces @ configuration.load)
+    balance_error = np.abs(balance - system.load_forces(configuration.load))
     length = max(float(np.abs(elastic).max()), float(np.abs(configuration.motion).max()), 1e-300)
     if not closed.any():
         length = max(length, abs(system.rest_clearance))

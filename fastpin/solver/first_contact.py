@@ -11,7 +11,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import ROTATION, M, P, Q
+from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -21,6 +21,7 @@ from fastpin.solver.configuration import (
     resting_status,
     worst_residual,
 )
+from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import CUT_OFF, ArcError, NoEquilibriumError, ResolutionError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep, StepLostError
@@ -85,14 +86,19 @@ def at_rest(
     force = np.array([after[Q], -after[P]])
     size = float(np.hypot(*force))
     lowest: np.ndarray | None = None
-    if size == 0.0:
+    if system.drive is not None:
+        driven = rest_on_hole(system, before, after)
+        if driven is None:
+            return None
+        rest, rest_gap, angle, begins = driven
+    elif size == 0.0:
         if system.problem.rotation == "free" and after[M] != 0.0:
             raise NoEquilibriumError("a moment acts on the pin, which is not in contact: it spins")
         gripped = _grip(system, before, after)
         if gripped is None:
             return None
         begins, rest, lowest = gripped
-        rest_gap = system.rest_clearance + system.motion[: system.grid.size, :2] @ rest
+        rest_gap = system.rest_clearance + system.translation[: system.grid.size] @ rest
     else:
         tangential = -after[M] / size if system.problem.rotation == "free" else 0.0
         limit = system.friction / math.hypot(1.0, system.friction)
@@ -110,7 +116,7 @@ def at_rest(
     if lowest is None or np.ptp(resting.gap) == 0.0:
         nearness = resting.gap
         if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
-            nearness = system.loads[: system.grid.size] @ (after - before)
+            nearness = system.load_displacement(after - before, slice(system.grid.size))
             if size > 0.0:
                 nearness = nearness - np.cos(system.grid.theta - angle)
         lowest = _lowest_places(system, nearness)
@@ -210,7 +216,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
         widened = gap - system.rest_clearance
         shift = np.array([widened * cos - slope * sin, widened * sin + slope * cos])
         half = 0.5 * (system.grid.theta - angle)
-        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.motion[: system.grid.size, :2] @ shift
+        rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.translation[: system.grid.size] @ shift
         return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
     # The oval hole is tighter than the pin: the pin touches at two points.
     optimum = scipy.optimize.linprog(
@@ -218,7 +224,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     )
     if not optimum.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
-    return optimum.x, system.rest_clearance + system.motion[: system.grid.size, :2] @ optimum.x
+    return optimum.x, system.rest_clearance + system.translation[: system.grid.size] @ optimum.x
 
 
 def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float, np.ndarray, np.ndarray] | None:
@@ -281,25 +287,30 @@ def _first_patch(
     self_similar = (
         system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
     )  # everything grows in proportion
-    part = 1.0 if self_similar else _hertz_part(system, resting, after - before)
-    most_part = _steady_part(system, resting, after - before) if strict and not self_similar else 1.0
+    left = after - before if system.drive is None else (1.0 - begins) * (after - before)
+    part = 1.0 if self_similar else _hertz_part(system, resting, left)
+    most_part = _steady_part(system, resting, left) if strict and not self_similar else 1.0
     part = min(part, most_part)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):
         fraction = begins + part * (1.0 - begins)
         load = before + fraction * (after - before)
-        rough = self_similar or not load[[P, Q]].any() or (system.problem.rotation == "free" and load[M] != 0.0)
+        pinched = system.drive is None and not load[[P, Q]].any()
+        rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
         found = _one_step(system, resting, load) if rough else _shearless_step(system, resting, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             part *= 0.7
             continue
         count = int(found.closed.sum())
+        if system.drive is not None and count == 0 and part < most_part:  # the overlap lies between two nodes
+            part = min(4.0 * part, most_part)
+            continue
         if best is None or abs(count - wanted) < abs(best[0] - wanted):
             best = (count, found, fraction)
         if self_similar or least <= count <= most or (count < least and part == most_part):
             break
         part = min(max(part * min(max((wanted / max(count, 1)) ** 2, 0.05), 10.0), LEAST_PART), most_part)
-    if best is None:
+    if best is None or (system.drive is not None and best[0] == 0):
         raise ResolutionError(NARROW)
     count, found, fraction = best
     if count < least and most_part < 1.0:
@@ -347,7 +358,9 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
         grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
     except StepLostError:
         return None
-    new = patch.copy()
+    new, rest = patch.copy(), np.zeros(n)
+    if system.drive is not None:  # the prescribed displacement has moved the pin along the hole before
+        rest = patch.rest_slip - patch.rest_slip[first]
     for sense in (-1, 1):
         fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
         if system.grid.closed:
@@ -357,11 +370,11 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
         if np.any(grown.status[fitted] != STICK) or grown.status[first] != STICK:
             return None
         away = angle_between(system.grid.theta[fitted], system.grid.theta[first])
-        slip = (grown.slip[fitted] - grown.slip[first]) / away**2
+        slip = (grown.slip[fitted] - grown.slip[first] - rest[fitted]) / away**2
         linear, constant = np.polyfit(away, slip, 1)
         inner = inner[patch.closed[inner]]
         away = angle_between(system.grid.theta[inner], system.grid.theta[first])
-        new.slip[inner] = patch.slip[first] + (constant + linear * away) * away**2
+        new.slip[inner] = patch.slip[first] + rest[inner] + (constant + linear * away) * away**2
     found = _one_step(system, new, patch.load)
     return None if found is None or worst_residual(system, found) > MAX_RESIDUAL else found
 
@@ -380,6 +393,7 @@ def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> f
     bend = max(float(gap + curvature), 0.0)
     if force == 0.0:
         shrinking = float(gap - hole_gap(system, resting.load + change, theta)[0])
+        shrinking += float(change[UX] * math.cos(theta) + change[UY] * math.sin(theta))
         part = 0.5 * bend * half**2 / shrinking if shrinking > 0.0 else LEAST_PART
     else:
         part = math.pi * bend * half**2 / force

@@ -15,7 +15,6 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.loads import M
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -28,9 +27,10 @@ from fastpin.solver.configuration import (
     work_between,
     worst_residual,
 )
+from fastpin.solver.driven import can_float
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError
 from fastpin.solver.rest import release
-from fastpin.solver.step import Piece, Position, Report, is_pushed
+from fastpin.solver.step import Piece, Position, Report
 
 MOST_ITERATIONS = 200
 """Iterations of one increment, at most."""
@@ -165,10 +165,15 @@ class IncrementStepper:
         ArcError
             If the contact reaches an end of the arc.
         """
-        load, before, begin = piece.load_at(stop), position.now.load, position.reached
+        system, load = self._system, piece.load_at(stop)
+        before, begin = position.now.load, position.reached
         for part in self._parts(position, stop):
             target = load if part == 1.0 else before + part * (load - before)
             self._increment(position, position.now, target, MOST_HALVINGS)
+            if system.drive is not None and not position.now.closed.any():  # the pin floats: it may touch again
+                done = np.linalg.norm(position.now.load - before) / np.linalg.norm(load - before)
+                position.reached = begin + float(done) * (stop - begin)
+                return
             position.reached = begin + float(part) * (stop - begin)
             report(position.reached)
 
@@ -191,7 +196,7 @@ class IncrementStepper:
         system = self._system
         found = implicit_step(system, start, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
-            if not is_pushed(load) and load[M] == 0.0:  # unloaded completely
+            if can_float(system, load):  # unloaded completely
                 position.now = release(system, start, load)
                 return
             if halvings == 0:
@@ -200,7 +205,8 @@ class IncrementStepper:
                     "increments are too large"
                 )
             self._increment(position, start, 0.5 * (start.load + load), halvings - 1)
-            self._increment(position, position.now, load, halvings - 1)
+            if system.drive is None or position.now.closed.any():
+                self._increment(position, position.now, load, halvings - 1)
             return
         if reaches_end(system, found):
             raise ArcError(CUT_OFF)

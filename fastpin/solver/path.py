@@ -17,7 +17,7 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.loads import M, P, Q
+from fastpin.model.loads import M
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -28,11 +28,12 @@ from fastpin.solver.configuration import (
     work_between,
     worst_residual,
 )
+from fastpin.solver.driven import can_float, force_on_pin, load_terms
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import release
 from fastpin.solver.settling import FiniteStep, settle
-from fastpin.solver.step import Piece, Position, Report, force_of, is_pushed
+from fastpin.solver.step import Piece, Position, Report, force_of
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
 
@@ -140,7 +141,6 @@ class PathStep:
         self.before = configuration.load.copy()
         self.rate = after - self.before
         n, now = system.grid.size, self.now
-        weights = np.r_[system.weights, system.weights]
         self._contact = exchange.Contact(
             now.pressure,
             now.shear,
@@ -151,13 +151,7 @@ class PathStep:
             np.zeros(n, dtype=bool),
             now.motion,
         )
-        self._load = exchange.LoadTerms(
-            column=weights * (system.loads @ self.before),
-            column_rate=weights * (system.loads @ self.rate),
-            force=np.array([self.before[Q], -self.before[P]]),
-            force_rate=np.array([self.rate[Q], -self.rate[P]]),
-            weights=system.weights,
-        )
+        self._load = load_terms(system, self.before, self.rate)
         self._queue = exchange.Queue(
             node=np.zeros(2 * n, dtype=np.int64),
             status=np.zeros(2 * n, dtype=np.int8),
@@ -329,7 +323,7 @@ class PathStep:
         system, now = self.system, self.now
         rows, load = self._sample, self.before + self.fraction * self.rate
         elastic = self._sampled @ np.r_[now.pressure, now.shear]
-        true = elastic + system.motion[rows] @ now.motion + system.loads[rows] @ load
+        true = elastic + system.motion[rows] @ now.motion + system.load_displacement(load, rows)
         true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
         length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
         return float(np.abs(true - np.r_[now.gap, now.slip][rows]).max()) / max(length, 1e-300)
@@ -393,7 +387,7 @@ class PathStep:
             tractions = np.r_[pressure, shear]
             elastic = system.operator @ tractions
             true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
-            balance = system.forces @ now.load - system.equilibrium @ tractions - system.motion_rows @ motion
+            balance = system.load_forces(now.load) - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
             # The scales are the present elastic part and force, even where an unloading has left little of them.
             length = max(float(np.abs(elastic).max()), 1e-300)
@@ -577,16 +571,18 @@ class PathStepper:
         """Whether a lost contact had only become too small for the grid, or carried nothing."""
         if lost.code == exchange.ARC_END:
             return False
-        unloading = not is_pushed(piece.after) and piece.after[M] == 0.0
+        unloading = can_float(self._system, piece.after)
         if unloading and lost.fraction > ALMOST_UNLOADED:
             return True
         if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_NODES or self._releases == MOST_RELEASES:
             return False
         self._releases += 1
-        if unloading or self._strict:
+        driven = self._system.drive is not None  # then a contact is lost as well where the pin is moved away
+        if unloading or (self._strict and not driven):
             return unloading
-        small = force_of(now.load) <= NEGLIGIBLE * max(force_of(piece.before), force_of(piece.after))
-        self._statistics["released"] += small
+        largest = max(force_of(piece.before), force_of(piece.after), 1.0 if driven else 0.0)
+        small = force_on_pin(self._system, now) <= NEGLIGIBLE * largest
+        self._statistics["released"] += small and not driven
         return small
 
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from fastpin.elasticity.drive import DISPLACEMENTS
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import ROTATION, SXX, SXY, SYY
+from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY
 from fastpin.solver.configuration import Configuration, elastic_energy, resting_status, solve_statuses
 from fastpin.solver.errors import ConvergenceError
 
@@ -33,12 +34,14 @@ def unloaded_configuration(system: System) -> Configuration:
         slip=zeros.copy(),
         status=np.full(n, OPEN, dtype=np.int8),
         motion=np.zeros(3),
-        load=np.zeros(system.loads.shape[1]),
+        load=np.zeros(len(LOADS)),
         origin=np.full(2, np.nan),
         rest=np.zeros(2),
         rest_gap=np.full(n, system.rest_clearance),
         rest_slip=zeros.copy(),
     )
+    if system.drive is not None:
+        configuration.origin = np.zeros(2)
     if system.rest_clearance >= 0.0:
         return configuration
     configuration.status[:] = resting_status(system)
@@ -70,13 +73,17 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     new.work -= elastic_energy(system, last)  # the elastic energy that is left goes back to the loads
     new.pressure[:], new.shear[:], new.status[:] = 0.0, 0.0, OPEN
     new.load = load.copy()
-    position = new.rest + new.motion[:2]
-    width = hole_gap(system, load, system.grid.theta)[0]
-    approach = -system.motion[:n, :2] @ position
-    deep = approach > width
+    position, given = new.rest + new.motion[:2], np.zeros(2)
+    if system.drive is not None:  # the prescribed displacements stay as they are
+        given = np.where(system.drive.axes, load[list(DISPLACEMENTS)], 0.0)
+        position = np.where(system.drive.axes, 0.0, position)
+    width = hole_gap(system, load, system.grid.theta)[0] + system.translation[:n] @ given
+    approach = -system.translation[:n] @ position
+    deep = approach > (width if system.drive is None else np.maximum(width, 0.0))
     if deep.any():
         position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
-    put_at_rest(system, new, load, position, system.rest_clearance + system.motion[:n, :2] @ position)
+    position += given
+    put_at_rest(system, new, load, position, system.rest_clearance + system.translation[:n] @ position)
     return new
 
 
@@ -88,10 +95,12 @@ def put_at_rest(
     `rest` (2,) is the position of the pin's centre, and `rest_gap` (n,) the gap there. `configuration` is changed.
     """
     n = system.grid.size
+    if system.drive is not None:  # the prescribed displacements are loads
+        rest_gap = rest_gap - (system.loads - system.drive.columns)[:n] @ load
     configuration.rest, configuration.rest_gap = rest, rest_gap
     held = system.problem.held
     configuration.motion = np.array([0.0, 0.0, load[ROTATION] if held else configuration.motion[2]])
-    free = system.loads @ load
+    free = system.load_displacement(load)
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
     configuration.slip = free[n:] + configuration.motion[2]
     configuration.rest_slip = configuration.slip.copy()

@@ -145,7 +145,7 @@ def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
     If the history can't be followed there, the error holds the result without error bars.
     """
     if start is None:
-        grid, begin = halved(result.grid, first_direction(task.history.distinct())), None
+        grid, begin = halved(result.grid, first_direction(task.problem, task.history.distinct())), None
     else:
         assert start.coarse is not None
         grid, begin = start.coarse.grid, start.coarse

@@ -20,11 +20,12 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS, M, P, Q, complete_load
+from fastpin.model.loads import LOADS, UX, UY, M, P, Q, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration, resting_status
-from fastpin.solver.errors import SolveError
+from fastpin.solver.driven import rest_on_hole
+from fastpin.solver.errors import NoEquilibriumError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.rest import hole_gap, release, unloaded_configuration
@@ -192,15 +193,25 @@ class _Survey:
         self._change_grid([(angle, finer * width) for angle, width in places])
 
     def _look_where_it_begins(self, load: np.ndarray, finer: float) -> None:
-        """Go to a grid that is dense where a force will press the floating pin on the hole, on the way to `load`."""
-        force = _force(load)
-        if force == 0.0:
-            return
-        angle = math.atan2(-load[P], load[Q])
+        """Go to a grid that is dense where the floating pin will touch the hole, on the way to `load`, SI."""
         scales = self._system.scales
+        force, angle, overlap = _force(load), math.atan2(-load[P], load[Q]), 0.0
+        if self._problem.drive != "force":
+            try:
+                touching = rest_on_hole(self._system, self._load / scales.loads, load / scales.loads)
+            except NoEquilibriumError:
+                return
+            if touching is None:
+                return
+            angle, begins = touching[2:]
+            moved = (1.0 - begins) * (load - self._load)[[UX, UY]] / scales.displacement
+            overlap = max(float(moved @ (math.cos(angle), math.sin(angle))), 0.0)
+        if force == 0.0 and overlap == 0.0:
+            return
         gap, _, curvature = hole_gap(self._system, load / scales.loads, angle)
         bend = max(float(gap + curvature), 1e-300)
-        half = min(math.sqrt(force / scales.force / (math.pi * bend)), 0.7)
+        square = force / scales.force / (math.pi * bend) if force > 0.0 else 2.0 * overlap / bend
+        half = min(math.sqrt(square), 0.7)
         self._change_grid([(angle, finer * 2.0 * half)])
 
     def _change_grid(self, places: Sequence[Place]) -> None:
@@ -226,8 +237,9 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         return np.interp(theta, before, values, period=2.0 * math.pi)
 
     closed = at_nodes(now.closed.astype(float)) >= 0.5
-    away = theta - math.atan2(now.rest[1], now.rest[0])
-    length = math.hypot(*now.rest)
+    rest = now.rest if system.drive is None else np.where(system.drive.axes, 0.0, now.rest)  # without the prescribed
+    away = theta - math.atan2(rest[1], rest[0])
+    length = math.hypot(*rest)
     new = replace(
         now,
         pressure=np.where(closed, at_nodes(now.pressure), 0.0),

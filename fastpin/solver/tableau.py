@@ -91,7 +91,7 @@ class Columns:
         """Rates (2n+3,) of the dependent variables."""
         system, basis = self._system, self._basis
         unknowns = basis.rates(load_rate)
-        displaced = system.loads @ load_rate + basis.displacement(unknowns)
+        displaced = system.load_displacement(load_rate) + basis.displacement(unknowns)
         return np.r_[unknowns, displaced[basis.others]][self._order]
 
     def _tie(self, contact: Contact) -> None:

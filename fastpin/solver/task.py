@@ -20,10 +20,11 @@ from fastpin.model.case import check_arc, check_keep
 from fastpin.model.checks import as_toml, check_callable, instance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory, check_loads
-from fastpin.model.loads import REMOTE, M, P, Q
+from fastpin.model.loads import REMOTE, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.arc import candidate_grids, narrow_grid
+from fastpin.solver.driven import pushes
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.result import Restart, Result
@@ -283,8 +284,8 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     """The reference force F of a history, N/m: its largest load, rounded up.
 
     It is R/beta* times a power of two, so that no bit of a result depends on it. A moment M counts as M/R. Remote
-    stresses times R count only where no force and no moment acts. `values` are the loads at the corners, SI, shape
-    (corners, loads).
+    stresses times R count only where no force and no moment acts. The reaction to a prescribed displacement is
+    estimated. `values` are the loads at the corners, SI, shape (corners, loads).
 
     Raises
     ------
@@ -292,7 +293,8 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
         If the largest load is below :data:`LEAST_LOAD`, but not 0.
     """
     radius = problem.hole_radius
-    pin = float(np.hypot(values[:, P], values[:, Q]).max())
+    force = pushes(problem, values)
+    pin = float(np.hypot(force[:, 1], force[:, 0]).max())
     moment = float(np.abs(values[:, M]).max()) / radius
     remote = float(np.abs(values[:, REMOTE]).max()) * radius
     unit = radius / problem.pair.beta_star

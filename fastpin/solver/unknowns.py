@@ -74,7 +74,7 @@ class Unknowns:
     def rates(self, load_rate: np.ndarray) -> np.ndarray:
         """Rates (count+3,) of the unknowns while the load changes and the statuses stay."""
         system = self._system
-        return self.solve(np.r_[-(system.loads @ load_rate)[self.rows], system.forces @ load_rate])
+        return self.solve(np.r_[-system.load_displacement(load_rate)[self.rows], system.load_forces(load_rate)])
 
     def displacement(self, unknowns: np.ndarray) -> np.ndarray:
         """Gap and slip (2n,) that the unknowns (count+3,) cause."""
@@ -181,12 +181,13 @@ class StickingRun(Unknowns):
         """The unknowns of given statuses; None if statuses or grid do not allow the fast inverse.
 
         It takes friction, a uniform grid, and at least :data:`LEAST_NEIGHBOURS` closed nodes. They must lie side by
-        side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open.
+        side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open. Under a
+        prescribed displacement the operator is no Toeplitz matrix.
         """
         closed, n = np.flatnonzero(status != OPEN), system.grid.size
         if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
             return None
-        if not system.grid.uniform or system.friction == 0.0:
+        if not system.grid.uniform or system.friction == 0.0 or system.drive is not None:
             return None
         low, last = closed[0], closed[-1]
         if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):

@@ -37,7 +37,8 @@ class State:
     fraction : float
         Part of the step from the previous corner to this one, 0 to 1; 1 at the corner itself.
     load : dict of str to float
-        Loads by name, see :data:`fastpin.model.loads.LOADS`.
+        Loads by name, see :data:`fastpin.model.loads.LOADS`. P and Q are the reactions where ``ux`` or ``uy`` are
+        prescribed.
     theta : ndarray, shape (n,)
         Node angles, rad; -pi/2 is the bottom of the hole.
     pressure, shear : ndarray, shape (n,)
@@ -50,12 +51,14 @@ class State:
         node is SLIP_POSITIVE.
     dx, dy, rotation : float
         Rigid motion of the pin along +x, +y (m) and counter-clockwise (rad) from its first resting position.
-        In the paper's symbols: C_0x, -Delta and C_omega, also if a hub of another radius is held.
+        In the paper's symbols: C_0x, -Delta and C_omega, also if a hub of another radius is held. (dx, dy) is the mean
+        displacement of the pin's rim over that of the hole. It counts from the concentric position if a displacement
+        is prescribed.
     dissipation, work, energy : float
         Energy dissipated by friction so far, work of the loads so far and elastic energy now, J/m. Work and energy
         leave out the part that depends on the load alone (infinite for a load at a point), so they may be negative.
         The work counts the moment that holds the pin, times C_omega. A spring at the hub lies outside: its own energy
-        M^2/(2 k) is in neither.
+        M^2/(2 k) is in neither. A reaction counts like a force: the part g F^2/2 of (T29) is in neither.
         An interference fit begins with the energy of its assembly in both work and energy.
     residuals : dict of str to float
         Largest violations of the contact conditions, recomputed from the matrices. "gap" and "slip" are relative to
@@ -230,6 +233,21 @@ class State:
             "P": radius * float(cos @ self.shear - sin @ self.pressure),
             "Q": radius * float(sin @ self.shear + cos @ self.pressure),
             "M": -(radius**2) * float(self.grid.weights @ self.shear),
+        }
+
+    @property
+    def displacement(self) -> dict[str, float]:
+        """The displacement of the hub over the gauge circle, "ux" and "uy" in m, (T29).
+
+        It counts as dx and dy do. Where it is prescribed, it is the load of the same name.
+        """
+        (cos, sin), pair = self.grid.trig_moments(), self.problem.pair
+        own, coupling = self.problem.drive_compliances
+        own, coupling = own * pair.beta_star, coupling * pair.beta_star * self.problem.hole_radius
+        force = self.resultants
+        return {
+            "ux": self.dx + own * force["Q"] - coupling * float(cos @ self.pressure - sin @ self.shear),
+            "uy": self.dy - own * force["P"] - coupling * float(sin @ self.pressure + cos @ self.shear),
         }
 
 

@@ -108,6 +108,8 @@ _PROBLEM_FIELDS = (
     "rotation",
     "hub_radius",
     "hub_stiffness",
+    "drive",
+    "gauge_radius",
     "dimensionless",
 )
 

@@ -304,7 +304,7 @@ class _Work:
     def _solve_grid(self, arc: Grid, nodes: int, method: Method, increments: int) -> Result:
         """Follow the history on one grid."""
         if arc.closed:
-            direction = first_direction(self.history.distinct())
+            direction = first_direction(self.task.problem, self.history.distinct())
             grid = Grid.circle(nodes, float(arc.theta[0]) if direction is None else direction)
         else:
             grid = arc.with_nodes(nodes)

@@ -23,6 +23,9 @@ from fastpin.version import __version__
 FIRST_LOADS = 6
 """Loads that were known first. Later ones enter an id only where they are given, so that older ids stay."""
 
+_LATER_FIELDS = ("hub_stiffness", "drive", "gauge_radius")
+"""Fields of a problem that enter an id only where they are given, so that older ids stay."""
+
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
 
@@ -45,7 +48,7 @@ def canonical(case: Case) -> dict[str, Any]:
         "pin_load": problem.pin_load,
         "rotation": problem.rotation,
         "hub_radius": problem.hub_radius,
-        **({} if problem.hub_stiffness is None else {"hub_stiffness": problem.hub_stiffness}),
+        **{name: value for name in _LATER_FIELDS if (value := getattr(problem, name)) not in (None, "force")},
         "dimensionless": problem.dimensionless,
         "loads": _loads(case.history),
         "solve": _options(case.options),

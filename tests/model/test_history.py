@@ -182,7 +182,13 @@ def test_csv(tmp_path: Path) -> None:
         ),
         (
             "P,q\n1,0\n",
-            [(1, 'column 2: unknown load "q"; the loads are P, Q, M, sxx, syy, rotation, sxy, did you mean "Q"')],
+            [
+                (
+                    1,
+                    'column 2: unknown load "q"; the loads are P, Q, M, sxx, syy, rotation, sxy, ux, uy, '
+                    'did you mean "Q"',
+                )
+            ],
         ),
         ("P,P\n1,0\n", [(1, "a load is named twice")]),
         ("P,Q\n", [(0, "holds no load corners")]),

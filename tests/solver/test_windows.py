@@ -12,6 +12,7 @@ from fastpin.elasticity.large import LargeSystem, build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid, graded_size
+from fastpin.model.history import LoadHistory
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
@@ -78,7 +79,7 @@ def test_more_nodes_keep_the_grading():
 
 def test_the_survey_finds_the_contacts_of_the_exact_run():
     case = problem()
-    values = np.array([[corner["P"], corner["Q"], 0, 0, 0, 0, 0] for corner in SMALL_FIRST])
+    values = LoadHistory(SMALL_FIRST).values()
     places = survey(case, values, 1.0)
     result = solve(case, SMALL_FIRST, nodes=61)
     for state in result:
@@ -215,7 +216,7 @@ def test_a_narrow_history_is_stored_resumed_and_continued(tmp_path):
 
 
 def test_an_interference_fit_needs_no_survey():
-    values = np.array([[1.0, 0, 0, 0, 0, 0, 0]])
+    values = LoadHistory([{"P": 1.0}]).values()
     fit = Problem.from_load_parameter(PAIR, -0.5, 0.4)
     grid = narrow_grid(fit, values, 1.0, SolveOptions())
     assert grid is None or grid.closed

@@ -54,15 +54,20 @@ def problems(draw: st.DrawFn) -> fastpin.Problem:
     """Problems in SI units, and dimensionless ones."""
     pair, friction = draw(pairs()), draw(st.just(0.0) | between(0.0, 1.5))
     pin_load = draw(st.sampled_from(["centre", "body"]))
-    rotation = "free" if pin_load == "body" else draw(st.sampled_from(["free", "fixed"]))
-    share = draw(between(1e-3, 1.0)) if rotation == "fixed" and draw(st.booleans()) else None
-    least = 0.0 if pair.is_incompressible else -0.01
-    if draw(st.booleans()):
-        parameter = draw(between(least, 3.0))
-        return fastpin.Problem.from_load_parameter(pair, parameter, friction, pin_load, rotation, share)
-    radius = draw(scale(-5, 2))
-    hub = None if share is None else share * radius
-    return fastpin.Problem(pair, radius, draw(between(least, 0.01)) * radius, friction, pin_load, rotation, hub)
+    rotation = "free" if pin_load == "body" else draw(st.sampled_from(["free", "fixed", "spring"]))
+    drive = draw(st.sampled_from(["force", "force", "ux", "uy", "both"]))
+    least, whole = 0.0 if pair.is_incompressible else -0.01, draw(st.booleans())
+    radius, unit = (1.0, 1.0) if whole else (draw(scale(-5, 2)), pair.beta_star)
+    has_hub = rotation != "free" or (drive != "force" and pin_load == "centre")
+    sizes = {
+        "hub_radius": draw(between(1e-3, 1.0)) * radius if has_hub and draw(st.booleans()) else None,
+        "hub_stiffness": draw(scale(-3, 3)) * radius**2 / unit if rotation == "spring" else None,
+        "gauge_radius": draw(between(1.0, 100.0)) * radius if drive != "force" and draw(st.booleans()) else None,
+    }
+    kind = {"pin_load": pin_load, "rotation": rotation, "drive": drive}
+    if whole:
+        return fastpin.Problem.from_load_parameter(pair, draw(between(least, 3.0)), friction, **kind, **sizes)
+    return fastpin.Problem(pair, radius, draw(between(least, 0.01)) * radius, friction, **kind, **sizes)
 
 
 @st.composite
@@ -70,8 +75,11 @@ def corners(draw: st.DrawFn, problem: fastpin.Problem, most: int = 5) -> list[di
     """Corners of loads that a problem can carry, of the size that strains it by some thousandths."""
     natural = problem.natural_loads()
     kinds = fastpin.model.loads.LOAD_KIND
-    names = [name for name in LOADS if name not in ("M", "rotation")]
-    if problem.rotation == "fixed":
+    refused = {"M", "rotation"}
+    for is_driven, force, displacement in zip(problem.driven, ("Q", "P"), ("ux", "uy"), strict=True):
+        refused.add(force if is_driven else displacement)
+    names = [name for name in LOADS if name not in refused]
+    if problem.held:
         names.append("rotation")
     elif problem.pin_load == "centre":
         names.append("M")
@@ -135,8 +143,8 @@ def tables_of(case: fastpin.Case) -> Tables:
         contact["load_parameter"] = problem.clearance
     else:
         contact |= {"hole_radius": problem.hole_radius, "clearance": problem.clearance}
-    if problem.hub_radius is not None:
-        contact["hub_radius"] = problem.hub_radius
+    given = {name: getattr(problem, name) for name in ("drive", "hub_radius", "hub_stiffness", "gauge_radius")}
+    contact |= {name: value for name, value in given.items() if value is not None}
     tables["contact"] = contact
     tables["solve"] = {name: value for name, value in case.options.keywords().items() if value is not None}
     return tables

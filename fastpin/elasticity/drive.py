@@ -1,0 +1,138 @@
+"""Prescribed displacements of the pin in place of forces, in dimensionless form.
+
+Along a driven axis the displacement of the hub over the gauge circle is prescribed, (T29): D = c + g F - k J. c is the
+displacement of the pin's rim over the hole, F the reaction, J an integral of the tractions. The reaction takes the
+place of c among the unknown motion of the pin. With the column m of the motion and the w terms of the force, gap and
+slip are
+
+    c m + F w = D m + F (w - g m) + k J m.
+
+The last term is added to the operator. The operator is then no longer a Toeplitz matrix, nor symmetric. The place of F
+in the load vector stays 0, for F is no load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fastpin.model.grid import Grid
+from fastpin.model.loads import UX, UY, P, Q
+from fastpin.model.problem import Problem
+
+DISPLACEMENTS = (UX, UY)
+"""Places of the prescribed displacements in a load vector, along x and y."""
+
+FORCES = (Q, P)
+"""Places of the forces that they replace."""
+
+SIGNS = (1.0, -1.0)
+"""Sense of these forces: Q acts along +x, P along -y."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """The axes along which the displacement of the pin is prescribed. All quantities are dimensionless.
+
+    Attributes
+    ----------
+    axes : ndarray of bool, shape (2,)
+        Whether the displacement along x, and along y, is prescribed.
+    compliance : float
+        The compliance g.
+    coupling : ndarray, shape (2, 2n)
+        Maps (N, T) to k J, along x and y. It is 0 for an axis that is not driven.
+    translation : ndarray, shape (2n, 2)
+        Maps the displacement c to (h, s).
+    offsets : ndarray, shape (2n, 2)
+        Maps the reactions to (h, s) where c is 0: the w terms. It is 0 for an axis that is not driven.
+    columns : ndarray, shape (2n, loads)
+        Maps the loads to (h, s), without the prescribed displacements.
+    """
+
+    axes: np.ndarray
+    compliance: float
+    coupling: np.ndarray
+    translation: np.ndarray
+    offsets: np.ndarray
+    columns: np.ndarray
+
+    def force(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """Force on the pin along x and y, shape (2,): reactions from the unknown `motion` (3,), others from `load`."""
+        return np.where(self.axes, motion[:2], load[list(FORCES)] * SIGNS)
+
+    def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
+        """Displacement c of the pin's rim over the hole from the concentric position, shape (2,).
+
+        `rest` (2,) is the position from which the motion along the other axis counts. `tractions` has the shape (2n,).
+        """
+        driven = load[list(DISPLACEMENTS)] - self.compliance * motion[:2] + self.coupling @ tractions
+        return np.where(self.axes, driven, rest + motion[:2])
+
+    def with_reactions(self, motion: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """The load vector (loads,) with the reactions in the places of the forces."""
+        complete = load.copy()
+        complete[list(FORCES)] = self.force(motion, load) * SIGNS
+        return complete
+
+    def energy(self, weights: np.ndarray, tractions: np.ndarray, motion: np.ndarray) -> float:
+        """The part of the elastic energy that the operator lacks: w terms of the reactions, without the coupling.
+
+        `tractions` and their `weights` have the shape (2n,).
+        """
+        weighted, reactions = weights * tractions, np.where(self.axes, motion[:2], 0.0)
+        coupled = (weighted @ self.translation) @ (self.coupling @ tractions)
+        return float(weighted @ (self.offsets @ reactions) - 0.5 * coupled)
+
+    def work_columns(self, weights: np.ndarray) -> np.ndarray:
+        """Work of the reactions per reaction and traction rate, shape (2, 2n), from the weights (2n,) of the nodes."""
+        columns: np.ndarray = (weights[:, None] * self.offsets).T + self.coupling
+        return columns
+
+    def work(self, columns: np.ndarray, motion: np.ndarray, change: np.ndarray, load_change: np.ndarray) -> float:
+        """Work of the reactions over a change.
+
+        `columns` (2,) is the product of :meth:`work_columns` and the change of the tractions. `motion` (3,) is the mean
+        of the unknown motion, `change` (3,) its change, `load_change` (loads,) the change of the load.
+        """
+        moved = load_change[list(DISPLACEMENTS)] - self.compliance * change[:2] + columns
+        return float(np.where(self.axes, motion[:2] * moved, 0.0).sum())
+
+
+def displacement_coupling(problem: Problem, grid: Grid) -> np.ndarray:
+    """The rows k J of (T29) along x and y, shape (2, 2n), that map (N, T) to a displacement in units of beta*."""
+    cos, sin = grid.trig_moments()
+    return problem.drive_compliances[1] * np.array([np.r_[cos, -sin], np.r_[sin, cos]])
+
+
+def replace_forces(
+    problem: Problem, grid: Grid, operator: np.ndarray, motion: np.ndarray, loads: np.ndarray, rows: np.ndarray
+) -> Drive:
+    """Replace the forces of the driven axes in the matrices of a system by displacements, and return the drive.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : Grid
+    operator : ndarray, shape (2n, 2n), or empty
+    motion : ndarray, shape (2n, 3)
+    loads : ndarray, shape (2n, loads)
+    rows : ndarray, shape (3, 3)
+        The matrices of :class:`fastpin.elasticity.system.System` for a pin under forces; `rows` are the motion rows.
+        They are changed.
+    """
+    axes, compliance = np.array(problem.driven), problem.drive_compliances[0]
+    coupling = displacement_coupling(problem, grid) * axes[:, None]
+    translation = motion[:, :2].copy()
+    offsets = loads[:, list(FORCES)] * SIGNS * axes
+    if operator.size:  # it is empty for a LargeSystem
+        operator += translation @ coupling
+    for axis in np.flatnonzero(axes):
+        loads[:, FORCES[axis]] = 0.0
+    columns = loads.copy()
+    for axis in np.flatnonzero(axes):
+        loads[:, DISPLACEMENTS[axis]] = translation[:, axis]
+        motion[:, axis] = offsets[:, axis] - compliance * translation[:, axis]
+        rows[axis, axis] = -1.0
+    return Drive(axes, compliance, coupling, translation, offsets, columns)
