@@ -358,9 +358,8 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
         grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
     except StepLostError:
         return None
-    new, rest = patch.copy(), np.zeros(n)
-    if system.drive is not None:  # the prescribed displacement has moved the pin along the hole before
-        rest = patch.rest_slip - patch.rest_slip[first]
+    # Remote stress and prescribed displacements have moved the pin along the hole before.
+    new, rest = patch.copy(), patch.rest_slip - patch.rest_slip[first]
     for sense in (-1, 1):
         fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
         if system.grid.closed:
