@@ -16,6 +16,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.path import PathStepper
+from fastpin.solver.rest import release
 from fastpin.solver.step import Piece, Position, Report
 
 MARGIN = 48
@@ -80,9 +81,15 @@ class Window:
             If the pin penetrates the hole outside the window.
         """
         n = self._large.grid.size
-        fields = {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
-        fields |= {name: np.zeros(n) for name in ("pressure", "shear")}
+        fields = {name: np.zeros(n) for name in ("pressure", "shear")}
         fields["status"] = np.full(n, OPEN, dtype=np.int8)
+        if not inside.closed.any():  # the pin was released: all nodes count from its new position
+            last = before.copy()
+            last.pressure[:], last.shear[:], last.status[:] = 0.0, 0.0, OPEN
+            last = replace(last, rest=inside.rest, motion=inside.motion, origin=inside.origin)
+            last = replace(last, dissipation=inside.dissipation, work=inside.work)
+            return release(self._large, last, inside.load)
+        fields |= {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
         for name, values in fields.items():
             values[self.nodes] = getattr(inside, name)
         tractions = np.r_[fields["pressure"], fields["shear"]]

@@ -24,6 +24,7 @@ from fastpin.solver.survey import survey
 from fastpin.solver.window import Window
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load
+from scripts.histories import generate
 
 BOTTOM = -0.5 * np.pi
 PAIR = MaterialPair(Material(9.0, 0.2), Material(7.0, 0.3))
@@ -175,6 +176,17 @@ def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
         assert one.work == pytest.approx(two.work, rel=1e-8)
         assert one.dissipation == pytest.approx(two.dissipation, rel=1e-7)
         assert worst(one) < 1e-10
+
+
+def test_a_pin_released_in_a_window_lies_inside_the_whole_hole():
+    """The pin lets go while the remote stress is still there. Its gap counts from one position at all nodes."""
+    case = generate("narrow", 379)
+    released = solve(case.problem, case.history[:2], **case.options)[-1]
+    assert not released.in_contact
+    columns = np.column_stack([np.cos(released.theta), np.sin(released.theta)])
+    away = released.gap - case.problem.clearance
+    centre = np.linalg.lstsq(columns, away, rcond=None)[0]
+    assert columns @ centre == pytest.approx(away, abs=1e-9 * case.problem.clearance)
 
 
 def test_a_second_place_opens_a_wider_window(monkeypatch):
