@@ -8,6 +8,7 @@ interpolated.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -81,7 +82,7 @@ class Window:
             If the pin penetrates the hole outside the window.
         """
         n = self._large.grid.size
-        fields = {name: np.zeros(n) for name in ("pressure", "shear")}
+        fields: dict[str, Any] = {name: np.zeros(n) for name in ("pressure", "shear")}
         fields["status"] = np.full(n, OPEN, dtype=np.int8)
         if not inside.closed.any():  # the pin was released: all nodes count from its new position
             last = before.copy()

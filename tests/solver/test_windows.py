@@ -181,7 +181,7 @@ def test_windows_lead_to_the_states_of_the_whole_grid(monkeypatch, pin_load):
 def test_a_pin_released_in_a_window_lies_inside_the_whole_hole():
     """The pin lets go while the remote stress is still there. Its gap counts from one position at all nodes."""
     case = generate("narrow", 379)
-    released = solve(case.problem, case.history[:2], **case.options)[-1]
+    released = solve(case.problem, case.history, **case.options)[1]
     assert not released.in_contact
     columns = np.column_stack([np.cos(released.theta), np.sin(released.theta)])
     away = released.gap - case.problem.clearance
