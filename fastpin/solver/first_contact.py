@@ -297,7 +297,7 @@ def _first_patch(
         load = before + fraction * (after - before)
         pinched = system.drive is None and not load[[P, Q]].any()
         rough = self_similar or pinched or (system.problem.rotation == "free" and load[M] != 0.0)
-        found = _one_step(system, resting, load) if rough else _shearless_step(system, resting, load)
+        found = _one_step(system, resting, load, self_similar) if rough else _shearless_step(system, resting, load)
         if found is None or worst_residual(system, found) > MAX_RESIDUAL:
             part *= 0.7
             continue
@@ -325,9 +325,11 @@ def _first_patch(
     return found, fraction
 
 
-def _one_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:
-    """The implicit increment from rest; by Lemke's method where its iteration fails."""
-    return implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere=True).to(load)
+def _one_step(
+    system: System, resting: Configuration, load: np.ndarray, everywhere: bool = False
+) -> Configuration | None:
+    """The implicit increment from rest; by Lemke's method where its iteration fails, see :class:`FiniteStep`."""
+    return implicit_step(system, resting, load) or FiniteStep(system, resting, everywhere).to(load)
 
 
 def _shearless_step(system: System, resting: Configuration, load: np.ndarray) -> Configuration | None:

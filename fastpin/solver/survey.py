@@ -63,6 +63,9 @@ MOST_TRIALS = 1500
 MOST_BETWEEN = 400
 """Places between two states of the survey, at most."""
 
+MOST_FAILURES = 500
+"""Parts that could not be followed, in one history, at most."""
+
 LEAST_WIDTH = 1e-6
 """Smallest width of a contact, rad. A narrower one is not resolved."""
 
@@ -108,6 +111,7 @@ class _Survey:
     def __init__(self, problem: Problem, force: float, first_part: float) -> None:
         self.places: list[Place] = []
         self._last: Place | None = None
+        self._failures = 0
         self._first_part = first_part
         self._problem, self._force = problem, force
         self._system = System.build(problem, Grid.circle(10 * ACROSS + 1), force)
@@ -133,6 +137,9 @@ class _Survey:
                 done, finer, self._part = stop, 1.0, min(1.5 * self._part, LARGEST_PART)
                 continue
             self._part *= 0.5
+            self._failures += 1
+            if self._failures > MOST_FAILURES:
+                return False
             if self._part < LEAST_PART:
                 if floats or releases == MOST_RELEASES:
                     return False
