@@ -28,6 +28,12 @@ from fastpin.model.case import Case, check_keep
 from fastpin.report.states import cycle_lines, state_table
 from fastpin.report.table import visible_rows
 
+NOTES = {
+    "jumps": "note: the pin snapped {count} times; work does not balance there",
+    "released": "note: {count} times a narrow contact with next to no force was let go and lost its memory",
+}
+"""Notes on counts of the statistics that are not zero."""
+
 LARGE_STRAIN = 0.05
 """Contact strain above which linear elasticity fails; probably the units of the case are wrong."""
 
@@ -279,6 +285,11 @@ def _print_states(case: Case, result: solver.Result | None, hidden: int) -> None
     for line in cycle_lines(case.problem, result.cycles):
         print(line)
     statistics = result.statistics
+    for name, note in NOTES.items():
+        if statistics.get(name):
+            print(note.format(count=int(statistics[name])))
+    if result.grid.size > case.options.nodes and not result.grid.uniform:
+        print(f"note: {result.grid.size} nodes instead of {case.options.nodes}, dense where the contact is narrow")
     names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
     known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
     print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")

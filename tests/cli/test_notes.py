@@ -95,3 +95,14 @@ def test_error_bars_of_a_case_file_can_be_switched_off(case, tmp_path, capsys):
 def test_whole_numbers_are_checked_in_one_place(case, capsys, command, message):
     assert main([str(case) if word == "CASE" else word for word in command]) == 2
     assert capsys.readouterr().err == f"fastpin: {message}\n"
+
+
+def test_more_nodes_and_snaps_are_noted(tmp_path, capsys):
+    path = tmp_path / "case.toml"
+    narrow = CASE.replace("clearance = 20e-6", "clearance = 2e-3").replace("P = 1e6", "P = [1e2, 1e6]")
+    path.write_text(narrow)
+    assert main(["run", str(path)]) == 0
+    assert "instead of 61, dense where the contact is narrow" in capsys.readouterr().out
+    path.write_text(CASE.replace("friction = 0.4", "friction = 1000.0").replace("Q = [1e5, -1e5]", "Q = [5e5, -5e5]"))
+    assert main(["run", str(path)]) == 0
+    assert "note: the pin snapped" in capsys.readouterr().out
