@@ -49,8 +49,7 @@ class LargeSystem(System):
 
     def window(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
-        turns = np.r_[0, np.cumsum(np.diff(nodes) < 0)]
-        return System.build(self.problem, Grid(self.grid.theta[nodes] + 2.0 * np.pi * turns), self.scales.force)
+        return System.build(self.problem, self.grid.part(nodes), self.scales.force)
 
     @staticmethod
     def _filled_operator(grid: Grid, ratio: float, uniform_part: float) -> np.ndarray:

@@ -164,6 +164,18 @@ class System:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
         return self.operator @ tractions
 
+    def part(self, nodes: np.ndarray) -> System:
+        """The system of neighbouring `nodes`, shape (k,), in their order round the hole; only under forces.
+
+        The other nodes are left out, so they must stay open.
+        """
+        assert self.drive is None
+        rows = np.r_[nodes, self.grid.size + nodes]
+        return replace(
+            self, grid=self.grid.part(nodes), operator=self.operator[np.ix_(rows, rows)], motion=self.motion[rows],
+            loads=self.loads[rows], equilibrium=self.equilibrium[:, rows], weights=self.weights[nodes],
+        )  # fmt: skip
+
     def without_friction(self) -> System:
         """The same system without friction (mu = 0). The rotation is held at the load's ``rotation``."""
         equilibrium, motion_rows, forces = self.equilibrium.copy(), self.motion_rows.copy(), self.forces.copy()

@@ -122,6 +122,11 @@ class Grid:
             return Grid.circle(nodes, float(self.theta[0]))
         return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
 
+    def part(self, nodes: np.ndarray) -> Grid:
+        """The arc of the neighbouring `nodes`, indices of shape (k,), in their order round the hole."""
+        turns = np.r_[0, np.cumsum(np.diff(nodes) < 0)]
+        return Grid(self.theta[nodes] + 2.0 * math.pi * turns)
+
     @property
     def size(self) -> int:
         """Number of nodes n."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,10 @@ from fastpin.solver.unknowns import DenseUnknowns
 
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""
+
+
+NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
+"""Arrays of a configuration with one number for each node."""
 
 
 @dataclass(eq=False)
@@ -63,6 +67,10 @@ class Configuration:
     def copy(self) -> Configuration:
         """A copy that shares no array with this one."""
         return copy.deepcopy(self)
+
+    def part(self, nodes: np.ndarray) -> Configuration:
+        """A copy with some `nodes` only, indices of shape (k,)."""
+        return replace(self, **{name: getattr(self, name)[nodes] for name in NODAL}).copy()
 
     @property
     def closed(self) -> np.ndarray:

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import scipy
 
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
-from fastpin.kernels.status import STICK
+from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
 from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
+    accept_solution,
     dissipation_between,
     elastic_energy,
     reaches_end,
     resting_status,
+    solve_statuses,
     worst_residual,
 )
 from fastpin.solver.driven import rest_on_hole
@@ -182,7 +185,7 @@ def first_contact(
     if not isinstance(system, LargeSystem):
         return _first_patch(system, resting, (begins, before, after), strict)
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, window.cut(resting), (begins, before, after), strict)
+    patch, part = _first_patch(window.system, resting.part(window.nodes), (begins, before, after), strict)
     return window.paste(patch, resting), part
 
 
@@ -354,6 +357,32 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
 
     `begin` is the load at which the contact begins. Returns None if those nodes do not all stick.
     """
+    nodes = _young_nodes(system, patch)
+    young, small = (system, patch) if nodes is None else (system.part(nodes), patch.part(nodes))
+    slip = _grown_slip(young, small, begin)
+    step = None if slip is None else _one_step(young, replace(small, slip=slip), patch.load)
+    if step is None or nodes is None:
+        return step if step is None or worst_residual(system, step) <= MAX_RESIDUAL else None
+    status, held = np.full(system.grid.size, OPEN, dtype=np.int8), patch.slip.copy()
+    status[nodes], held[nodes] = step.status, slip
+    solution = solve_statuses(system, status, held, patch.load, patch.rest_gap)
+    if solution is None:
+        return None
+    found = accept_solution(replace(patch, slip=held), solution, status, patch.load)
+    return found if worst_residual(system, found) <= MAX_RESIDUAL else None
+
+
+def _young_nodes(system: System, patch: Configuration) -> np.ndarray | None:
+    """The nodes round a young contact, on which the trial is followed; None for all nodes."""
+    n, first = system.grid.size, int(np.argmax(patch.pressure))
+    nodes = first + np.arange(-GROWN_NODES, GROWN_NODES + 1)
+    nodes = nodes % n if system.grid.closed else nodes[(nodes >= 0) & (nodes < n)]
+    whole = system.drive is not None or n <= 3 * GROWN_NODES
+    return None if whole or patch.closed[nodes].sum() != patch.closed.sum() else nodes
+
+
+def _grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> np.ndarray | None:
+    """The slip (n,) of :func:`_with_grown_slip`; None if the nodes that tell it do not all stick."""
     n, first = system.grid.size, int(np.argmax(patch.pressure))
     growth = (GROWN_NODES / np.count_nonzero(patch.closed)) ** 2
     try:
@@ -361,7 +390,7 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
     except StepLostError:
         return None
     # Remote stress and prescribed displacements have moved the pin along the hole before.
-    new, rest = patch.copy(), patch.rest_slip - patch.rest_slip[first]
+    new, rest = patch.slip.copy(), patch.rest_slip - patch.rest_slip[first]
     for sense in (-1, 1):
         fitted, inner = first + sense * GROWN_FIT, first + sense * np.arange(1, GROWN_FIT[0])
         if system.grid.closed:
@@ -375,9 +404,8 @@ def _with_grown_slip(system: System, patch: Configuration, begin: np.ndarray) ->
         linear, constant = np.polyfit(away, slip, 1)
         inner = inner[patch.closed[inner]]
         away = angle_between(system.grid.theta[inner], system.grid.theta[first])
-        new.slip[inner] = patch.slip[first] + rest[inner] + (constant + linear * away) * away**2
-    found = _one_step(system, new, patch.load)
-    return None if found is None or worst_residual(system, found) > MAX_RESIDUAL else found
+        new[inner] = patch.slip[first] + rest[inner] + (constant + linear * away) * away**2
+    return new
 
 
 def _hertz_part(system: System, resting: Configuration, change: np.ndarray) -> float:

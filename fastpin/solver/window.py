@@ -29,9 +29,6 @@ WIDEST = 4000
 PENETRATION = 1e-9
 """Largest penetration of nodes outside the window, in parts of the largest displacement."""
 
-FIELDS = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
-"""Arrays of a configuration with one number for each node."""
-
 
 class SecondPlaceError(Exception):
     """Internal: the pin touches the hole outside the window too. ``nodes``, bool, shape (n,), are the nodes there."""
@@ -69,10 +66,6 @@ class Window:
         self._large = system
         self.system = system.window(self.nodes)
 
-    def cut(self, configuration: Configuration) -> Configuration:
-        """The part of a configuration of all nodes that lies in the window."""
-        return replace(configuration, **{name: getattr(configuration, name)[self.nodes] for name in FIELDS}).copy()
-
     def paste(self, inside: Configuration, before: Configuration) -> Configuration:
         """The configuration of all nodes with the part `inside` the window. `before` has the rest of the other nodes.
 
@@ -89,7 +82,9 @@ class Window:
             last.pressure[:], last.shear[:], last.status[:] = 0.0, 0.0, OPEN
             last = replace(last, rest=inside.rest, motion=inside.motion, origin=inside.origin)
             last = replace(last, dissipation=inside.dissipation, work=inside.work)
-            return release(self._large, last, inside.load)
+            released = release(self._large, last, inside.load)
+            self._check_outside(released)
+            return released
         fields |= {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
         for name, values in fields.items():
             values[self.nodes] = getattr(inside, name)
@@ -97,10 +92,22 @@ class Window:
         true = self._large.displacement(tractions, inside.motion, inside.load, fields["rest_gap"])
         gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
         gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
-        true[self.nodes] = 0.0
-        if true[:n].min() < -PENETRATION * float(np.abs(true).max()):
-            raise SecondPlaceError(true[:n] < 0.0)
-        return replace(inside, **fields, gap=gap, slip=slip)
+        new = replace(inside, **fields, gap=gap, slip=slip)
+        self._check_outside(new, true)
+        return new
+
+    def _check_outside(self, new: Configuration, true: np.ndarray | None = None) -> None:
+        """Raise :class:`SecondPlaceError` if the pin penetrates the hole outside the window.
+
+        `true` is the displacement (2n,) of the configuration `new`.
+        """
+        n = self._large.grid.size
+        if true is None:
+            true = self._large.displacement(np.zeros(2 * n), new.motion, new.load, new.rest_gap)
+        gap = true[:n].copy()
+        gap[self.nodes] = 0.0
+        if gap.min() < -PENETRATION * float(np.abs(true).max()):
+            raise SecondPlaceError(gap < 0.0)
 
 
 class WindowStepper:
@@ -173,7 +180,7 @@ class WindowStepper:
         if window is None or closed.sum() != closed[window.nodes[2:-2]].sum():
             window = self._open_window(closed)
         self._inside = Position(
-            window.cut(position.now), position.touched[window.nodes], position.reached, position.fresh
+            position.now.part(window.nodes), position.touched[window.nodes], position.reached, position.fresh
         )
         return self._inside
 
