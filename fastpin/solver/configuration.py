@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -66,11 +66,14 @@ class Configuration:
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one."""
-        return copy.deepcopy(self)
+        copied: dict[str, Any] = {
+            name: value.copy() if isinstance(value, np.ndarray) else value for name, value in vars(self).items()
+        }
+        return Configuration(**copied)
 
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
-        return replace(self, **{name: getattr(self, name)[nodes] for name in NODAL}).copy()
+        return replace(self.copy(), **{name: getattr(self, name)[nodes] for name in NODAL})
 
     @property
     def closed(self) -> np.ndarray:
