@@ -37,7 +37,7 @@ FALLS = 0.6
 
 @dataclass
 class Comparison:
-    """The outcome of one case: the verdict, what is said of it, and the differences with few and many increments."""
+    """The outcome of one case: the verdict, its message, and the differences with few and many increments."""
 
     kind: str
     seed: int
