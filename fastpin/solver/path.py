@@ -30,9 +30,8 @@ from fastpin.solver.configuration import (
 )
 from fastpin.solver.driven import can_float, force_on_pin, load_terms
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
-from fastpin.solver.increment import implicit_step
 from fastpin.solver.rest import release
-from fastpin.solver.settling import FiniteStep, settle
+from fastpin.solver.settling import settle, ways_beyond
 from fastpin.solver.step import Piece, Position, Report, force_of
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
@@ -75,12 +74,6 @@ NEGLIGIBLE = 1e-3
 
 MOST_RELEASES = 20
 """Such releases in one piece of a step, at most."""
-
-JUMPS = 10.0 ** np.arange(-8.0, -2.9, 0.5)
-"""Parts of the rest of a piece, one after the other, at which a state beyond a snap of the pin is looked for."""
-
-LONG_JUMPS = slice(6, None, 2)
-"""The jumps that are tried by an increment too, where Lemke's method finds no state."""
 
 MOST_JUMPS = 200
 """Snaps of the pin in a history, at most."""
@@ -547,11 +540,7 @@ class PathStepper:
         if lost.code != exchange.CYCLING or self._statistics["jumps"] >= MOST_JUMPS:
             return False
         system, now = self._system, position.now
-        near, far = FiniteStep(system, now), FiniteStep(system, now, everywhere=True)
-        ways = [(part, near.to) for part in JUMPS]
-        ways += [(part, far.to) for part in JUMPS[LONG_JUMPS]]
-        ways += [(part, lambda load: implicit_step(system, now, load)) for part in JUMPS[LONG_JUMPS]]
-        for part, way in ways:
+        for part, way in ways_beyond(system, now):
             reached = min(position.reached + part * (piece.end - position.reached), stop)
             found = way(piece.load_at(reached))
             if found is None or worst_residual(system, found) > MAX_RESIDUAL:

@@ -83,7 +83,8 @@ class Window:
             last = replace(last, rest=inside.rest, motion=inside.motion, origin=inside.origin)
             last = replace(last, dissipation=inside.dissipation, work=inside.work)
             released = release(self._large, last, inside.load)
-            self._check_outside(released)
+            tractions = np.zeros(2 * n)
+            self._check_outside(self._large.displacement(tractions, released.motion, released.load, released.rest_gap))
             return released
         fields |= {name: getattr(before, name).copy() for name in ("rest_gap", "rest_slip")}
         for name, values in fields.items():
@@ -92,19 +93,15 @@ class Window:
         true = self._large.displacement(tractions, inside.motion, inside.load, fields["rest_gap"])
         gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
         gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
-        new = replace(inside, **fields, gap=gap, slip=slip)
-        self._check_outside(new, true)
-        return new
+        self._check_outside(true)
+        return replace(inside, **fields, gap=gap, slip=slip)
 
-    def _check_outside(self, new: Configuration, true: np.ndarray | None = None) -> None:
+    def _check_outside(self, true: np.ndarray) -> None:
         """Raise :class:`SecondPlaceError` if the pin penetrates the hole outside the window.
 
-        `true` is the displacement (2n,) of the configuration `new`.
+        `true` (2n,) is the gap and slip of all nodes from the matrices.
         """
-        n = self._large.grid.size
-        if true is None:
-            true = self._large.displacement(np.zeros(2 * n), new.motion, new.load, new.rest_gap)
-        gap = true[:n].copy()
+        gap = true[: self._large.grid.size].copy()
         gap[self.nodes] = 0.0
         if gap.min() < -PENETRATION * float(np.abs(true).max()):
             raise SecondPlaceError(gap < 0.0)

@@ -16,7 +16,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
 from fastpin.solver.configuration import solve_statuses, worst_residual
-from fastpin.solver.errors import NoEquilibriumError
+from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
@@ -190,5 +190,10 @@ def test_the_cap_of_variables(monkeypatch):
     assert settling.lemke(np.eye(2), -np.ones(2)) is None
 
 
-def test_endless_events_are_told_from_cycling_statuses():
+def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium):
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    pressed = solve(case, [{"P": 1.0}], grid=Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 81))
+    monkeypatch.setattr(path, "MOST_EVENTS", 0)
+    with pytest.raises(ConvergenceError, match="did not settle"):
+        solve(case, [{"Q": 0.3}, {"Q": -0.3}], start=pressed)
     assert exchange.ENDLESS != exchange.CYCLING
