@@ -218,11 +218,9 @@ class Run:
         """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
         if self.recorder is None or force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
             return
-        fewest = min((patch.size for patch in runs(self.system.grid, self.now.closed)), default=LEAST_CLOSED)
-        if fewest < LEAST_CLOSED:
-            raise ResolutionError(
-                f"the contact is narrower than the nodes can resolve: it has {fewest}; use more nodes"
-            )
+        most = max((patch.size for patch in runs(self.system.grid, self.now.closed)), default=LEAST_CLOSED)
+        if most < LEAST_CLOSED:
+            raise ResolutionError(f"the contact is narrower than the nodes can resolve: it has {most}; use more nodes")
 
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
