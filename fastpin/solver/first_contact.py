@@ -115,7 +115,8 @@ def at_rest(
     resting = floating.copy()
     if np.isnan(resting.origin).any():
         resting.origin = rest.copy()
-    put_at_rest(system, resting, before + begins * (after - before), rest, rest_gap)
+    resting.load = before + begins * (after - before)
+    put_at_rest(system, resting, resting.load, rest, rest_gap)
     if lowest is None or np.ptp(resting.gap) == 0.0:
         nearness = resting.gap
         if np.ptp(nearness) == 0.0:  # a neat fit: the load decides which nodes close first
@@ -290,7 +291,7 @@ def _first_patch(
     self_similar = (
         system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
     )  # everything grows in proportion
-    left = after - before if system.drive is None else (1.0 - begins) * (after - before)
+    left = (1.0 - begins) * (after - before)
     part = 1.0 if self_similar else _hertz_part(system, resting, left)
     most_part = _steady_part(system, resting, left) if strict and not self_similar else 1.0
     part = min(part, most_part)
