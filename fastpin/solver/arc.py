@@ -21,6 +21,7 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, SolveError
+from fastpin.solver.rest import climb_angle
 from fastpin.solver.run import Progress, Run
 from fastpin.solver.survey import survey
 
@@ -169,8 +170,7 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
         return None
     loaded = pin > 0.0
     angles = np.unwrap(np.arctan2(force[loaded, 1], force[loaded, 0]))
-    # Under a moment the pin climbs the hole, by the angle of friction that carries the moment.
-    climbed = angles + np.arcsin(np.clip(-values[loaded, M] / (pin[loaded] * problem.hole_radius), -1.0, 1.0))
+    climbed = angles + climb_angle(pin[loaded], values[loaded, M] / problem.hole_radius)
     angles = np.r_[angles, climbed]
     parameter = problem.load_parameter(float(pin.max()))
     half = 1.6 if parameter <= 0.0 else min(1.6, max(LEAST_HALF, 1.3 / math.sqrt(math.pi * parameter)))

@@ -77,11 +77,11 @@ def release(system: System, last: Configuration, load: np.ndarray) -> Configurat
     if system.drive is not None:  # the prescribed displacements stay as they are
         given = np.where(system.drive.axes, load[list(DISPLACEMENTS)], 0.0)
         position = np.where(system.drive.axes, 0.0, position)
-    width = hole_gap(system, load, system.grid.theta)[0] + system.translation[:n] @ given
+    width = np.maximum(hole_gap(system, load, system.grid.theta)[0] + system.translation[:n] @ given, 0.0)
     approach = -system.translation[:n] @ position
-    deep = approach > (width if system.drive is None else np.maximum(width, 0.0))
+    deep = approach > width
     if deep.any():
-        position *= max(float(np.min(width[deep] / approach[deep])), 0.0)
+        position *= float(np.min(width[deep] / approach[deep]))
     position += given
     put_at_rest(system, new, load, position, system.rest_clearance + system.translation[:n] @ position)
     return new
@@ -104,6 +104,14 @@ def put_at_rest(
     configuration.gap = np.maximum(rest_gap + free[:n], 0.0)
     configuration.slip = free[n:] + configuration.motion[2]
     configuration.rest_slip = configuration.slip.copy()
+
+
+def climb_angle(force: np.ndarray | float, moment: np.ndarray | float) -> np.ndarray:
+    """The angle, rad, by which a pin climbs the hole until friction carries the moment on it; 90 degrees at most.
+
+    `moment` is divided by the radius. Both are in the same units. The forces are not 0.
+    """
+    return np.arcsin(np.clip(-np.asarray(moment) / force, -1.0, 1.0))
 
 
 def hole_gap(system: System, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:

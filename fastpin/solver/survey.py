@@ -28,7 +28,7 @@ from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import NoEquilibriumError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
-from fastpin.solver.rest import hole_gap, release, unloaded_configuration
+from fastpin.solver.rest import climb_angle, hole_gap, release, unloaded_configuration
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Progress, Run
 from fastpin.solver.settling import FiniteStep
@@ -203,6 +203,8 @@ class _Survey:
         """Go to a grid that is dense where the floating pin will touch the hole, on the way to `load`, SI."""
         scales = self._system.scales
         force, angle, overlap = _force(load), math.atan2(-load[P], load[Q]), 0.0
+        if force > 0.0 and self._problem.rotation == "free":
+            angle += float(climb_angle(force, load[M] / self._problem.hole_radius))
         if self._problem.drive != "force":
             try:
                 touching = rest_on_hole(self._system, self._load / scales.loads, load / scales.loads)
