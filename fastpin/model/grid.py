@@ -22,7 +22,10 @@ MOST_WIDTH = 2.0
 """Largest width of a place of a graded grid, rad. Wider contacts need no grading."""
 
 GRADED_SAMPLES = 400
-"""Angles round each place at which the spacing of a graded grid is computed."""
+"""Angles round a single place at which the spacing of a graded grid is computed."""
+
+LEAST_SAMPLES = 30
+"""Such angles round each of many places."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -180,7 +183,7 @@ def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, n
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or not pairs.size or pairs[:, 1].min() <= 0.0:
         raise InputError("places", "must be angles with positive widths, rad: (angle, width), ...")
     angles, widths = pairs[:, 0], np.minimum(pairs[:, 1], MOST_WIDTH)
-    away = np.geomspace(0.5, math.pi / float(widths.min()), GRADED_SAMPLES)
+    away = np.geomspace(0.5, math.pi / float(widths.min()), max(GRADED_SAMPLES // widths.size, LEAST_SAMPLES))
     offsets = np.outer(widths, np.r_[0.0, 0.25, away])
     start = -1.5 * math.pi
     samples = (np.concatenate([angles[:, None] + offsets, angles[:, None] - offsets]) - start) % (2.0 * math.pi)

@@ -39,8 +39,8 @@ WHOLE = 5.6
 MOST_CORNERS = 200
 """Corners that a coarse run follows. Of a longer history it follows the extreme corners only."""
 
-LEAST_ACROSS = 16
-"""Nodes across the narrowest contact of a graded grid, at least."""
+LEAST_ACROSS = (10, 20)
+"""Nodes across the narrowest contact of a graded grid, at least; more where a contact gets lost on the first grid."""
 
 MOST_GRADED = 20_000
 """Nodes of a graded grid, at most, unless the user asks for more."""
@@ -83,33 +83,30 @@ def candidate_grids(
     yield Grid.circle(nodes, start + _shift_to_node(problem, start, 2.0 * math.pi / nodes, values))
 
 
-def narrow_grid(
+def narrow_grids(
     problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: Progress | None = None
-) -> Grid | None:
-    """A graded grid with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
+) -> Iterator[Grid]:
+    """Yield graded grids with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
 
     Parameters
     ----------
     problem, values, force, progress
         See :func:`candidate_grids`.
     options : SolveOptions
-        The grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`.
-
-    Returns
-    -------
-    Grid or None
-        None if the history could not be surveyed, or takes too many nodes.
+        A grid has more nodes than its ``nodes`` where so many are needed, up to :data:`MOST_GRADED`. There is none if
+        the history could not be surveyed.
     """
     first_part = float(options.fractions[0]) if options.keep_rule.inside else 1.0
     places = survey(problem, _outline(problem, values), force, first_part, progress)
     if not places:
-        return None
+        return
     distinct = _distinct_places(places)
-    needed = graded_size(distinct, LEAST_ACROSS)
-    if needed > max(MOST_GRADED, options.nodes):
-        log.info("the narrow contacts of this history take %d nodes: too many", needed)
-        return None
-    return Grid.graded(distinct, max(options.nodes, needed), first_direction(problem, values))
+    for across in LEAST_ACROSS:
+        needed = graded_size(distinct, across)
+        if needed > max(MOST_GRADED, options.nodes):
+            log.info("the narrow contacts of this history take %d nodes: too many", needed)
+            return
+        yield Grid.graded(distinct, max(options.nodes, needed), first_direction(problem, values))
 
 
 def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -35,6 +35,9 @@ from fastpin.solver.step import Piece, Position, Report
 MOST_ITERATIONS = 200
 """Iterations of one increment, at most."""
 
+FEW_ITERATIONS = 12
+"""Iterations of an increment that is not patient, at most."""
+
 TOLERANCE = 1e-11
 """Part of the largest pressure or displacement below which an overstepped limit changes no status."""
 
@@ -42,7 +45,7 @@ MOST_HALVINGS = 12
 """Times that an increment is halved, at most, while its iteration cycles."""
 
 
-def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
+def implicit_step(system: System, start: Configuration, load: np.ndarray, patient: bool = True) -> Configuration | None:
     """Go from the configuration `start` to `load` in one implicit increment.
 
     Parameters
@@ -52,6 +55,8 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Con
         Its slip is the slip before the increment, at all nodes, open nodes too. It is not changed.
     load : ndarray, shape (loads,)
         Dimensionless load at the end of the increment.
+    patient : bool
+        Whether the iteration goes on for long, and is tried again with one change of status at a time.
 
     Returns
     -------
@@ -60,22 +65,22 @@ def implicit_step(system: System, start: Configuration, load: np.ndarray) -> Con
         mechanism or does not end.
     """
     attempts = [start.status, np.where(start.closed, resting_status(system), OPEN).astype(np.int8)]
-    for one_at_a_time in (False, True):
+    for one_at_a_time in (False, True) if patient else (False,):
         for first in attempts:
-            found = _iterate(system, start, load, first, one_at_a_time)
+            found = _iterate(system, start, load, first, one_at_a_time, MOST_ITERATIONS if patient else FEW_ITERATIONS)
             if found is not None:
                 return found
     return None
 
 
 def _iterate(
-    system: System, start: Configuration, load: np.ndarray, first: np.ndarray, one_at_a_time: bool
+    system: System, start: Configuration, load: np.ndarray, first: np.ndarray, one_at_a_time: bool, iterations: int
 ) -> Configuration | None:
     status = first.astype(np.int8).copy()
     if not np.any(status != OPEN):
         return None
     seen: set[bytes] = set()
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(iterations):
         key = status.tobytes()
         if key in seen:
             return None

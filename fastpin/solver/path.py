@@ -19,19 +19,15 @@ from fastpin.kernels import exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import M
 from fastpin.solver.configuration import (
-    MAX_RESIDUAL,
     Configuration,
     Solution,
-    dissipation_between,
-    reaches_end,
     solve_statuses,
-    work_between,
-    worst_residual,
 )
 from fastpin.solver.driven import can_float, force_on_pin, load_terms
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.rest import release
-from fastpin.solver.settling import settle, ways_beyond
+from fastpin.solver.settling import settle
+from fastpin.solver.snap import find_state_beyond
 from fastpin.solver.step import Piece, Position, Report, force_of
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
@@ -75,8 +71,14 @@ NEGLIGIBLE = 1e-3
 MOST_RELEASES = 20
 """Such releases in one piece of a step, at most."""
 
-MOST_JUMPS = 200
-"""Snaps of the pin in a history, at most."""
+FIRST_JUMP, LARGEST_JUMP = 1e-6, 1e-2
+"""Parts of a piece at which a state beyond the first snap is looked for, and the largest such part."""
+
+JUMP_GROWTH = 1.2
+"""Growth of this part from snap to snap, so that a pin that snaps all the way comes to the end."""
+
+LONGER_JUMPS = (1.0, 1e2, 1e4)
+"""Factors of this part that are tried one after the other."""
 
 ALMOST_UNLOADED = 1.0 - 1e-8
 """Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
@@ -484,11 +486,11 @@ class PathStepper:
         self._memory = TableauMemory(system.grid.size)
         self._step: PathStep | None = None
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
-        self._releases = 0
+        self._releases = self._jumps = 0
 
     def begin_piece(self) -> None:
         """Prepare for the next straight piece."""
-        self._releases = 0
+        self._releases = self._jumps = 0
 
     def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
         """Follow a piece exactly, up to the fraction `stop` of the step or until the contact is lost.
@@ -521,7 +523,7 @@ class PathStepper:
             if self._has_just_opened(position.now, piece, lost):
                 self.leave(position)
                 position.now = release(self._system, position.now, position.now.load)
-            elif not self._jump(position, piece, stop, lost):
+            elif lost.code != exchange.CYCLING or not self._jump(position, piece, stop):
                 raise _solve_error(lost.code, position.now, self._system.problem.held) from None
 
     def leave(self, position: Position) -> None:
@@ -535,25 +537,19 @@ class PathStepper:
         self._statistics["resettled"] += self._step.resettled
         self._step = None
 
-    def _jump(self, position: Position, piece: Piece, stop: float, lost: StepLostError) -> bool:
-        """Take the pin over a snap to a state at a finite distance, if one is near. Returns whether it was found."""
-        if lost.code != exchange.CYCLING or self._statistics["jumps"] >= MOST_JUMPS:
-            return False
-        system, now = self._system, position.now
-        for part, way in ways_beyond(system, now):
-            reached = min(position.reached + part * (piece.end - position.reached), stop)
-            found = way(piece.load_at(reached))
-            if found is None or worst_residual(system, found) > MAX_RESIDUAL:
-                continue
-            if reaches_end(system, found):
-                raise ArcError(CUT_OFF)
-            self.leave(position)
-            found.work = now.work + work_between(system, now, found)
-            found.dissipation = now.dissipation + dissipation_between(system, now, found)
-            position.now, position.reached = found, reached
-            position.touched |= found.closed
-            self._statistics["jumps"] += 1
-            return True
+    def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
+        """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""
+        jump = FIRST_JUMP * JUMP_GROWTH**self._jumps * (piece.end - piece.begin)
+        for factor in LONGER_JUMPS:
+            reached = min(position.reached + min(factor * jump, LARGEST_JUMP), stop)
+            found = find_state_beyond(self._system, position.now, piece.load_at(reached))
+            if found is not None:
+                self.leave(position)
+                position.now, position.reached = found, reached
+                position.touched |= found.closed
+                self._jumps += 1
+                self._statistics["jumps"] += 1
+                return True
         return False
 
     def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:

@@ -3,13 +3,11 @@
 At an event some nodes are *undecided*: the closed nodes at the limit of friction, and the nodes without pressure and
 without gap. Their statuses in the next moment follow from a linear complementarity problem for the rates
 (:func:`settle`). Lemke's method solves it. Where it has no solution, no state is near in the present direction: the
-pin snaps at constant load to a state at a finite distance. :class:`FiniteStep` finds such a state. It solves the same
-problem for values instead of rates, at all nodes.
+pin snaps, see :mod:`fastpin.solver.snap`. :class:`FiniteStep` solves the same problem for values instead of rates, at
+all nodes.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -24,17 +22,10 @@ from fastpin.solver.configuration import (
     solve_statuses,
     solve_unknowns,
 )
-from fastpin.solver.increment import implicit_step
 from fastpin.solver.unknowns import DenseUnknowns
 
 MOST_VARIABLES = 1200
 """Variables of a complementarity problem, at most. Time and memory of a pivot grow with their square."""
-
-JUMPS = 10.0 ** np.arange(-8.0, -2.9, 0.5)
-"""Parts of the rest of a piece, one after the other, at which a state beyond a snap of the pin is looked for."""
-
-LONG_JUMPS = slice(6, None, 2)
-"""The jumps that are tried with all nodes too, and by an increment."""
 
 MORE_NODES = 20
 """Nodes by which a contact may grow in one finite step, beyond twice its nodes."""
@@ -116,24 +107,6 @@ def settle(system: System, now: Configuration, load_rate: np.ndarray) -> np.ndar
     opens, forth, back = slips[first.size :].reshape(3, second.size)
     found[second] = np.select([opens, forth, back], [OPEN, SLIP_POSITIVE, SLIP_NEGATIVE], STICK)
     return found
-
-
-def ways_beyond(
-    system: System, now: Configuration
-) -> Iterator[tuple[float, Callable[[np.ndarray], Configuration | None]]]:
-    """Yield ways to a state beyond a snap of the pin, from the configuration `now`.
-
-    Each is a part of the rest of the piece, and a function that finds a state at a load or returns None. Steps that
-    let all nodes close, and increments, come last: they take longer.
-    """
-    near = FiniteStep(system, now)
-    for part in JUMPS:
-        yield part, near.to
-    far = FiniteStep(system, now, everywhere=True)
-    for part in JUMPS[LONG_JUMPS]:
-        yield part, far.to
-    for part in JUMPS[LONG_JUMPS]:
-        yield part, lambda load: implicit_step(system, now, load)
 
 
 class FiniteStep:

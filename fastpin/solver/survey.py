@@ -23,7 +23,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, UX, UY, M, P, Q, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.configuration import Configuration, resting_status
+from fastpin.solver.configuration import Configuration
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import NoEquilibriumError, SolveError
 from fastpin.solver.increment import implicit_step
@@ -246,6 +246,10 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         return np.interp(theta, before, values, period=2.0 * math.pi)
 
     closed = at_nodes(now.closed.astype(float)) >= 0.5
+    status, contact = np.full(theta.size, OPEN, dtype=np.int8), np.flatnonzero(now.closed)
+    if closed.any():
+        nearest = np.argmin(np.abs(angle_between(theta[closed, None], before[contact])), axis=1)
+        status[closed] = now.status[contact[nearest]]
     rest = now.rest if system.drive is None else np.where(system.drive.axes, 0.0, now.rest)  # without the prescribed
     away = theta - math.atan2(rest[1], rest[0])
     length = math.hypot(*rest)
@@ -255,7 +259,7 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         shear=np.where(closed, at_nodes(now.shear), 0.0),
         gap=np.where(closed, 0.0, at_nodes(now.gap)),
         slip=at_nodes(now.slip),
-        status=np.where(closed, resting_status(system), OPEN).astype(np.int8),
+        status=status,
         rest_gap=system.rest_clearance - length + 2.0 * length * np.sin(0.5 * away) ** 2,
         rest_slip=at_nodes(now.rest_slip),
     )
@@ -263,4 +267,4 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         return new
     if not closed.any():
         return None
-    return implicit_step(system, new, now.load) or FiniteStep(system, new).to(now.load)
+    return implicit_step(system, new, now.load, patient=False) or FiniteStep(system, new).to(now.load)

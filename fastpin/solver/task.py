@@ -23,7 +23,7 @@ from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import REMOTE, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.solver.arc import candidate_grids, narrow_grid
+from fastpin.solver.arc import candidate_grids, narrow_grids
 from fastpin.solver.driven import pushes
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
@@ -115,16 +115,18 @@ class Task:
         """Follow the history on a graded grid, after an `error` on others. Returns whether its end was reached."""
         if self.grid is not None or self.options.arc is not None:
             return False
-        grid = narrow_grid(self.problem, self.history.distinct(), self.force, self.options, progress)
-        if grid is None or (unfit is not None and _is_same(grid, unfit[0])):
-            return False
-        log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
-        try:
-            self._follow_on(grid, recorder, progress, strict=True)
-        except ConvergenceError as second:
-            log.info("%s", second)
-            return False
-        return True
+        grids = list(narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress))
+        tried = [] if unfit is None else [place for place, grid in enumerate(grids) if _is_same(grid, unfit[0])]
+        for grid in grids[tried[0] + 1 if tried else 0 :]:
+            log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
+            try:
+                self._follow_on(grid, recorder, progress, strict=True)
+            except ConvergenceError as second:
+                error = second
+            else:
+                return True
+        log.info("%s", error)
+        return False
 
     def _follow_candidates(
         self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None, strict: bool

@@ -145,13 +145,6 @@ def test_jumps_are_counted_and_end_in_states(met):
     assert result.statistics["resettled"] >= result.statistics["jumps"]
 
 
-def test_too_many_jumps_end_the_history(monkeypatch):
-    monkeypatch.setattr(path, "MOST_JUMPS", 2)
-    case, history = VERY_ROUGH
-    with pytest.raises(NoEquilibriumError, match="no equilibrium is near: the pin snaps"):
-        solve(case, history, nodes=61)
-
-
 @pytest.mark.parametrize("friction", [0.0, 0.4])
 @pytest.mark.parametrize("closed", [False, True])
 def test_a_finite_step_is_an_implicit_increment(titanium_in_aluminium, friction, closed):

@@ -1,0 +1,107 @@
+"""A pin that snaps: no state is near, and at constant load the pin moves to a state at a finite distance.
+
+The pin creeps there, as if a damper held it. Each step of the creep is a finite step of a pin on springs. The springs
+are slack where the pin was before this step, so their force is the force of the damper. They become softer from step to
+step, and stiffer where a step has no solution. The pin has arrived as soon as the contact carries the load without
+springs. Slip and dissipation follow the way of the pin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    dissipation_between,
+    reaches_end,
+    work_between,
+    worst_residual,
+)
+from fastpin.solver.errors import CUT_OFF, ArcError
+from fastpin.solver.increment import implicit_step
+from fastpin.solver.settling import FiniteStep
+
+MOST_STEPS = 100
+"""Steps of a creep, at most."""
+
+SOFTER, STIFFER = 0.6, 3.0
+"""Factors of the stiffness of the springs after a step, and after a step that had no solution."""
+
+STIFFEST = 1e4
+"""Largest stiffness of the springs, in parts of the first one."""
+
+
+def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> Configuration | None:
+    """Find the state at `load` to which the pin snaps from the configuration `now`.
+
+    Parameters
+    ----------
+    system : System
+    now : Configuration
+        The last configuration before the snap. It is not changed.
+    load : ndarray, shape (loads,)
+        Dimensionless load, a little beyond the load of `now`.
+
+    Returns
+    -------
+    Configuration or None
+        The configuration at `load`. None if the pin came to rest nowhere.
+
+    Raises
+    ------
+    ArcError
+        If the contact reaches an end of the arc.
+    """
+    free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
+    first = stiffness = float(system.weights.mean() / np.median(np.abs(np.diagonal(system.operator))))
+    last = now
+    for _ in range(MOST_STEPS):
+        found = _step(system, last, load)
+        if found is None and last is not now and worst_residual(system, last) <= MAX_RESIDUAL:
+            found = last
+        if found is not None:
+            found.work = now.work + work_between(system, now, found)
+            return found
+        crept = _step_on_springs(system, last, load, stiffness * free) if free.any() else None
+        if crept is not None:
+            last = crept
+        stiffness *= STIFFER if crept is None else SOFTER
+        if stiffness > STIFFEST * first:
+            return None
+    return None
+
+
+def _step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:
+    """A finite step to `load`, with its dissipation: an increment, or by Lemke's method where that fails."""
+    for by_lemke in (False, True):
+        found = FiniteStep(system, start).to(load) if by_lemke else implicit_step(system, start, load, patient=False)
+        if found is not None and worst_residual(system, found) <= MAX_RESIDUAL:
+            if reaches_end(system, found):
+                raise ArcError(CUT_OFF)
+            found.dissipation = start.dissipation + dissipation_between(system, start, found)
+            return found
+    return None
+
+
+def _step_on_springs(
+    system: System, start: Configuration, load: np.ndarray, stiffness: np.ndarray
+) -> Configuration | None:
+    """A finite step of the pin on springs of a `stiffness` (3,), which are slack at `start`.
+
+    The motion in the directions of the springs counts from `start` during the step.
+    """
+    n = system.grid.size
+    before = np.where(stiffness > 0.0, start.motion, 0.0)
+    moved = system.motion @ before
+    shifted = replace(
+        start, motion=start.motion - before, rest_gap=start.rest_gap + moved[:n], slip=start.slip - moved[n:]
+    )
+    held = replace(system, motion_rows=system.motion_rows + np.diag(stiffness))
+    found = _step(held, shifted, load)
+    if found is None:
+        return None
+    return replace(found, motion=found.motion + before, rest_gap=start.rest_gap, slip=found.slip + moved[n:])
