@@ -16,7 +16,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
 from fastpin.solver.configuration import solve_statuses, worst_residual
-from fastpin.solver.errors import ConvergenceError, NoEquilibriumError
+from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep

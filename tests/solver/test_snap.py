@@ -1,0 +1,166 @@
+"""Snaps: where no state is near, the pin creeps under a damper to the next one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fastpin.solver.path as path
+from fastpin import Material, MaterialPair, Problem, solve
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import STICK
+from fastpin.model.angles import BOTTOM
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, M, P
+from fastpin.solver.configuration import elastic_energy, worst_residual
+from fastpin.solver.errors import ArcError, NoEquilibriumError
+from fastpin.solver.first_contact import first_contact
+from fastpin.solver.path import PathStep
+from fastpin.solver.rest import unloaded_configuration
+from fastpin.solver.snap import _step_on_springs, find_state_beyond
+
+
+def problem(pin, plate, load_parameter, friction):
+    pair = MaterialPair(Material(*pin), Material(*plate))
+    return Problem.from_load_parameter(pair, load_parameter, friction, "centre", "free")
+
+
+GRIPPED = (
+    problem((24, 0.1), (4.5, 0.25), 4.7, 0.43),
+    [
+        {"P": 0.48, "Q": 0.13, "sxx": -7.2, "syy": 1.3, "sxy": 0.5},
+        {"P": 0.08, "Q": -0.01, "sxx": -0.1, "syy": -8.1, "sxy": 5.9},
+        {"P": 0.31, "Q": 0.15, "sxx": 3.8, "syy": 6.9, "sxy": -6.2},
+    ],
+)
+"""An oval hole grips the pin at two places and then lets it go."""
+
+TURNED = (
+    problem((8, 0.2), (7, 0.2), 0.4, 0.84),
+    [
+        {"P": 0.75, "Q": -0.25, "M": -0.44, "sxx": 0.2, "syy": -0.24, "sxy": -0.37},
+        {"P": 0.12, "Q": 0.03, "M": -0.01, "sxx": 0.7, "syy": -0.7, "sxy": -0.67},
+        {"P": 0.87, "Q": 0.39, "M": 0.44, "sxx": -0.26, "syy": -0.07, "sxy": 0.6},
+    ],
+)
+"""A moment comes on while the hole grips the pin."""
+
+
+@pytest.fixture
+def snaps(monkeypatch):
+    """Snaps of the present test: the system, and the configurations before and after."""
+    found = []
+
+    def watched(system, now, load):
+        after = find_state_beyond(system, now, load)
+        found.append((system, now, after))
+        return after
+
+    monkeypatch.setattr(path, "find_state_beyond", watched)
+    return found
+
+
+@pytest.fixture
+def pressed(titanium_in_aluminium):
+    """The system of a pin that is pressed down, and its contact."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    system = System.build(case, Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 61), 1.0)
+    load = np.eye(len(LOADS))[P]
+    start, _ = first_contact(system, unloaded_configuration(system), np.zeros(len(LOADS)), load)
+    return system, PathStep(system, start, load).follow(1.0)
+
+
+@pytest.mark.parametrize(("case", "history"), [GRIPPED, TURNED], ids=["gripped", "turned"])
+def test_snaps_converge_with_the_nodes(snaps, case, history):
+    """The load of the snap and the way of the pin are properties of the joint, not of the grid."""
+    loads, ways, peaks = [], [], []
+    for nodes in (81, 161, 321):
+        result = solve(case, history, nodes=nodes)
+        assert result.statistics["jumps"] == 1
+        system, before, after = snaps[-1]
+        assert system.grid.size == nodes
+        loads.append(before.load)
+        ways.append(after.motion - before.motion)
+        peaks.append(result[-1].peak_pressure)
+        assert all(max(state.residuals.values()) < 1e-9 for state in result)
+    assert np.abs(loads[1] - loads[2]).max() < 2e-3 * np.abs(loads[2]).max()
+    assert np.abs(ways[1] - ways[2]).max() < 0.02 * np.abs(ways[2]).max()
+    assert np.abs(ways[0] - ways[2]).max() < 0.2 * np.abs(ways[2]).max()
+    assert peaks[1] == pytest.approx(peaks[2], rel=5e-3)
+
+
+@pytest.mark.parametrize(("case", "history"), [GRIPPED, TURNED], ids=["gripped", "turned"])
+def test_a_snap_sets_energy_free(snaps, case, history):
+    """The pin goes far while the load hardly changes; the loads work more than the contact stores and dissipates."""
+    solve(case, history, nodes=121)
+    system, before, after = snaps[-1]
+    assert np.abs(after.load - before.load).max() < 1e-4 * np.abs(before.load).max()
+    assert np.abs(after.motion - before.motion).max() > 0.05
+    assert worst_residual(system, after) < 1e-9
+    stored = elastic_energy(system, after) - elastic_energy(system, before)
+    dissipated = after.dissipation - before.dissipation
+    assert dissipated > 0.0
+    assert after.work - before.work > stored + dissipated
+
+
+def test_where_a_state_is_near_no_creep_is_needed(pressed):
+    system, now = pressed
+    load = 1.01 * now.load
+    exact = PathStep(system, now, load).follow(1.0)
+    found = find_state_beyond(system, now, load)
+    assert np.array_equal(found.status, exact.status)
+    assert found.pressure == pytest.approx(exact.pressure, abs=1e-4)
+    assert found.work == pytest.approx(exact.work, rel=1e-6)
+
+
+def test_springs_carry_the_force_that_the_contact_does_not(pressed):
+    system, now = pressed
+    stiffness, load = np.array([2.0, 3.0, 0.5]), 1.05 * now.load
+    found = _step_on_springs(system, now, load, stiffness)
+    tractions = np.r_[found.pressure, found.shear]
+    carried = system.equilibrium @ tractions + stiffness * (found.motion - now.motion)
+    assert carried == pytest.approx(system.load_forces(load), abs=1e-12)
+    n = system.grid.size
+    true = system.displacement(tractions, found.motion, load, found.rest_gap)
+    assert np.abs(true[:n][found.closed]).max() < 1e-12
+    assert np.abs(true[n:] - found.slip)[found.closed].max() < 1e-12
+    stick = found.status == STICK
+    assert np.array_equal(found.slip[stick], now.slip[stick]) or np.abs(found.slip - now.slip)[stick].max() < 1e-14
+
+
+def test_slack_springs_move_nothing(pressed):
+    system, now = pressed
+    found = _step_on_springs(system, now, now.load, np.full(3, 2.0))
+    for field in ("pressure", "shear", "motion", "slip"):
+        assert getattr(found, field) == pytest.approx(getattr(now, field), abs=1e-12)
+
+
+def test_a_pin_that_spins_comes_to_rest_nowhere(pressed):
+    system, now = pressed
+    load = now.load.copy()
+    load[M] = 0.9  # friction of 0.4 carries at most 0.4/sqrt(1.16) times the force
+    assert find_state_beyond(system, now, load) is None
+
+
+def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
+    system, now = pressed
+    turned = np.zeros(len(LOADS))
+    turned[LOADS.index("Q")] = 1.0
+    part = system.part(np.arange(15, 46))
+    with pytest.raises(ArcError):
+        find_state_beyond(part, now.part(np.arange(15, 46)), turned)
+
+
+def test_a_snap_to_nowhere_is_told(monkeypatch):
+    monkeypatch.setattr(path, "find_state_beyond", lambda *_: None)
+    case, history = GRIPPED
+    with pytest.raises(NoEquilibriumError, match="the pin snaps") as caught:
+        solve(case, history, nodes=81)
+    assert len(caught.value.result) == 2
+
+
+def test_the_system_on_springs_leaves_the_system_alone(pressed):
+    system, now = pressed
+    before = replace(system).motion_rows.copy()
+    _step_on_springs(system, now, now.load, np.ones(3))
+    assert np.array_equal(system.motion_rows, before)
