@@ -1,6 +1,6 @@
 """Change input files at random: does fastpin answer with a result or one sentence, and leave the files alone?
 
-``python scripts/mutations.py [--count 1000] [--first 0] [KIND ...]`` changes case files, CSV histories, results,
+``python -m scripts.mutations [--count 1000] [--first 0] [KIND ...]`` changes case files, CSV histories, results,
 unfinished results with their journals, and the indices of sweeps. It reads each changed file through Python and the
 command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash, a run without an end,
 too much memory, a long or empty message, or a file that was changed without a right to it. Changed bytes can crash the
@@ -28,7 +28,6 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable
-from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +42,7 @@ from fastpin.storage import export, recording, store
 from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
 from fastpin.studies import sweep, workers
+from scripts.inline import Inline
 
 NODES = 31
 """Nodes of all results."""
@@ -138,19 +138,6 @@ VALUES: tuple[Any, ...] = (
     b"bytes", [1, 2, 3], [], [[1.0, 2.0]], ["a", "b"],
 )  # fmt: skip
 """Values that replace a value of a result or of an index."""
-
-
-class Inline(Executor):
-    """An executor that does everything at once, in this process."""
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> Future[Any]:
-        """Call the function."""
-        future: Future[Any] = Future()
-        try:
-            future.set_result(function(*arguments, **keywords))
-        except Exception as error:
-            future.set_exception(error)
-        return future
 
 
 # -- the files before any change -----------------------------------------------------------------------------

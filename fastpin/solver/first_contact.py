@@ -162,7 +162,7 @@ def first_contact(
     before, after : ndarray, shape (loads,)
         Dimensionless loads at the start and the end of the step.
     strict : bool
-        Whether the hole must keep its shape while the first nodes close.
+        Whether it is an error if the hole can't keep its shape while the first nodes close.
 
     Returns
     -------
@@ -183,10 +183,23 @@ def first_contact(
     if found is None:
         return release(system, floating, after), 1.0
     resting, begins = found
+    way = begins, before, after
+    try:
+        return _first_contact_from(system, resting, way, steady=True)
+    except ResolutionError:
+        if strict:
+            raise
+        return _first_contact_from(system, resting, way, steady=False)
+
+
+def _first_contact_from(
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], steady: bool
+) -> tuple[Configuration, float]:
+    """The first contact from rest; see :func:`_first_patch`. On a large grid it is found on a window."""
     if not isinstance(system, LargeSystem):
-        return _first_patch(system, resting, (begins, before, after), strict)
+        return _first_patch(system, resting, way, steady)
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, resting.part(window.nodes), (begins, before, after), strict)
+    patch, part = _first_patch(window.system, resting.part(window.nodes), way, steady)
     return window.paste(patch, resting), part
 
 
@@ -273,7 +286,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
 
 
 def _first_patch(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], strict: bool
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], steady: bool
 ) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
@@ -281,8 +294,9 @@ def _first_patch(
     begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
     and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
 
-    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. Returned are
-    the configuration and the fraction of the step at which it holds.
+    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. `steady` says
+    whether the hole must keep its shape while the first nodes close. Returned are the configuration and the fraction of
+    the step at which it holds.
     """
     begins, before, after = way
     patches = len(runs(system.grid, resting.closed))
@@ -293,7 +307,7 @@ def _first_patch(
     )  # everything grows in proportion
     left = (1.0 - begins) * (after - before)
     part = 1.0 if self_similar else _hertz_part(system, resting, left)
-    most_part = _steady_part(system, resting, left) if strict and not self_similar else 1.0
+    most_part = _steady_part(system, resting, left) if steady and not self_similar else 1.0
     part = min(part, most_part)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):

@@ -66,7 +66,7 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
         if found is not None:
             found.work = now.work + work_between(system, now, found)
             return found
-        crept = _step_on_springs(system, last, load, stiffness * free) if free.any() else None
+        crept = _step_on_springs(system, last, load, np.where(free, stiffness, 0.0)) if free.any() else None
         if crept is not None:
             last = crept
         stiffness *= STIFFER if crept is None else SOFTER

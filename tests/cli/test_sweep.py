@@ -13,7 +13,8 @@ import pytest
 from fastpin.cli import sweep as sweep_command
 from fastpin.cli.main import main
 from fastpin.studies import sweep, workers
-from tests.support.plans import MOMENT, Inline
+from scripts.inline import Inline
+from tests.support.plans import MOMENT
 
 
 @pytest.fixture

@@ -26,7 +26,8 @@ from fastpin.studies.index import FILE, lock_directory
 from fastpin.studies.outcome import KEY_FIGURES, key_figures
 from fastpin.studies.plan import Plan, parse_plan
 from fastpin.studies.sweep import Summary
-from tests.support.plans import FRICTION, MOMENT, Inline
+from scripts.inline import Inline
+from tests.support.plans import FRICTION, MOMENT
 from tests.support.samples import sample_result
 
 

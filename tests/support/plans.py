@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import Executor, Future
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -42,18 +40,6 @@ MAP = """
 [[list]]
 "pin.E" = 1e11
 """
-
-
-class Inline(Executor):
-    """An executor that does everything at once, in this process."""
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        try:
-            future.set_result(function(*arguments, **keywords))
-        except Exception as error:
-            future.set_exception(error)
-        return future
 
 
 def assert_same_as_serial(plan: Plan, directory: Path) -> None:
