@@ -24,7 +24,15 @@ from fastpin.solver.configuration import (
     solve_statuses,
 )
 from fastpin.solver.driven import can_float, force_on_pin, load_terms
-from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
+from fastpin.solver.errors import (
+    CUT_OFF,
+    UNHELD,
+    ArcError,
+    ConvergenceError,
+    NoEquilibriumError,
+    ResolutionError,
+    SolveError,
+)
 from fastpin.solver.rest import release
 from fastpin.solver.settling import settle
 from fastpin.solver.snap import find_state_beyond
@@ -71,10 +79,10 @@ NEGLIGIBLE = 1e-3
 MOST_RELEASES = 20
 """Such releases in one piece of a step, at most."""
 
-FIRST_JUMP, LARGEST_JUMP = 1e-6, 1e-2
+FIRST_JUMP, LARGEST_JUMP = 1e-6, 2e-2
 """Parts of a piece at which a state beyond the first snap is looked for, and the largest such part."""
 
-JUMP_GROWTH = 1.2
+JUMP_GROWTH = 1.3
 """Growth of this part from snap to snap, so that a pin that snaps all the way comes to the end."""
 
 LONGER_JUMPS = (1.0, 1e2, 1e4)
@@ -299,7 +307,7 @@ class PathStep:
         After a change `all_at_once` that leaves the pin without support, the change is first taken back.
         """
         self.rebuilds += 1
-        if self.rebuilds > MOST_REBUILDS * (1 + self.resettled + 4 * (self._room is not None)):
+        if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
             raise StepLostError(exchange.CYCLING, self.fraction)
         unknowns, queue = solvable_unknowns(self.system, self.now.status), self._queue
         if unknowns is None and all_at_once:
@@ -579,7 +587,7 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
     if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
         return ResolutionError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == exchange.NO_SUPPORT:
-        return NoEquilibriumError("nothing holds the pin any more: it spins, slides away or loses contact")
+        return NoEquilibriumError(UNHELD)
     if code == exchange.CYCLING:
         return NoEquilibriumError("no equilibrium is near: the pin snaps to a distant state, which was not found")
     return ConvergenceError("the stick and slip zones did not settle")

@@ -21,7 +21,7 @@ from fastpin.solver.configuration import (
     work_between,
     worst_residual,
 )
-from fastpin.solver.errors import CUT_OFF, ArcError
+from fastpin.solver.errors import CUT_OFF, UNHELD, ArcError, NoEquilibriumError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.settling import FiniteStep
 
@@ -33,6 +33,9 @@ SOFTER, STIFFER = 0.6, 3.0
 
 STIFFEST = 1e4
 """Largest stiffness of the springs, in parts of the first one."""
+
+SPINNING = 1e-9
+"""Largest translation of a pin that spins, in parts of its rotation times the radius."""
 
 
 def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> Configuration | None:
@@ -55,6 +58,8 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
     ------
     ArcError
         If the contact reaches an end of the arc.
+    NoEquilibriumError
+        If the pin spins.
     """
     free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
     first = stiffness = float(system.weights.mean() / np.median(np.abs(np.diagonal(system.operator))))
@@ -68,11 +73,20 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
             return found
         crept = _step_on_springs(system, last, load, np.where(free, stiffness, 0.0)) if free.any() else None
         if crept is not None:
+            if _spins(last, crept):
+                raise NoEquilibriumError(UNHELD)
             last = crept
         stiffness *= STIFFER if crept is None else SOFTER
         if stiffness > STIFFEST * first:
             return None
     return None
+
+
+def _spins(before: Configuration, after: Configuration) -> bool:
+    """Whether the pin does nothing but turn from one configuration to the other. All its closed nodes slip one way."""
+    moved = np.abs(after.motion - before.motion)
+    one_way = np.abs(before.status[before.closed].sum()) == np.count_nonzero(before.closed)
+    return bool(one_way and np.array_equal(before.status, after.status) and moved[:2].max() <= SPINNING * moved[2])
 
 
 def _step(system: System, start: Configuration, load: np.ndarray) -> Configuration | None:

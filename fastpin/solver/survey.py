@@ -66,6 +66,9 @@ MOST_BETWEEN = 400
 MOST_FAILURES = 500
 """Parts that could not be followed, in one history, at most."""
 
+MOST_JUMPS = 30
+"""Snaps of the pin in one history, at most."""
+
 LEAST_WIDTH = 1e-6
 """Smallest width of a contact, rad. A narrower one is not resolved."""
 
@@ -111,7 +114,7 @@ class _Survey:
     def __init__(self, problem: Problem, force: float, first_part: float) -> None:
         self.places: list[Place] = []
         self._last: Place | None = None
-        self._failures = 0
+        self._failures = self._jumps = 0
         self._first_part = first_part
         self._problem, self._force = problem, force
         self._system = System.build(problem, Grid.circle(10 * ACROSS + 1), force)
@@ -138,7 +141,7 @@ class _Survey:
                 continue
             self._part *= 0.5
             self._failures += 1
-            if self._failures > MOST_FAILURES:
+            if self._failures > MOST_FAILURES or self._jumps > MOST_JUMPS:
                 return False
             if self._part < LEAST_PART:
                 if floats or releases == MOST_RELEASES:
@@ -159,6 +162,8 @@ class _Survey:
             run.follow()
         except SolveError:
             return False
+        finally:
+            self._jumps += int(run.statistics["jumps"])
         patches = runs(self._system.grid, run.now.closed)
         counts = [patch.size for patch in patches]
         if counts and max(counts) < LEAST_CLOSED:

@@ -38,6 +38,7 @@ from fastpin.storage.layout import (
     option_attributes,
     read_restart,
     read_rows,
+    read_statistics,
     rows_of,
     write_head,
     write_restart,
@@ -359,6 +360,7 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
                 task = replace(stored_task(h5), progress=progress)
                 assert task.grid is not None
                 check_growing(h5, task.grid.size)
+                read_statistics(h5)  # they are written again at the end
                 options = h5["solver"].attrs
                 writer = FileRecorder(path, task, str(options["title"]))
                 writer.chosen_arc = bool(options["arc_chosen"])

@@ -91,3 +91,14 @@ def test_an_unfinished_result_that_can_not_grow_is_not_continued(whole, tmp_path
         replaced("states/gap", rows)(file)
     with pytest.raises(InputError, match="states/gap can't grow"):
         fastpin.resume(path)
+
+
+def test_an_unfinished_result_with_damaged_statistics_is_not_continued(whole, tmp_path):
+    """They are written again at the end of the run, which must not fail there."""
+    path = tmp_path / "damaged.h5"
+    path.write_bytes(whole)
+    with h5py.File(path, "r+") as file:
+        file.attrs["complete"] = False
+        del file["solver/statistics"]
+    with pytest.raises(InputError, match="is damaged"):
+        fastpin.resume(path)
