@@ -276,7 +276,7 @@ def _change_dataset(rng: np.random.Generator, file: h5py.File, name: str, value:
         del file[name]
         if way == 2:
             with np.errstate(invalid="ignore"):
-            file[name] = np.asarray(old).astype(rng.choice(["f4", "i8", "S5", "?", "c16"]))
+                file[name] = np.asarray(old).astype(rng.choice(["f4", "i8", "S5", "?", "c16"]))
         elif way == 3:
             file[name] = np.asarray(old).reshape(-1)[: max(1, np.size(old) // 2)]
         else:

@@ -139,7 +139,16 @@ def test_a_pin_that_spins_comes_to_rest_nowhere(pressed):
     system, now = pressed
     load = now.load.copy()
     load[M] = 0.9  # friction of 0.4 carries at most 0.4/sqrt(1.16) times the force
-    assert find_state_beyond(system, now, load) is None
+    with pytest.raises(NoEquilibriumError, match="it spins"):
+        find_state_beyond(system, now, load)
+
+
+def test_a_pin_whose_moment_falls_beyond_a_peak_spins():
+    """Under much friction the pin climbs the hole. At the peak of the moment it snaps, and turns without end."""
+    case = problem((31, 0.4), (4.3, 0.2), 0.018, 2.9)
+    with pytest.raises(NoEquilibriumError, match="it spins") as caught:
+        solve(case, [{"P": 0.3, "Q": 0.1}, {"P": 0.09, "Q": 0.04, "M": 0.12}], nodes=77)
+    assert 0.0 < caught.value.fraction < 1.0
 
 
 def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
