@@ -88,6 +88,8 @@ def narrow_grids(
 ) -> Iterator[Grid]:
     """Yield graded grids with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
 
+    A wide contact has no fewer nodes than on an arc of equally spaced ones.
+
     Parameters
     ----------
     problem, values, force, progress
@@ -101,12 +103,27 @@ def narrow_grids(
     if not places:
         return
     distinct = _distinct_places(places)
+    start, length = _reach(places)
     for across in LEAST_ACROSS:
-        needed = graded_size(distinct, across)
+        width = across * length / options.nodes  # as dense everywhere as equally spaced nodes
+        between = [(float(angle), width) for angle in start + np.arange(0.0, length + 0.5 * width, 0.5 * width)]
+        needed = graded_size(distinct + between, across)
         if needed > max(MOST_GRADED, options.nodes):
             log.info("the narrow contacts of this history take %d nodes: too many", needed)
             return
-        yield Grid.graded(distinct, max(options.nodes, needed), first_direction(problem, values))
+        yield Grid.graded(distinct + between, max(options.nodes, needed), first_direction(problem, values))
+
+
+def _reach(places: list[tuple[float, float]]) -> tuple[float, float]:
+    """Start and length of the shortest arc, rad, that holds all places."""
+    starts = np.array([(angle - 0.5 * width) % (2.0 * math.pi) for angle, width in places])
+    order = np.argsort(starts)
+    starts, widths = starts[order], np.array([width for _, width in places])[order]
+    reached = np.maximum.accumulate(starts + widths)
+    reached = np.maximum(reached, reached[-1] - 2.0 * math.pi)  # the last places may go on beyond the first
+    gaps = np.r_[starts[1:], starts[0] + 2.0 * math.pi] - reached
+    widest = int(np.argmax(gaps))
+    return float(starts[(widest + 1) % starts.size]), 2.0 * math.pi - max(float(gaps[widest]), 0.0)
 
 
 def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:

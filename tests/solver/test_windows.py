@@ -21,6 +21,7 @@ from fastpin.solver.arc import narrow_grids
 from fastpin.solver.errors import ResolutionError
 from fastpin.solver.solving import solve
 from fastpin.solver.survey import survey
+from fastpin.solver.task import Task
 from fastpin.solver.window import Window
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load
@@ -56,6 +57,16 @@ def test_a_graded_grid_has_the_wanted_spacing(places):
     ratio = spacing / np.roll(spacing, 1)
     assert ratio.max() < 1.13
     assert ratio.min() > 0.88
+
+
+def test_a_wide_contact_keeps_its_nodes_beside_a_narrow_one():
+    """The first corner needs nodes at one place. The second must not pay for it."""
+    case = Problem.from_load_parameter(PAIR, 0.03, 0.1)
+    result = solve(case, [{"P": 3e-6}, {"P": 1.0, "Q": 0.4}], nodes=99)
+    fine = solve(case, [{"P": 1.0, "Q": 0.4}], nodes=1201)
+    assert not result.grid.uniform
+    assert np.array(result[-1].contact) == pytest.approx(np.array(fine[-1].contact), abs=4e-3)
+    assert result[-1].peak_pressure == pytest.approx(fine[-1].peak_pressure, rel=3e-3)
 
 
 def test_places_of_a_graded_grid_are_checked():
@@ -102,6 +113,22 @@ def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
     fine = solve(case, corners, grid=result.grid.with_nodes(2 * result.grid.size))
     for one, two in zip(result, fine, strict=True):
         assert one.peak_pressure == pytest.approx(two.peak_pressure, rel=0.02)
+
+
+def test_a_contact_lost_on_the_first_graded_grid_is_followed_on_a_second(monkeypatch):
+    sizes = []
+    follow = Task._follow_on
+
+    def watched(task, grid, *arguments, **keywords):
+        sizes.append(grid.size)
+        if not grid.uniform and len(sizes) == 2:
+            raise ResolutionError("lost")
+        return follow(task, grid, *arguments, **keywords)
+
+    monkeypatch.setattr(Task, "_follow_on", watched)
+    result = solve(problem(200.0), SMALL_FIRST, nodes=61)
+    assert result.complete
+    assert sizes[2] == result.grid.size > 1.5 * sizes[1]
 
 
 def test_too_many_nodes_are_refused_with_the_first_error(monkeypatch):
