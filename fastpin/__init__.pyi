@@ -23,8 +23,8 @@ from .model.materials import MATERIALS as MATERIALS
 from .model.materials import Material as Material
 from .model.materials import MaterialPair as MaterialPair
 from .model.options import SolveOptions as SolveOptions
+from .model.points import Points as Points
 from .model.problem import Problem as Problem
-from .solver.errors import ArcError as ArcError
 from .solver.errors import ConvergenceError as ConvergenceError
 from .solver.errors import Interrupted as Interrupted
 from .solver.errors import NoEquilibriumError as NoEquilibriumError

@@ -6,4 +6,5 @@ from .materials import MATERIALS as MATERIALS
 from .materials import Material as Material
 from .materials import MaterialPair as MaterialPair
 from .options import SolveOptions as SolveOptions
+from .points import Points as Points
 from .problem import Problem as Problem

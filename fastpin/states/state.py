@@ -9,13 +9,17 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.grid import Grid
+from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
+from fastpin.states.stress import Stress, stress_at, tractions_of
 from fastpin.states.zones import Interval
 
 
@@ -234,6 +238,43 @@ class State:
             "Q": radius * float(sin @ self.shear + cos @ self.pressure),
             "M": -(radius**2) * float(self.grid.weights @ self.shear),
         }
+
+    @cached_property
+    def _tractions(self) -> Tractions:
+        return tractions_of(self.grid, self.status, self.pressure, self.shear)
+
+    def stress(self, points: Points, body: Body = "plate") -> Stress:
+        """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
+
+        The remote stress, the force on the pin and the moment at its centre are included.
+
+        Parameters
+        ----------
+        points : Points
+        body : {"plate", "pin"}
+
+        Raises
+        ------
+        InputError
+            If a point lies outside the body, where the stress is infinite, or if the body is rigid.
+        """
+        return stress_at(self.problem, self._tractions, self.load, points, body)
+
+    def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None) -> np.ndarray:
+        """The hoop stress on the edge of the hole or of the pin, Pa; tension is positive.
+
+        Parameters
+        ----------
+        body : {"plate", "pin"}
+        theta : array_like, optional
+            Angles, rad; the nodes unless given.
+
+        Raises
+        ------
+        InputError
+            If an angle is no finite number, or the body is rigid.
+        """
+        return self.stress(Points.at_depth(0.0, self.theta if theta is None else theta), body).hoop
 
     @property
     def displacement(self) -> dict[str, float]:

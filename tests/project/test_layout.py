@@ -27,7 +27,7 @@ BREAKS = {
     ),
     "an import from a folder of the same rank": (
         "one_direction",
-        "states/fits.py",
+        "casefile/reader.py",
         "import fastpin.elasticity.system\n",
     ),
     "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),

@@ -1,0 +1,113 @@
+"""Stresses inside pin and plate from the tractions between them, in closed form.
+
+With s = srr + stt and D = srr - i srt, the Cauchy integrals of the tractions give all stresses, (T30)-(T33). Lengths
+are in units of the radius R, stresses in the units of the tractions. Tension is positive.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fastpin.elasticity.tractions import Tractions, cauchy_integrals
+from fastpin.model.problem import Problem
+
+SERIES = 50
+"""Terms of the series about the pin's centre. It is used where r < R/2."""
+
+
+def plate_stress(
+    problem: Problem, tractions: Tractions, remote: np.ndarray, theta: np.ndarray, depth: np.ndarray
+) -> np.ndarray:
+    """Stresses (srr, stt, srt) in the plate, shape (3, m).
+
+    Parameters
+    ----------
+    problem : Problem
+    tractions : Tractions
+    remote : ndarray, shape (3,)
+        Remote stress (sxx, syy, sxy).
+    theta : ndarray, shape (m,)
+        Angles of the points, rad.
+    depth : ndarray, shape (m,)
+        Distances of the points from the edge of the hole, in units of R; at least 0.
+    """
+    kolosov = problem.pair.plate_kolosov
+    (pressure, shear), away = tractions.coefficients(1), np.log1p(depth)
+    whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
+    zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
+    below = depth * (2.0 + depth) * square  # 1 - (R/r)^2
+    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])  # int (N - iT) exp(i xi) dxi
+    share = kolosov / (2.0 * math.pi * (1.0 + kolosov))
+    mean = 4.0 * np.real(whole + share * force / zeta)
+    radial = 2.0 * np.real(whole) - below * (slope - 2.0 * share * force / zeta)
+    radial = radial + square * (2j * of_shear - np.conj(pressure[0] - 1j * shear[0]))
+    srr, srt = np.real(radial), -np.imag(radial)
+    sxx, syy, sxy = remote
+    cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
+    along, across = (sxx - syy) * cos + 2.0 * sxy * sin, (sxx - syy) * sin - 2.0 * sxy * cos
+    mean = mean + (sxx + syy) - 2.0 * square * along
+    srr = srr + 0.5 * below * ((sxx + syy) + (1.0 - 3.0 * square) * along)
+    srt = srt - 0.5 * below * (1.0 + 3.0 * square) * across
+    return np.array([srr, mean - srr, srt])
+
+
+def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Stresses (srr, stt, srt) in the pin, shape (3, m).
+
+    A moment acts at the centre, and so does the force if ``pin_load`` is "centre": there the stress is infinite.
+
+    Parameters
+    ----------
+    problem : Problem
+    tractions : Tractions
+    theta : ndarray, shape (m,)
+        Angles of the points, rad.
+    depth : ndarray, shape (m,)
+        Distances of the points from the edge of the pin, in units of R; 0 to less than 1.
+    """
+    pressure, shear = tractions.coefficients(SERIES)
+    if not tractions.has_moment:
+        shear[0] = 0.0
+    radius = 1.0 - depth
+    zeta = radius * np.exp(1j * theta)
+    force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])
+    whole, first = np.empty(theta.size, dtype=complex), np.empty(theta.size, dtype=complex)
+    near = radius < 0.5
+    whole[near], first[near] = _near_centre(problem, pressure, shear, zeta[near])
+    edge = ~near
+    whole[edge], of_shear, slope = cauchy_integrals(tractions, theta[edge], -np.log1p(-depth[edge]), outside=False).T
+    square = radius[edge] ** -2.0
+    below = -depth[edge] * (2.0 - depth[edge]) * square
+    first[edge] = below * slope - square * (2j * of_shear - 1j * shear[0])
+    mean = -4.0 * np.real(whole) + 2.0 * pressure[0].real
+    radial = -2.0 * np.real(whole) + pressure[0].real + first
+    if problem.pin_load == "centre":
+        share = 1.0 / (math.pi * (1.0 + problem.pair.pin_kolosov))
+        mean = mean + 4.0 * share * np.real(np.conj(force) * zeta - 0.5 * force / zeta)
+        radial = radial + share * force * (np.conj(zeta) - 1.0 / zeta)
+        radial[near] -= np.conj(force) / (2.0 * math.pi * np.conj(zeta[near]))
+    else:
+        radial[near] -= np.conj(force) * zeta[near] / (2.0 * math.pi)
+        outer = zeta[edge]
+        radial[edge] += np.conj(force) / (2.0 * math.pi) * (1.0 / np.conj(outer) - outer)
+    srr = np.real(radial)
+    return np.array([srr, mean - srr, -np.imag(radial)])
+
+
+def _near_centre(
+    problem: Problem, pressure: np.ndarray, shear: np.ndarray, zeta: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """C[p] and the terms of D beside C[p] near the pin's centre, by their Taylor series (T33)."""
+    both, order = pressure - 1j * shear, np.arange(SERIES + 1)
+    whole, slope = _sum(both, zeta), _sum(order * both, zeta)
+    turn = np.divide(zeta, np.conj(zeta), out=np.ones_like(zeta), where=zeta != 0.0)
+    rest = _sum((order * both + 2j * shear)[2:], zeta) * turn
+    moment = 1j * shear[0] / np.abs(zeta) ** 2.0 if shear[0] != 0.0 else 0.0
+    return whole, slope - moment - rest
+
+
+def _sum(coefficients: np.ndarray, zeta: np.ndarray) -> np.ndarray:
+    """The power series with these coefficients at the points zeta."""
+    return np.polynomial.polynomial.polyval(zeta, coefficients)

@@ -1,0 +1,92 @@
+"""Points of pin and plate at which stresses are asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.errors import InputError
+from fastpin.model.checks import numbers
+from fastpin.model.problem import Problem
+
+Body = Literal["plate", "pin"]
+
+BODIES = ("plate", "pin")
+"""The bodies in contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points by angle and radius, or by angle and depth below the edge of the hole. Both may be arrays of any shape.
+
+    ``Points.at_radius``, ``Points.at_depth`` and ``Points.at_xy`` make them. Arrays are broadcast: a column of depths
+    and a row of angles give a grid.
+
+    Attributes
+    ----------
+    theta : ndarray
+        Angles, rad, counter-clockwise from the +x axis; the bottom of the hole is -pi/2.
+    radius : ndarray or None
+        Distances from the centre, m; None for points by depth.
+    depth : ndarray or None
+        Distances from the edge, m, into the body; None for points by radius. No digit is lost close to the edge.
+    """
+
+    theta: np.ndarray
+    radius: np.ndarray | None
+    depth: np.ndarray | None
+
+    @classmethod
+    def at_radius(cls, radius: ArrayLike, theta: ArrayLike) -> Points:
+        """Points at distances `radius` from the centre, m, at the angles `theta`, rad."""
+        r, angle = _broadcast("radius", numbers("radius", radius, 0.0), numbers("theta", theta))
+        return cls(angle, r, None)
+
+    @classmethod
+    def at_depth(cls, depth: ArrayLike, theta: ArrayLike) -> Points:
+        """Points at distances `depth` below the edge, m, at the angles `theta`, rad."""
+        below, angle = _broadcast("depth", numbers("depth", depth, 0.0), numbers("theta", theta))
+        return cls(angle, None, below)
+
+    @classmethod
+    def at_xy(cls, x: ArrayLike, y: ArrayLike) -> Points:
+        """Points at the coordinates `x` and `y` from the centre of the hole, m."""
+        along, up = _broadcast("x", numbers("x", x), numbers("y", y))
+        return cls(np.arctan2(up, along), np.hypot(along, up), None)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the arrays."""
+        return self.theta.shape
+
+    def depths(self, problem: Problem, body: Body) -> np.ndarray:
+        """Depths below the edge in units of the hole's radius, shape of the points.
+
+        Raises
+        ------
+        InputError
+            If a point lies outside the body.
+        """
+        radius = problem.hole_radius
+        if self.depth is not None:
+            depth = self.depth / radius
+            if body == "pin" and np.any(depth > 1.0):
+                raise InputError("depth", f"must be at most the radius of {radius:g} in the pin")
+        else:
+            assert self.radius is not None
+            depth = (self.radius - radius) / radius * (1.0 if body == "plate" else -1.0)
+            if np.any(depth < 0.0):
+                side = "at least" if body == "plate" else "at most"
+                raise InputError("radius", f"must be {side} the hole's radius of {radius:g} in the {body}")
+        return depth
+
+
+def _broadcast(field: str, one: np.ndarray, other: np.ndarray) -> list[np.ndarray]:
+    """Both arrays in their common shape."""
+    try:
+        return [np.array(array) for array in np.broadcast_arrays(one, other)]
+    except ValueError:
+        raise InputError(field, f"has the shape {one.shape}, which does not fit the other's {other.shape}") from None
