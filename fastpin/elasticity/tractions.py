@@ -52,14 +52,16 @@ class Tractions:
 
     def coefficients(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Fourier coefficients of N and T, (1/2 pi) int g exp(-i k xi) dxi, for k = 0 to `count`."""
+        points, weights = _gauss()
         result = np.zeros((2, count + 1), dtype=complex)
         for patch in self.patches:
-            theta, values = patch[:, 0], patch[:, 1:]
-            result[:, 0] += np.trapezoid(values, theta, axis=0) / (2.0 * math.pi)
-            slopes = np.diff(values, axis=0) / np.diff(theta)[:, None]
-            jumps = np.diff(slopes, axis=0, prepend=0.0, append=0.0)
-            for k in range(1, count + 1):
-                result[:, k] -= np.exp(-1j * k * theta) @ jumps / (2.0 * math.pi * k * k)
+            theta, values = patch[:, 0, None], patch[:, 1:, None]
+            steps = np.diff(theta, axis=0)
+            turn = np.exp(-1j * (theta[:-1] + steps * points))
+            power = (values[:-1] + np.diff(values, axis=0) * points) * (steps * weights)[:, None] / (2.0 * math.pi)
+            for k in range(count + 1):
+                result[:, k] += power.sum(axis=(0, 2))
+                power = power * turn[:, None]
         return result[0], result[1]
 
     @cached_property
@@ -100,9 +102,8 @@ class Tree:
         spans = [places[first : last + 1] for first, last in leaves]
         centres = [0.5 * (span[0] + span[-1]) for span in spans]
         radii = [float(np.abs(span - centre).max()) for span, centre in zip(spans, centres, strict=True)]
-        points, weights = np.polynomial.legendre.leggauss(GAUSS)
         filled = np.zeros((len(leaves), 2, cauchy.TERMS), dtype=complex)
-        cauchy.moments(nodes, np.array(leaves), np.array(centres), 0.5 * (points + 1.0), 0.5 * weights, filled)
+        cauchy.moments(nodes, np.array(leaves), np.array(centres), *_gauss(), filled)
         all_moments = list(filled)
         binomials = np.array([[float(math.comb(m, k)) for k in range(cauchy.TERMS)] for m in range(cauchy.TERMS)])
         level = list(range(len(leaves)))
@@ -114,6 +115,12 @@ class Tree:
         if turn:
             nodes = np.concatenate([nodes[:-1], nodes + np.array([2.0 * math.pi, 0.0, 0.0])])
         return cls(nodes, turn, np.array(blocks), np.array(centres), np.array(radii), np.array(all_moments))
+
+
+def _gauss() -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights on (0, 1)."""
+    points, weights = np.polynomial.legendre.leggauss(GAUSS)
+    return 0.5 * (points + 1.0), 0.5 * weights
 
 
 def _joined(

@@ -214,6 +214,22 @@ def test_the_centre_of_a_pin_under_a_body_force_is_regular():
     assert np.isfinite(found).all()
 
 
+def test_a_very_narrow_contact_keeps_its_force():
+    """Far away the stress is the one of a point force; the nodes are 1e-8 apart."""
+    half = 1e-6
+    angle = half * np.linspace(-1.0, 1.0, 201)
+    hat = np.interp(angle, [-half, 0.0, half], [0.0, 1.0 / half, 0.0])
+    tractions = Tractions((np.column_stack([BOTTOM + angle, hat, 0.0 * angle]),))
+    wide = np.array([[BOTTOM - 1e-3, 0.0, 0.0], [BOTTOM, 1e3, 0.0], [BOTTOM + 1e-3, 0.0, 0.0]])
+    theta, depth = np.linspace(-3.0, 3.0, 7), np.full(7, 0.5)
+    for compute in (
+        lambda *a: plate_stress(problem(), a[0], np.zeros(3), *a[1:]),
+        lambda *a: pin_stress(problem(), *a),
+    ):
+        assert compute(tractions, theta, depth) == pytest.approx(compute(Tractions((wide,)), theta, depth), abs=1e-5)
+    assert tractions.coefficients(1)[0][1] == pytest.approx(np.exp(-1j * BOTTOM) / (2.0 * np.pi), rel=1e-10)
+
+
 # --- states ---------------------------------------------------------------------------------------------------
 
 
