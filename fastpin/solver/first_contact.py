@@ -48,8 +48,14 @@ OUTSIDE = 721
 GROWN_NODES = 19
 """Nodes of the young contact from which the slip of the first nodes is found."""
 
+BESIDE_END = 3
+"""Nodes by which a young contact stays smaller than its distance from the end of an arc allows, twice the distance."""
+
 GROWN_FIT = np.arange(4, 7)
 """Distances, in nodes from the first node, of the nodes whose slip tells the slip of the nodes between."""
+
+UNPRESSED = 1e-9
+"""Largest pressure, in parts of the peak, of a node that counts as open in the first contact. It must not stick."""
 
 STEADY = 0.1
 """Largest relative change of the hole's curvature against the pin's while the first nodes close."""
@@ -358,7 +364,8 @@ def _shearless_step(system: System, resting: Configuration, load: np.ndarray) ->
         held_load[ROTATION] = resting.motion[2]
     found = _one_step(smooth, start, held_load)
     if found is not None:
-        found.status[found.closed] = resting_status(system)
+        pressed = found.pressure > UNPRESSED * found.pressure.max()
+        found.status[:] = np.where(found.closed & pressed, resting_status(system), OPEN)
         found.load = load
     return found
 
@@ -399,7 +406,10 @@ def _young_nodes(system: System, patch: Configuration) -> np.ndarray | None:
 def _grown_slip(system: System, patch: Configuration, begin: np.ndarray) -> np.ndarray | None:
     """The slip (n,) of :func:`_with_grown_slip`; None if the nodes that tell it do not all stick."""
     n, first = system.grid.size, int(np.argmax(patch.pressure))
-    growth = (GROWN_NODES / np.count_nonzero(patch.closed)) ** 2
+    room = GROWN_NODES if system.grid.closed else 2 * min(first, n - 1 - first) - BESIDE_END
+    growth = (min(GROWN_NODES, room) / np.count_nonzero(patch.closed)) ** 2
+    if growth < 1.0:
+        return None
     try:
         grown = PathStep(system, patch, begin + growth * (patch.load - begin)).follow(1.0)
     except StepLostError:
