@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, P
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
 from fastpin.solver.errors import ArcError
+from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.solving import solve
 
 BOTTOM = -0.5 * np.pi
@@ -104,3 +108,31 @@ def test_a_drifted_step_goes_back_to_the_last_check(monkeypatch, titanium_in_alu
     assert again.statistics["rebuilds"] > plain.statistics["rebuilds"]
     for one, two in zip(plain, again, strict=True):
         assert one.shear == pytest.approx(two.shear, abs=1e-12 * one.pressure.max())
+
+
+def test_the_end_of_an_arc_near_the_first_node_changes_nothing():
+    """The young contact is followed as far as the arc allows, and its slip is the one of a wider arc."""
+    pair = MaterialPair(Material(4.3, 0.5), Material(57.0, 0.5), "stress")
+    case = Problem.from_load_parameter(pair, 1249.0, 0.64, "centre", "fixed")
+    circle, history = Grid.circle(2100, BOTTOM), [{"P": 0.3}, {"P": 0.84, "Q": 0.5}]
+    near, far = (
+        solve(case, history, grid=Grid(np.r_[circle.theta[-nodes:] - 2.0 * np.pi, circle.theta[:300]]))
+        for nodes in (9, 40)
+    )
+    for state, other in zip(near, far, strict=True):
+        assert state.shear == pytest.approx(other.shear[31:], abs=1e-8 * other.peak_pressure)
+        assert state.pressure == pytest.approx(other.pressure[31:], abs=1e-8 * other.peak_pressure)
+
+
+def test_a_node_without_pressure_does_not_stick_in_the_first_contact(titanium_in_aluminium):
+    """It would hold the pin on one side of the first node, whichever rounding chooses."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    system = System.build(case, Grid.circle(60, BOTTOM), 1.0)
+    load = np.eye(len(LOADS))[P]
+    resting = unloaded_configuration(system)
+    resting.status[:2] = STICK
+    resting.gap = system.rest_clearance * (1.0 + np.sin(system.grid.theta))
+    resting.rest_gap = resting.gap.copy()
+    found = first_contact._shearless_step(system, resting, 1e-9 * load)
+    assert np.array_equal(np.flatnonzero(found.closed), [0])
+    assert np.all(found.pressure[found.closed] > 0.0)
