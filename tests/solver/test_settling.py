@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange
+from fastpin.kernels import complementarity, exchange
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -190,3 +190,29 @@ def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium
     with pytest.raises(ConvergenceError, match="did not settle"):
         solve(case, [{"Q": 0.3}, {"Q": -0.3}], start=pressed)
     assert exchange.ENDLESS != exchange.CYCLING
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0, 3.0])
+def test_a_reversal_has_one_branch(monkeypatch, friction):
+    """Lemke's method may end in any solution. From any covering vector it finds the statuses that the path takes."""
+    rng = np.random.default_rng(1)
+    case = problem((9, 0.2), (2, 0.4), 0.3, friction, "centre", "free")
+    result = solve(case, [{"P": 1.0, "Q": 0.1}, {"Q": 0.4}], nodes=101)
+    system, now = System.build(case, result.grid, result.restart.force), result.restart.configuration
+    for corner in ({"P": 0.9, "Q": 0.1}, {"P": 1.2, "Q": 0.3}, {"P": 0.7, "Q": 0.5}):
+        target = np.array([corner.get(name, 0.0) for name in LOADS])
+        after = now.load + 0.1 * (target / system.scales.loads - now.load)
+        path_step = PathStep(system, now, after)
+        expected = path_step.follow(1e-7).status
+        for _ in range(6):
+            monkeypatch.setattr(settling, "lemke", lambda *given: lemke_from(rng, *given))
+            assert np.array_equal(settle(system, now, after - now.load), expected)
+
+
+def lemke_from(rng, matrix, vector):
+    """Lemke's method with a random covering vector."""
+    k = vector.size
+    z, tableau, basis = np.zeros(k), np.empty((k, 2 * k + 2)), np.empty(k, dtype=np.int64)
+    cover = 10.0 ** rng.uniform(-2.0, 2.0, k)
+    assert complementarity.lemke(matrix, vector, cover, 20 * k + 100, tableau, basis, z) == complementarity.SOLVED
+    return z
