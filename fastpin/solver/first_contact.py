@@ -57,6 +57,12 @@ GROWN_FIT = np.arange(4, 7)
 UNPRESSED = 1e-9
 """Largest pressure, in parts of the peak, of a node that counts as open in the first contact. It must not stick."""
 
+CONFORMING = 1e-9
+"""Largest differences of the gap round a pin that touches all round, in parts of the clearance."""
+
+CONFORMING_PART = 1e-3
+"""Part of a step at which the first contact of such a pin is tried."""
+
 STEADY = 0.1
 """Largest relative change of the hole's curvature against the pin's while the first nodes close."""
 
@@ -312,8 +318,9 @@ def _first_patch(
         system.rest_clearance == 0.0 and not np.delete(before, ROTATION).any()
     )  # everything grows in proportion
     left = (1.0 - begins) * (after - before)
-    part = 1.0 if self_similar else _hertz_part(system, resting, left)
-    most_part = _steady_part(system, resting, left) if steady and not self_similar else 1.0
+    conforming = np.ptp(resting.gap) <= CONFORMING * abs(system.rest_clearance)  # the hole closes on the pin all round
+    part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
+    most_part = _steady_part(system, resting, left) if steady and not (self_similar or conforming) else 1.0
     part = min(part, most_part)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):

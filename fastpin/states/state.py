@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.elasticity.tractions import Tractions
+from fastpin import states
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.grid import Grid
@@ -19,8 +19,11 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
-from fastpin.states.stress import Stress, stress_at, tractions_of
 from fastpin.states.zones import Interval
+
+if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a stress is asked for
+    from fastpin.elasticity.tractions import Tractions
+    from fastpin.states.stress import Stress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -241,7 +244,7 @@ class State:
 
     @cached_property
     def _tractions(self) -> Tractions:
-        return tractions_of(self.grid, self.status, self.pressure, self.shear)
+        return states.tractions_of(self.grid, self.status, self.pressure, self.shear)
 
     def stress(self, points: Points, body: Body = "plate") -> Stress:
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
@@ -258,7 +261,7 @@ class State:
         InputError
             If a point lies outside the body, where the stress is infinite, or if the body is rigid.
         """
-        return stress_at(self.problem, self._tractions, self.load, points, body)
+        return states.stress_at(self.problem, self._tractions, self.load, points, body)
 
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None) -> np.ndarray:
         """The hoop stress on the edge of the hole or of the pin, Pa; tension is positive.

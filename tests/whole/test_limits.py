@@ -289,11 +289,16 @@ def test_rotation_may_change_without_contact(titanium_in_aluminium):
     assert not back.in_contact
 
 
-def test_a_held_pin_crosses_the_clearance_with_a_little_side_force(titanium_in_aluminium):
+@pytest.mark.parametrize("side", [1e-3, 1e-4, pytest.param(1e-6, marks=pytest.mark.slow)])
+def test_a_held_pin_crosses_the_clearance_with_a_little_side_force(titanium_in_aluminium, side):
+    """It slides round the hole under next to no force. Friction lets the new contact lag behind, for any side force."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")
-    result = solve(problem, [{"P": 1.0, "Q": 1e-6}, {"P": -1.0}], nodes=101)
-    assert result[1].resultants["P"] == pytest.approx(-1.0)
-    assert result[1].peak_pressure == pytest.approx(result[0].peak_pressure, rel=1e-3)
+    first, last = solve(problem, [{"P": 1.0, "Q": side}, {"P": -1.0}], nodes=101)
+    assert last.resultants["P"] == pytest.approx(-1.0)
+    assert first.peak_pressure == pytest.approx(0.5531, rel=5e-4)
+    assert last.peak_pressure == pytest.approx(0.5507 + 1.3 * side, rel=5e-4)
+    ((start, stop),) = last.contact
+    assert 0.5 * (start + stop) - 0.5 * math.pi == pytest.approx(-0.0905 - 11.0 * side, abs=3e-3)
 
 
 def test_interference_fit_opens_evenly_under_one_sided_stress(titanium_in_aluminium):
