@@ -80,7 +80,7 @@ MOST_RELEASES = 20
 """Such releases in one piece of a step, at most."""
 
 FIRST_JUMP, LARGEST_JUMP = 1e-6, 2e-2
-"""Parts of a piece at which a state beyond the first snap is looked for, and the largest such part."""
+"""Part of a piece at which a state beyond the first snap is looked for; largest part of a step for later snaps."""
 
 JUMP_GROWTH = 1.3
 """Growth of this part from snap to snap, so that a pin that snaps all the way comes to the end."""
@@ -548,8 +548,8 @@ class PathStepper:
     def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
         """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""
         jump = FIRST_JUMP * JUMP_GROWTH**self._jumps * (piece.end - piece.begin)
-        for factor in LONGER_JUMPS:
-            reached = min(position.reached + min(factor * jump, LARGEST_JUMP), stop)
+        ends = [min(position.reached + min(factor * jump, LARGEST_JUMP), stop) for factor in LONGER_JUMPS]
+        for reached in dict.fromkeys(ends):
             found = find_state_beyond(self._system, position.now, piece.load_at(reached))
             if found is not None:
                 self.leave(position)

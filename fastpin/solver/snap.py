@@ -63,23 +63,23 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
     """
     free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
     first = stiffness = float(system.weights.mean() / np.median(np.abs(np.diagonal(system.operator))))
-    last = now
-    for _ in range(MOST_STEPS):
-        found = _step(system, last, load)
-        if found is None and last is not now and worst_residual(system, last) <= MAX_RESIDUAL:
-            found = last
-        if found is not None:
-            found.work = now.work + work_between(system, now, found)
-            return found
-        crept = _step_on_springs(system, last, load, np.where(free, stiffness, 0.0)) if free.any() else None
-        if crept is not None:
-            if _spins(last, crept):
-                raise NoEquilibriumError(UNHELD)
-            last = crept
-        stiffness *= STIFFER if crept is None else SOFTER
-        if stiffness > STIFFEST * first:
+    last, found, steps = now, _step(system, now, load), 0
+    while found is None:
+        if not free.any() or steps == MOST_STEPS or stiffness > STIFFEST * first:
             return None
-    return None
+        steps += 1
+        crept = _step_on_springs(system, last, load, np.where(free, stiffness, 0.0))
+        if crept is None:
+            stiffness *= STIFFER
+            continue
+        if _spins(last, crept):
+            raise NoEquilibriumError(UNHELD)
+        last, stiffness = crept, stiffness * SOFTER
+        found = _step(system, last, load)
+        if found is None and worst_residual(system, last) <= MAX_RESIDUAL:
+            found = last
+    found.work = now.work + work_between(system, now, found)
+    return found
 
 
 def _spins(before: Configuration, after: Configuration) -> bool:
