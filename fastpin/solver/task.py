@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import logging
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -115,9 +115,12 @@ class Task:
         """Follow the history on a graded grid, after an `error` on others. Returns whether its end was reached."""
         if self.grid is not None or self.options.arc is not None:
             return False
-        grids = list(narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress))
-        tried = [] if unfit is None else [place for place, grid in enumerate(grids) if _is_same(grid, unfit[0])]
-        for grid in grids[tried[0] + 1 if tried else 0 :]:
+        grids: Iterable[Grid] = narrow_grids(self.problem, self.history.distinct(), self.force, self.options, progress)
+        if unfit is not None:
+            grids = list(grids)
+            tried = [place for place, grid in enumerate(grids) if _is_same(grid, unfit[0])]
+            grids = grids[tried[0] + 1 if tried else 0 :]
+        for grid in grids:
             log.info("%s: once more with %d nodes that are dense where the contact is narrow", error, grid.size)
             try:
                 self._follow_on(grid, recorder, progress, strict=True)
