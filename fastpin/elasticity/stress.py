@@ -67,15 +67,16 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the pin, in units of R; 0 to less than 1.
     """
-    pressure, shear = tractions.coefficients(SERIES)
+    radius = 1.0 - depth
+    near = radius < 0.5
+    pressure, shear = tractions.coefficients(SERIES if near.any() else 1)
     if not tractions.has_moment:
         shear[0] = 0.0
-    radius = 1.0 - depth
     zeta = radius * np.exp(1j * theta)
     force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])
     whole, first = np.empty(theta.size, dtype=complex), np.empty(theta.size, dtype=complex)
-    near = radius < 0.5
-    whole[near], first[near] = _near_centre(problem, pressure, shear, zeta[near])
+    if near.any():
+        whole[near], first[near] = _near_centre(pressure, shear, zeta[near])
     edge = ~near
     whole[edge], of_shear, slope = cauchy_integrals(tractions, theta[edge], -np.log1p(-depth[edge]), outside=False).T
     square = radius[edge] ** -2.0
@@ -96,9 +97,7 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     return np.array([srr, mean - srr, -np.imag(radial)])
 
 
-def _near_centre(
-    problem: Problem, pressure: np.ndarray, shear: np.ndarray, zeta: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _near_centre(pressure: np.ndarray, shear: np.ndarray, zeta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """C[p] and the terms of D beside C[p] near the pin's centre, by their Taylor series (T33)."""
     both, order = pressure - 1j * shear, np.arange(SERIES + 1)
     whole, slope = _sum(both, zeta), _sum(order * both, zeta)

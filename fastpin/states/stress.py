@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +17,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.points import BODIES, Body, Points
 from fastpin.model.problem import Problem
-from fastpin.states.zones import runs
+from fastpin.states.zones import runs, unrolled
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +93,7 @@ def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np
     for run in runs(grid, closed):
         all_round = run.size == n
         nodes = np.r_[run, run[0]] if all_round else np.r_[run[0] - 1, run, run[-1] + 1] % n
-        theta = grid.theta[nodes]
-        theta = theta + 2.0 * math.pi * np.r_[0, np.cumsum(np.diff(theta) <= 0.0)]
-        values = np.column_stack([theta, pressure[nodes], shear[nodes]])
+        values = np.column_stack([unrolled(grid, nodes), pressure[nodes], shear[nodes]])
         if not all_round:
             values[[0, -1], 1:] = 0.0
         patches.append(values)
@@ -104,22 +101,9 @@ def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np
 
 
 def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float], points: Points, body: Body) -> Stress:
-    """The stress at points of a body.
+    """The stress at points of a body; see :meth:`fastpin.State.stress`, also for the errors.
 
-    Parameters
-    ----------
-    problem : Problem
-    tractions : Tractions
-        Tractions, Pa.
-    load : Mapping of str to float
-        Loads by name. The remote stress acts on the plate.
-    points : Points
-    body : {"plate", "pin"}
-
-    Raises
-    ------
-    InputError
-        If a point lies outside the body, where the stress is infinite, or if the body is rigid.
+    `tractions` are in Pa. Of the `load` by name, the remote stress acts on the plate.
     """
     instance("points", points, Points, "fastpin.Points")
     material = getattr(problem.pair, choice("body", body, BODIES))
