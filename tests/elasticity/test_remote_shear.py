@@ -30,6 +30,7 @@ from fastpin.solver.solving import solve
 from fastpin.storage.layout import all_loads
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.sliding import solve_sliding
+from tests.support.samples import JOINT
 
 NODES = 240
 CIRCLE = Grid.circle(NODES, -1.5 * math.pi)
@@ -244,15 +245,9 @@ def test_the_chosen_arc_holds_the_contact(titanium_in_aluminium):
 
 # --- files, tables, figures ---------------------------------------------------------------------------------
 
-CASE = """
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.4
+CASE = (
+    JOINT
+    + """
 [[load]]
 P = 1e6
 [[load]]
@@ -266,6 +261,7 @@ csv = "shear.csv"
 [solve]
 nodes = 61
 """
+)
 
 
 @pytest.fixture

@@ -15,6 +15,17 @@ from fastpin.states.state import State
 
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 
+JOINT = """
+[pin]
+material = "Ti-6Al-4V"
+[plate]
+material = "aluminium"
+[contact]
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.4"""
+"""The first sections of a case file. More keys of [contact] may follow."""
+
 
 def sample_result(
     corners: list[dict[str, float]] | None = None,

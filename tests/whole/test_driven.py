@@ -28,6 +28,7 @@ from fastpin.studies.plan import parse_plan
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.sliding import solve_sliding
 from tests.support.programs import assert_same
+from tests.support.samples import JOINT
 
 KINDS = [("centre", "free"), ("centre", "fixed"), ("body", "free")]
 FRETTING = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.3}, {"P": 0.7}, {"Q": -0.1}]
@@ -379,15 +380,9 @@ def test_si_units(titanium_in_aluminium):
     assert result[-1].displacement["ux"] == pytest.approx(0.1 * unit, rel=1e-10)
 
 
-CASE = """
-[pin]
-material = "Ti-6Al-4V"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.4
+CASE = (
+    JOINT
+    + """
 drive = "ux"
 gauge_radius = 15e-3
 hub_radius = 4e-3
@@ -401,6 +396,7 @@ csv = "rig.csv"
 [solve]
 nodes = 61
 """
+)
 
 
 @pytest.fixture
