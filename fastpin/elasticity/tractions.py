@@ -71,6 +71,23 @@ class Tractions:
 
 
 @dataclass(frozen=True, eq=False)
+class RefinedTractions:
+    """Tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`.
+
+    Attributes
+    ----------
+    tractions : Tractions
+        With the force and the moment of the nodal tractions.
+    resolved, unresolved : tuple of float
+        Angles, rad, of the edges and borders with power laws, and of those where straight lines remain.
+    """
+
+    tractions: Tractions
+    resolved: tuple[float, ...]
+    unresolved: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Tree:
     """Blocks of linear pieces with the moments of their tractions, see :mod:`fastpin.kernels.cauchy`."""
 

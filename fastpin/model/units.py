@@ -17,6 +17,7 @@ _SI = {
     "rotation": "rad",
     "stiffness": "N/rad",
     "energy": "J/m",
+    "ratio": "",
 }
 
 _DIMENSIONLESS = {
@@ -28,6 +29,7 @@ _DIMENSIONLESS = {
     "rotation": "F beta*/R",
     "stiffness": "R^2/beta*",
     "energy": "F^2 beta*",
+    "ratio": "",
 }
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
@@ -41,10 +43,10 @@ def units(problem: Problem) -> dict[str, str]:
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     """A factor for `values`, and `unit` with an SI prefix. In this unit the largest value reads well.
 
-    Units of a dimensionless problem, with an F or an R, keep the factor 1 and have no prefix.
+    Ratios, and units of a dimensionless problem, with an F or an R, keep the factor 1 and have no prefix.
     """
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
-    if "F" in unit or unit.startswith("R") or largest == 0.0:
+    if "F" in unit or unit.startswith("R") or unit == "" or largest == 0.0:
         return 1.0, unit
     exponent = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))

@@ -1,5 +1,9 @@
+from .hoop import hoop_peak as hoop_peak
 from .quantities import QUANTITIES as QUANTITIES
+from .refined import refined_tractions as refined_tractions
 from .state import State as State
+from .stress import HoopPeak as HoopPeak
 from .stress import Stress as Stress
+from .stress import check_body as check_body
 from .stress import stress_at as stress_at
 from .stress import tractions_of as tractions_of

@@ -49,6 +49,12 @@ The unit is the size of the quantity (:func:`fastpin.states.quantities.size`) ov
 contact. The floor of int |T| is large: |T| has kinks at earlier borders and where the sign of T changes.
 """
 
+HOOP_FLOOR = 0.2
+"""Floor of the largest hoop stress and of its ratios, in parts of the value over the number of nodes in contact."""
+
+UNRESOLVED = 0.13
+"""Bar of a hoop stress whose peak the nodes do not resolve, in parts of the value."""
+
 ROUNDING = 1e-11
 """Largest relative difference of two equal values, in parts of the size of the quantity.
 
@@ -121,6 +127,9 @@ def _floor(name: str, state: State) -> float:
         peak = abs(QUANTITIES[name].of(state))
         floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
         return floor * max(peak - float(beside.min()), 0.0)
+    if name == "peak_hoop" or kind == "ratio":
+        part = HOOP_FLOOR / closed if state.peak_hoop_stress().resolved else UNRESOLVED
+        return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
         floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR

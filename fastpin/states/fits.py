@@ -1,4 +1,4 @@
-"""Least-squares fits between the nodes: zeros, cusps and corners of a traction.
+"""Least-squares fits between the nodes: zeros, cusps, corners and power laws of a traction.
 
 Beside a contact edge N = x^a (c0 + c1 x + ...), where x is the distance from the edge. Inside a stick zone, beside its
 border, mu N - |T| has the same form. The exponent a is 1/2 for like bodies. For unlike bodies it is a little off 1/2:
@@ -106,6 +106,26 @@ CORNER_BEND = 50.0
 """Least fall from a corner over a node distance, mean of both sides, in standard errors.
 
 Only a corner at the node itself reaches it.
+"""
+
+LAW_WINDOWS = ((2, 6, 1, False), (2, 8, 2, False), (2, 8, 1, True), (2, 12, 2, True), (2, 12, 3, True),
+               (2, 20, 3, True), (4, 30, 3, True))  # fmt: skip
+"""Fits of a power law to try.
+
+Each has the number of nodes left out at the end of the zone, the number of nodes used, the degree of the polynomial,
+and whether the part like x^(a - 2) is fitted too.
+"""
+
+LAW_REACH = 9.0
+"""Part of a zone that a power law describes, in node distances; at most the fitted window."""
+
+LAW_ERROR = 0.02
+"""Largest standard error of the leading coefficient of a power law, in parts of it."""
+
+LAW_OFF = np.array([0.25, 0.11, 0.03, 0.03])
+"""Largest difference of a power law and the values at the four outermost nodes, in parts of the leading coefficient.
+
+Where an earlier border lies between these nodes, the difference is larger. In good fits it is at most half of this.
 """
 
 
@@ -454,3 +474,87 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
             if falling and (best is None or error < best.error):
                 best = Peak(float(coefficients[0]), error, 0.0)
     return best
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A power law at one end of a zone: the real part of x^a (c0 + c1 x + ...), with the distance x from the end.
+
+    Attributes
+    ----------
+    place : float
+        Angle of the end, rad.
+    inwards : int
+        1 if the zone lies at larger angles, otherwise -1.
+    exponent : complex
+        The power a.
+    coefficients : ndarray of complex, shape (degree + 1,)
+        For x in node distances.
+    spacing : float
+        Node distance, rad.
+    reach : float
+        Part of the zone that the law describes, rad.
+    """
+
+    place: float
+    inwards: int
+    exponent: complex
+    coefficients: np.ndarray
+    spacing: float
+    reach: float
+
+    def applies(self, theta: np.ndarray) -> np.ndarray:
+        """Whether each angle, shape (m,), lies in the part of the zone that the law describes."""
+        x = self.inwards * (theta - self.place)
+        return np.asarray((x >= 0.0) & (x <= self.reach))
+
+    def values(self, theta: np.ndarray) -> np.ndarray:
+        """The law at angles in the zone, shape (m,); 0 at its end and beyond."""
+        x = np.maximum(self.inwards * (theta - self.place), 0.0) / self.spacing
+        power = np.exp(self.exponent * np.log(np.maximum(x, 1e-300)))
+        series = np.polynomial.polynomial.polyval(x, self.coefficients)
+        return np.where(x > 0.0, np.real(power * series), 0.0)
+
+
+def law(place: float, exponent: complex, theta: np.ndarray, values: np.ndarray) -> Law | None:
+    """Fit a power law at the end of a zone.
+
+    Parameters
+    ----------
+    place : float
+        Angle of the end, rad.
+    exponent : complex
+        With an imaginary part, the law also has the imaginary part of x^a.
+    theta, values : ndarray, shape (n,)
+        Angles of the nodes of the zone, from this end on, rad; and the values there.
+
+    Returns
+    -------
+    Law or None
+        None if the zone has too few nodes, or if no fit is good enough.
+    """
+    if theta.size < LAW_OFF.size:
+        return None
+    inwards, spacing = (1 if theta[-1] > place else -1), abs(float(theta[1] - theta[0]))
+    x = inwards * (theta - place) / spacing
+    best: tuple[float, np.ndarray, float] | None = None
+    for first, count, degree, decaying in LAW_WINDOWS:
+        window, wanted = x[first : first + count], values[first : first + count]
+        if window.size < count:
+            continue
+        powers = [window ** (exponent + k) for k in range(degree + 1)]
+        parts = [np.imag(powers[0])] * (exponent.imag != 0.0) + [window ** (exponent.real - 2.0)] * decaying
+        coefficients, error = _fit_windows(np.column_stack([*np.real(powers), *parts]), wanted)
+        if best is None or error < best[0]:
+            series = coefficients[: degree + 1].astype(complex)
+            if exponent.imag != 0.0:
+                series[0] -= 1j * coefficients[degree + 1]
+            best = error, series, float(window[-1])
+    if best is None:
+        return None
+    error, series, reach = best
+    found = Law(place, inwards, exponent, series, spacing, spacing * min(LAW_REACH, reach))
+    outermost = slice(LAW_OFF.size)
+    size = min(abs(series[0]), float(np.abs(values[outermost]).max()))
+    off = np.abs(found.values(theta[outermost]) - values[outermost])
+    return found if error <= LAW_ERROR * size and np.all(off <= LAW_OFF * size) else None

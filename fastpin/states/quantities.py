@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.states.state import State
 from fastpin.states.zones import Interval, is_all_round
+
+if TYPE_CHECKING:  # this module imports compiled code
+    from fastpin.states.stress import HoopPeak
 
 
 class Quantity(NamedTuple):
@@ -44,6 +47,15 @@ def _integral(state: State, traction: np.ndarray) -> float:
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
+def _hoop(read: Callable[[HoopPeak], float]) -> Callable[[State], float]:
+    """A reading of the largest hoop stress of the plate; NaN for a rigid plate."""
+
+    def of(state: State) -> float:
+        return math.nan if state.problem.pair.plate.is_rigid else read(state.peak_hoop_stress())
+
+    return of
+
+
 QUANTITIES: dict[str, Quantity] = {
     "peak_pressure": Quantity("peak N", "traction", lambda state: state.peak_pressure),
     "peak_pressure_angle": Quantity("peak N at", "angle", lambda state: state.peak_pressure_angle),
@@ -62,8 +74,15 @@ QUANTITIES: dict[str, Quantity] = {
     "shear_magnitude": Quantity("int |T|", "force", lambda state: _integral(state, np.abs(state.shear))),
     "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation),
     "work": Quantity("work", "energy", lambda state: state.work),
+    "peak_hoop": Quantity("peak hoop", "traction", _hoop(lambda peak: peak.value)),
+    "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle)),
+    "kt_gross": Quantity("Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross)),
+    "kt_bearing": Quantity("Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing)),
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
+
+"peak_hoop" is the largest hoop stress of the plate round the hole, "kt_gross" and "kt_bearing" are its ratios to the
+remote stress and to the bearing stress, see :class:`fastpin.states.HoopPeak`. All are NaN for a rigid plate.
 
 A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",
 "stick_1_start" and so on. They are angles in rad, counted along +theta, in the order of :attr:`State.contact` and
@@ -139,6 +158,7 @@ def size(name: str, state: State) -> float:
         "force": force,
         "moment": problem.hole_radius * force,
         "energy": problem.hole_radius * strain * force,
+        "ratio": 1.0,
     }[quantity(name).kind]
 
 

@@ -19,11 +19,11 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
-from fastpin.states.zones import Interval
+from fastpin.states.zones import Interval, runs
 
 if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a stress is asked for
-    from fastpin.elasticity.tractions import Tractions
-    from fastpin.states.stress import Stress
+    from fastpin.elasticity.tractions import RefinedTractions, Tractions
+    from fastpin.states.stress import HoopPeak, Stress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -139,12 +139,12 @@ class State:
         The pressure is extrapolated to zero, see :mod:`fastpin.states.fits`. A contact round the whole circle is one
         interval of length 2 pi.
         """
-        return zones.in_order(self._contact)
+        return zones.in_order(self.contact_in_runs)
 
     @cached_property
-    def _contact(self) -> list[Interval]:
+    def contact_in_runs(self) -> list[Interval]:
         """The contact intervals of the runs of closed nodes, in their order and in the turns of the grid."""
-        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_exponents, self._sticking)
+        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self.contact_exponents, self._sticking)
 
     @cached_property
     def stick(self) -> list[Interval]:
@@ -157,16 +157,21 @@ class State:
 
     @cached_property
     def _stick(self) -> list[Interval]:
-        """The stick intervals of the runs of sticking nodes, in their order; inside the intervals of `_contact`."""
+        """The stick intervals of the runs of sticking nodes, in their order; inside the contact."""
         closed = self.status != OPEN
         return zones.stick_intervals(
-            self.grid, self._sticking, self._reserve, closed, self._contact, self._stick_exponents
+            self.grid, self._sticking, self._reserve_beside, closed, self.contact_in_runs, self.stick_exponents
         )
+
+    @cached_property
+    def stick_runs(self) -> list[tuple[np.ndarray, Interval]]:
+        """The runs of sticking nodes, in their order, each with its interval in the turns of the grid."""
+        return list(zip(runs(self.grid, self._sticking), self._stick, strict=True))
 
     @cached_property
     def slip_zones(self) -> list[tuple[float, float, int]]:
         """Slip zones (start, stop, sign), rad: the parts of the contact that do not stick, and the sign of the slip."""
-        return zones.in_order(zones.complement(self.grid, self._contact, self._stick, self.status))
+        return zones.in_order(zones.complement(self.grid, self.contact_in_runs, self._stick, self.status))
 
     @property
     def peak_pressure(self) -> float:
@@ -210,19 +215,37 @@ class State:
         """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
         return math.atan(self.problem.friction * self.problem.pair.dundurs()[1]) / math.pi
 
-    def _contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
+    def contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
         first, last = self.status[run[[0, -1]]]
         return 0.5 - self._tilt * float(first), 0.5 + self._tilt * float(last)
 
-    def _stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
+    def stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26)."""
+        before, after = self.signs_beside(run)
+        return 0.5 - self._tilt * before, 0.5 + self._tilt * after
+
+    def signs_beside(self, run: np.ndarray) -> tuple[int, int]:
+        """Signs of the shear traction before and after the stick zone of the nodes `run`; 0 beside an open node."""
         before, after = np.sign(self.shear[[run[0] - 1, (run[-1] + 1) % self.shear.size]])
-        return 0.5 - self._tilt * float(before), 0.5 + self._tilt * float(after)
+        return int(before), int(after)
 
     @cached_property
     def _reserve(self) -> np.ndarray:
         return self.problem.friction * self.pressure - np.abs(self.shear)
+
+    @cached_property
+    def _reserve_beside(self) -> np.ndarray:
+        """The reserve beside the start and beside the stop of each stick zone, shape (2, n).
+
+        It is mu N - s T, where s T = mu N in the slip zone beside. So it has no kink where T changes its sign.
+        """
+        reserve = np.array([self._reserve, self._reserve])
+        for run in runs(self.grid, self._sticking):
+            for values, sign in zip(reserve, self.signs_beside(run), strict=True):
+                if sign != 0:
+                    values[run] = self.problem.friction * self.pressure[run] - sign * self.shear[run]
+        return reserve
 
     @cached_property
     def _sticking(self) -> np.ndarray:
@@ -246,7 +269,12 @@ class State:
     def _tractions(self) -> Tractions:
         return states.tractions_of(self.grid, self.status, self.pressure, self.shear)
 
-    def stress(self, points: Points, body: Body = "plate") -> Stress:
+    @cached_property
+    def refined(self) -> RefinedTractions:
+        """The tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`."""
+        return states.refined_tractions(self)
+
+    def stress(self, points: Points, body: Body = "plate", straight: bool = False) -> Stress:
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
 
         The remote stress, the force on the pin and the moment at its centre are included.
@@ -255,15 +283,19 @@ class State:
         ----------
         points : Points
         body : {"plate", "pin"}
+        straight : bool
+            Whether the tractions are straight lines between the nodes everywhere. Otherwise they follow power laws at
+            contact edges and stick-slip borders, see :attr:`refined`.
 
         Raises
         ------
         InputError
             If a point lies outside the body, where the stress is infinite, or if the body is rigid.
         """
-        return states.stress_at(self.problem, self._tractions, self.load, points, body)
+        tractions = self._tractions if straight else self.refined.tractions
+        return states.stress_at(self.problem, tractions, self.load, points, body)
 
-    def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None) -> np.ndarray:
+    def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
         """The hoop stress on the edge of the hole or of the pin, Pa; tension is positive.
 
         Parameters
@@ -271,13 +303,34 @@ class State:
         body : {"plate", "pin"}
         theta : array_like, optional
             Angles, rad; the nodes unless given.
+        straight : bool
+            As for :meth:`stress`.
 
         Raises
         ------
         InputError
             If an angle is no finite number, or the body is rigid.
         """
-        return self.stress(Points.at_depth(0.0, self.theta if theta is None else theta), body).hoop
+        return self.stress(Points.at_depth(0.0, self.theta if theta is None else theta), body, straight).hoop
+
+    def peak_hoop_stress(self, body: Body = "plate") -> HoopPeak:
+        """The largest hoop stress round the hole or the pin, its place, and the stress concentrations.
+
+        Raises
+        ------
+        InputError
+            If the body is rigid.
+        """
+        states.check_body(self.problem, body)
+        return self._plate_peak if body == "plate" else self._pin_peak
+
+    @cached_property
+    def _plate_peak(self) -> HoopPeak:
+        return states.hoop_peak(self, "plate")
+
+    @cached_property
+    def _pin_peak(self) -> HoopPeak:
+        return states.hoop_peak(self, "pin")
 
     @property
     def displacement(self) -> dict[str, float]:

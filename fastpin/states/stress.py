@@ -1,7 +1,8 @@
-"""The stress at points of pin or plate, with its components and invariants."""
+"""The stress at points of pin or plate, with its components and invariants, and the largest hoop stress."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +16,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.checks import choice, instance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.materials import Material
 from fastpin.model.points import BODIES, Body, Points
 from fastpin.model.problem import Problem
 from fastpin.states.zones import runs, unrolled
@@ -87,6 +89,62 @@ class Stress:
         return 0.5 * (self.radial - self.hoop)
 
 
+@dataclass(frozen=True)
+class HoopPeak:
+    """The largest hoop stress round the hole or the pin, and the stresses of the joint.
+
+    Attributes
+    ----------
+    value : float
+        Pa; tension is positive.
+    angle : float
+        Its place, rad.
+    resolved : bool
+        False if the peak is, or may be, at a place that the nodes do not resolve: at an edge or a border beside an
+        earlier border, or at an earlier border itself. The value may then be some percent too low.
+    bearing_stress : float
+        Force on the pin over the projected area, F/(2 R), Pa.
+    gross_stress : float
+        Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin.
+    bypass : float
+        Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin.
+    """
+
+    value: float
+    angle: float
+    resolved: bool
+    bearing_stress: float
+    gross_stress: float
+    bypass: float
+
+    @property
+    def kt_gross(self) -> float:
+        """The peak over the gross remote stress; NaN without remote stress."""
+        return _over(self.value, self.gross_stress)
+
+    @property
+    def kt_bearing(self) -> float:
+        """The peak over the bearing stress; NaN without a force on the pin."""
+        return _over(self.value, self.bearing_stress)
+
+    @property
+    def kt_bypass_part(self) -> float:
+        """The open hole's part of the peak over the gross remote stress; NaN without remote stress.
+
+        peak = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress.
+        """
+        return _over(self.bypass, self.gross_stress)
+
+    @property
+    def kt_bearing_part(self) -> float:
+        """The rest of the peak, which the pin causes, over the bearing stress; NaN without a force on the pin."""
+        return _over(self.value - self.bypass, self.bearing_stress)
+
+
+def _over(one: float, other: float) -> float:
+    return one / other if other != 0.0 else math.nan
+
+
 def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np.ndarray) -> Tractions:
     """The piecewise linear tractions of nodal values, shape (n,): one patch for each run of closed nodes."""
     closed, n, patches = status != OPEN, grid.size, []
@@ -100,15 +158,27 @@ def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np
     return Tractions(tuple(patches))
 
 
+def check_body(problem: Problem, body: Body) -> Material:
+    """The material of a body that has a stress.
+
+    Raises
+    ------
+    InputError
+        If `body` is no body, or the body is rigid.
+    """
+    material: Material = getattr(problem.pair, choice("body", body, BODIES))
+    if material.is_rigid:
+        raise InputError("body", f"the {body} is rigid: its stress is not determined")
+    return material
+
+
 def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float], points: Points, body: Body) -> Stress:
     """The stress at points of a body; see :meth:`fastpin.State.stress`, also for the errors.
 
     `tractions` are in Pa. Of the `load` by name, the remote stress acts on the plate.
     """
     instance("points", points, Points, "fastpin.Points")
-    material = getattr(problem.pair, choice("body", body, BODIES))
-    if material.is_rigid:
-        raise InputError("body", f"the {body} is rigid: its stress is not determined")
+    material = check_body(problem, body)
     depth, theta = points.depths(problem, body).ravel(), points.theta.ravel()
     if body == "pin" and problem.pin_load == "centre" and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")

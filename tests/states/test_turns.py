@@ -68,7 +68,7 @@ def test_an_arc_may_lie_whole_turns_away(
     assert read(away) == pytest.approx(read(near), abs=1e-7)
     assert away.error_bars is not None
     assert near.error_bars is not None
-    assert dict(away.error_bars) == pytest.approx(dict(near.error_bars), abs=1e-6, nan_ok=True)
+    assert dict(away.error_bars) == pytest.approx(dict(near.error_bars), abs=5e-5, nan_ok=True)
 
 
 @pytest.mark.parametrize("arc", [(5.0, 8.0), (-9.0, -6.0), (3.3, 6.2)])
@@ -164,5 +164,5 @@ def test_sticking_nodes_of_the_example(problem: Problem) -> None:
     for state in solve(case.problem, case.history, nodes=101):
         check_order(state)
         assert np.any(state.status == STICK)
-        assert state.contact == state._contact
+        assert state.contact == state.contact_in_runs
         assert state.stick == state._stick

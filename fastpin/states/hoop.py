@@ -1,0 +1,90 @@
+"""The largest hoop stress round hole and pin, and stress concentrations."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fastpin.kernels.status import OPEN
+from fastpin.model.angles import angle_between, near_bottom
+from fastpin.model.points import Body
+from fastpin.states.state import State
+from fastpin.states.stress import HoopPeak
+
+AROUND = 180
+"""Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
+
+TIE = 1e-9
+"""Relative difference below which two peaks are equal. Of equal peaks the one farthest to the right is taken."""
+
+TRIED = 4
+"""Local maxima beside which the peak is looked for."""
+
+ZOOMS, ZOOMED = 3, 21
+"""Rounds of the search beside a local maximum, and the number of angles in each."""
+
+NEAR = 2.0
+"""Distance from an unresolved place, in node distances, within which a peak belongs to it."""
+
+MISSED = 0.13
+"""Largest part of the hoop stress at an edge that straight lines between the nodes miss, with 101 nodes or more."""
+
+SHARP = 0.45
+"""Drop beside a peak over two node distances, in parts of the drop over four, from which on the peak is a cusp.
+
+A parabola has 0.25, a straight line 0.5, a root 0.71.
+"""
+
+
+def hoop_peak(state: State, body: Body) -> HoopPeak:
+    """The largest hoop stress on the edge of a body that is not rigid."""
+    around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
+    closed = state.theta[state.status != OPEN]
+    between = closed + 0.5 * state.grid.weights[state.status != OPEN]
+    angles = np.r_[around, closed, between, state.refined.resolved, state.refined.unresolved]
+    angles = np.unique(np.remainder(angles, 2.0 * math.pi))
+    values = state.hoop_stress(body, angles)
+    before, after = np.roll(values, 1), np.roll(values, -1)
+    tops = np.flatnonzero((values >= before) & (values >= after))
+    found = [_highest(state, body, angles, int(top)) for top in tops[np.argsort(-values[tops])[:TRIED]]]
+    largest = max(value for value, _ in found)
+    value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
+    force = math.hypot(state.resultants["P"], state.resultants["Q"])
+    bearing, gross, bypass = force / (2.0 * state.problem.hole_radius), 0.0, 0.0
+    if body == "plate":
+        sxx, syy, sxy = (state.load[name] for name in ("sxx", "syy", "sxy"))
+        mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
+        gross = mean + math.copysign(radius, mean)
+        bypass = 2.0 * mean - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
+    return HoopPeak(value, angle, _is_resolved(state, body, value, angle), bearing, gross, bypass)
+
+
+def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[float, float]:
+    """The largest hoop stress between the neighbours of the angle `top`, and its place."""
+    angle = float(angles[top])
+    value = float(state.hoop_stress(body, [angle])[0])
+    low, high = (float(angle_between(angles[(top + side) % angles.size], angle)) for side in (-1, 1))
+    for _ in range(ZOOMS):
+        tried = angle + np.linspace(low, high, ZOOMED)
+        values = state.hoop_stress(body, tried)
+        if values.max() > value:
+            value, angle = float(values.max()), float(tried[np.argmax(values)])
+        low, high = 2.0 / ZOOMED * low, 2.0 / ZOOMED * high
+    return value, near_bottom(angle)
+
+
+def _is_resolved(state: State, body: Body, value: float, angle: float) -> bool:
+    """Whether power laws describe the peak, and no place without a law may have a higher one."""
+    spacing = float(state.grid.weights.max())
+    refined = state.refined
+    if refined.unresolved:
+        places = np.array(refined.unresolved)
+        missed = state.hoop_stress(body, places) >= (1.0 - MISSED) * value
+        if np.any(missed | (np.abs(angle_between(places, angle)) < NEAR * spacing)):
+            return False
+    if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):
+        return True
+    around = state.hoop_stress(body, angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
+    drops = value - around
+    return not any(drops[near] > SHARP * drops[far] for near, far in ((1, 0), (2, 3)) if drops[far] > 1e-3 * abs(value))

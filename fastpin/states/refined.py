@@ -1,0 +1,307 @@
+"""Tractions refined at contact edges and stick-slip borders, where they go like a root of the distance.
+
+Straight lines between the nodes give the hoop stress at these places to O(sqrt(h)) only. So the tractions near them are
+taken from power laws in the distance x, which are fitted to the nodes (:func:`fastpin.states.fits.law`):
+
+* N beside a contact edge, with the exponents (T21);
+* mu N - s T on the stick side of a border, with the exponents (T26), where T = s mu N in the slip zone;
+* T beside a contact edge that sticks.
+
+Nothing is fitted inside a slip zone: there T = s mu N. So a slip zone may be as narrow as a node distance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from fastpin.elasticity.tractions import RefinedTractions, Tractions
+from fastpin.kernels.status import OPEN
+from fastpin.states import fits
+from fastpin.states.fits import Law
+from fastpin.states.state import State
+from fastpin.states.zones import is_all_round, runs, unrolled
+
+PIECES = 60
+"""Linear pieces of a power law. Their ends gather at the edge like the fourth power of equal steps."""
+
+EXCESS = 1.1
+"""Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""
+
+BOTH_ENDS = (slice(None), slice(None, None, -1))
+"""Order of the nodes of a zone, from its start and from its stop."""
+
+
+@dataclass(frozen=True, eq=False)
+class Zone:
+    """A stick zone of a patch. Pairs belong to its start and its stop.
+
+    Attributes
+    ----------
+    ends : (float, float)
+        Angles, rad.
+    nodes : ndarray of int
+        Places of its nodes in the patch.
+    signs : (int, int)
+        Sign of T in the slip zone beside each end; 0 at the edge of the contact.
+    exponents : (float, float)
+        Of mu N - |T|, (T26).
+    """
+
+    ends: tuple[float, float]
+    nodes: np.ndarray
+    signs: tuple[int, int]
+    exponents: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """One contact interval. Pairs belong to its start and its stop.
+
+    Attributes
+    ----------
+    theta : ndarray, shape (n,)
+        Angles of its nodes, rad, increasing.
+    pressure, shear : ndarray, shape (n,)
+        Nodal tractions.
+    edges, outside : (float, float)
+        The edges, and the open nodes beyond, rad. All round they are the same place.
+    exponents : (float, float) or None
+        Of the pressure at the edges, (T21); None all round.
+    stick : tuple of Zone
+        Its stick zones, in order.
+    friction, beta : float
+        Friction coefficient, and Dundurs' second parameter in the usual sign.
+    """
+
+    theta: np.ndarray
+    pressure: np.ndarray
+    shear: np.ndarray
+    edges: tuple[float, float]
+    outside: tuple[float, float]
+    exponents: tuple[float, float] | None
+    stick: tuple[Zone, ...]
+    friction: float
+    beta: float
+
+
+@dataclass(frozen=True, eq=False)
+class Laws:
+    """The power laws of a patch.
+
+    Attributes
+    ----------
+    pressure : tuple of (Law or None)
+        Of N at both edges; None where the nodes show no law. Empty all round.
+    borders : list of (Law, int)
+        Of mu N - s T at the borders, with the sign s.
+    sticking : list of Law
+        Of T at edges that stick.
+    unresolved : list of float
+        Angles of edges and borders without a law, rad.
+    """
+
+    pressure: tuple[Law | None, ...]
+    borders: list[tuple[Law, int]]
+    sticking: list[Law]
+    unresolved: list[float]
+
+    @property
+    def all(self) -> list[Law]:
+        """All laws."""
+        return [*(law for law in self.pressure if law is not None), *(law for law, _ in self.borders), *self.sticking]
+
+
+def refined_tractions(state: State) -> RefinedTractions:
+    """Refine the tractions of a state at its contact edges and stick-slip borders."""
+    arrays: list[np.ndarray] = []
+    resolved: list[float] = []
+    unresolved: list[float] = []
+    for patch in _patches(state):
+        pressure = _pressure_laws(patch)
+        zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
+        hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
+        laws = _laws(replace(patch, stick=zones), pressure)
+        arrays.append(_refined(replace(patch, stick=zones), laws))
+        resolved += [law.place for law in laws.all]
+        unresolved += laws.unresolved + hidden
+    moment = float(state.grid.weights @ state.shear)
+    excess = sum(float(np.trapezoid(array[:, 2], array[:, 0])) for array in arrays) - moment
+    total = sum(float(np.trapezoid(array[:, 1], array[:, 0])) for array in arrays)
+    for array in arrays:  # otherwise the errors of the fits would be a moment at the pin's centre
+        array[:, 2] -= excess / total * array[:, 1]
+    return RefinedTractions(Tractions(tuple(arrays)), tuple(resolved), tuple(unresolved))
+
+
+def _pressure_laws(patch: Patch) -> tuple[Law | None, ...]:
+    if patch.exponents is None:
+        return ()
+    return tuple(
+        fits.law(edge, exponent, patch.theta[order], patch.pressure[order])
+        for edge, exponent, order in zip(patch.edges, patch.exponents, BOTH_ENDS, strict=True)
+    )
+
+
+def _with_hidden_slip(patch: Patch, zone: Zone, pressure: tuple[Law | None, ...]) -> Zone:
+    """A stick zone with the slip zone at an edge that is narrower than the node distance.
+
+    There all nodes stick, and T at the edge would exceed mu N.
+    """
+    for k, order in enumerate(BOTH_ENDS):
+        law = pressure[k] if pressure else None
+        if zone.signs[k] == 0 and law is not None and patch.beta == 0.0:
+            nodes = zone.nodes[order]
+            theta, shear = patch.theta[nodes], patch.shear[nodes]
+            of_shear = fits.law(law.place, law.exponent, theta, shear)
+            steepest = patch.friction * law.coefficients[0].real
+            if of_shear is None or abs(of_shear.coefficients[0].real) < EXCESS * steepest:
+                continue
+            sign = int(np.sign(of_shear.coefficients[0].real))
+            reserve = patch.friction * patch.pressure[nodes] - sign * shear
+            border = fits.edge(theta, reserve, zone.exponents[k], law.place, nodes.size)
+            one, two = (border, zone.ends[1]) if k == 0 else (zone.ends[0], border)
+            first, second = (sign, zone.signs[1]) if k == 0 else (zone.signs[0], sign)
+            zone = replace(zone, ends=(one, two), signs=(first, second))
+    return zone
+
+
+def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
+    """The laws of a patch."""
+    laws = Laws(pressure, [], [], [edge for edge, law in zip(patch.edges, pressure, strict=False) if law is None])
+    for zone in patch.stick:
+        for k, order in enumerate(BOTH_ENDS):
+            nodes, place, sign = zone.nodes[order], zone.ends[k], zone.signs[k]
+            if sign != 0:
+                reserve = patch.friction * patch.pressure[nodes] - sign * patch.shear[nodes]
+                found = fits.law(place, zone.exponents[k], patch.theta[nodes], reserve)
+                if found is not None:
+                    laws.borders.append((found, sign))
+            elif patch.exponents is not None:
+                exponent = patch.exponents[k] + 1j * math.atanh(patch.beta) / math.pi
+                found = fits.law(place, exponent, patch.theta[nodes], patch.shear[nodes])
+                if found is not None:
+                    laws.sticking.append(found)
+            else:
+                continue  # it sticks all round
+            if found is None:
+                laws.unresolved.append(place)
+    return laws
+
+
+def _refined(patch: Patch, laws: Laws) -> np.ndarray:
+    """Angle, pressure and shear of the refined patch, shape (m, 3)."""
+    graded = [_graded(law) for law in laws.all]
+    if patch.beta != 0.0:
+        graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
+    nodes, values = _with_ends(patch, laws.pressure)
+    theta = np.unique(np.r_[nodes, *graded])
+    theta = theta[(theta >= nodes[0]) & (theta <= nodes[-1])]
+    pressure, shear = np.interp(theta, nodes, values[0]), np.interp(theta, nodes, values[1])
+    for law, sign in laws.borders:
+        pressure += _pressure_cusp(law, sign * patch.beta, theta, nodes)
+    for edge_law in laws.pressure:
+        if edge_law is not None:
+            near = edge_law.applies(theta)
+            pressure[near] = edge_law.values(theta[near])
+    for start, stop, sign in _slip_zones(patch):
+        inside = (theta >= start) & (theta <= stop)
+        shear[inside] = sign * patch.friction * pressure[inside]
+    for law, sign in laws.borders:
+        near = law.applies(theta)
+        shear[near] = sign * (patch.friction * pressure[near] - law.values(theta[near]))
+    for law in laws.sticking:
+        near = law.applies(theta)
+        shear[near] = law.values(theta[near])
+    refined_patch = np.column_stack([theta, pressure, shear])
+    refined_patch[-1, 1:] = 0.0 if patch.exponents is not None else refined_patch[0, 1:]
+    if patch.exponents is not None:
+        refined_patch[0, 1:] = 0.0
+    return refined_patch
+
+
+def _graded(law: Law) -> np.ndarray:
+    """Angles in the reach of a law that gather at its end, rad."""
+    return law.place + law.inwards * law.reach * np.linspace(0.0, 1.0, PIECES + 1) ** 4
+
+
+def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Angles and tractions (2, n + k) of the nodes and of the ends of the patch, where the tractions are zero.
+
+    An end without a law is the open node beyond the edge. All round, the first node follows once more.
+    """
+    values = np.array([patch.pressure, patch.shear])
+    if patch.exponents is None:
+        return np.r_[patch.theta, patch.theta[0] + 2.0 * math.pi], np.column_stack([values, values[:, 0]])
+    start, stop = (
+        edge if law is not None else outside
+        for edge, outside, law in zip(patch.edges, patch.outside, pressure, strict=True)
+    )
+    return np.r_[start, patch.theta, stop], np.pad(values, ((0, 0), (1, 1)))
+
+
+def _pressure_cusp(law: Law, coupling: float, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """The part of a cusp of N that straight lines between the `nodes` miss, on the slip side of a border.
+
+    Of unlike bodies N has the cusp -+ s beta c0 sin(pi a) x^a there, if mu N - s T begins with c0 x^a (T26). The
+    `coupling` is s beta. The upper sign holds where the stick zone lies at larger angles.
+    """
+    exponent = law.exponent.real
+    height = -law.inwards * coupling * float(law.coefficients[0].real) * math.sin(math.pi * exponent)
+
+    def cusp(angles: np.ndarray) -> np.ndarray:
+        beyond = np.maximum(-law.inwards * (angles - law.place), 0.0) / law.spacing
+        return np.asarray(height * beyond**exponent)
+
+    missed = cusp(theta) - np.interp(theta, nodes, cusp(nodes))
+    return np.where(np.abs(theta - law.place) < 2.0 * law.reach, missed, 0.0)
+
+
+def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:
+    """Slip zones of a patch, with one sign of T each: start, stop and the sign."""
+    if not patch.stick:
+        signs = np.sign(patch.shear)
+        if np.all(signs == signs[0]):
+            yield *patch.edges, int(signs[0])
+        return
+    first, last = patch.stick[0], patch.stick[-1]
+    yield patch.edges[0], first.ends[0], first.signs[0]
+    for before, after in pairwise(patch.stick):
+        if before.signs[1] == after.signs[0]:
+            yield before.ends[1], after.ends[0], before.signs[1]
+    yield last.ends[1], patch.edges[1], last.signs[1]
+
+
+def _patches(state: State) -> Iterator[Patch]:
+    """The contact intervals of a state. All round, the first node is one that sticks."""
+    grid, sticking = state.grid, state.stick_runs
+    left, right = grid.knots()
+    for run, edges in zip(runs(grid, state.status != OPEN), state.contact_in_runs, strict=True):
+        whole = is_all_round(edges[1] - edges[0])
+        exponents = None if whole else state.contact_exponents(run)
+        if whole and sticking:
+            run = np.roll(run, -int(np.flatnonzero(run == sticking[0][0][0])[0]))
+        theta = unrolled(grid, run)
+        if whole:
+            edges = float(theta[0]), float(theta[0]) + 2.0 * math.pi
+        before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
+        yield Patch(
+            theta, state.pressure[run], state.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
+            _zones(state, run, theta), state.problem.friction, state.problem.pair.dundurs()[1],
+        )  # fmt: skip
+
+
+def _zones(state: State, run: np.ndarray, theta: np.ndarray) -> tuple[Zone, ...]:
+    """The stick zones in the contact of the nodes `run`, which are at the angles `theta`."""
+    places = np.full(state.grid.size, -1)
+    places[run] = np.arange(run.size)
+    zones = []
+    for nodes, ends in state.stick_runs:
+        if places[nodes[0]] >= 0:
+            turn = 2.0 * math.pi * round((theta[places[nodes[0]]] - ends[0]) / (2.0 * math.pi))
+            moved = ends[0] + turn, ends[1] + turn
+            zones.append(Zone(moved, places[nodes], state.signs_beside(nodes), state.stick_exponents(nodes)))
+    return tuple(zones)

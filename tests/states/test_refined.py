@@ -1,0 +1,218 @@
+"""Tractions refined at edges and borders: power laws, peaks of the hoop stress, and what is not resolved."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from fastpin import Grid, InputError, Material, MaterialPair, Problem, solve
+from fastpin.kernels.status import OPEN
+from fastpin.states import fits
+
+LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
+UNLIKE = MaterialPair(Material(3.0, 0.3), Material(1.0, 0.33))
+BOTTOM = -0.5 * math.pi
+FRETTING = [{"P": 1.0}, {"Q": 0.275}, {"Q": -0.275}, {"Q": 0.275}]
+
+
+def problem(pair=LIKE, load_parameter=0.05, friction=0.55):
+    return Problem.from_load_parameter(pair, load_parameter, friction, "body")
+
+
+# --- power laws -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("exponent", [0.5, 0.43, 0.57, 0.5 + 0.05j])
+@pytest.mark.parametrize("inwards", [1, -1])
+def test_a_law_is_found_from_its_values(exponent, inwards):
+    x = 0.01 * (0.37 + np.arange(30))
+    values = np.real(x**exponent * (2.0 - 0.5 * x + 3.0 * x**2))
+    law = fits.law(0.7, exponent, 0.7 + inwards * x, values)
+    between = np.linspace(0.0, law.reach, 50)[1:]
+    exact = np.real(between**exponent * (2.0 - 0.5 * between + 3.0 * between**2))
+    tolerance = 1e-8 if isinstance(exponent, float) else 1e-3
+    assert law.values(0.7 + inwards * between) == pytest.approx(exact, rel=tolerance)
+    assert law.applies(0.7 + inwards * np.array([-0.01, 0.01, law.reach + 0.01])).tolist() == [False, True, False]
+    assert law.values(np.array([0.7, 0.7 - inwards * 0.1])).tolist() == [0.0, 0.0]
+
+
+def test_no_law_is_taken_across_the_cusp_of_an_earlier_border():
+    x = 0.37 + np.arange(30)
+    for place in (1.5, 2.5, 4.0):
+        kinked = 0.1 * np.sqrt(x) + np.sqrt(np.maximum(x - place, 0.0))
+        assert fits.law(0.0, 0.5, x, kinked) is None
+    assert fits.law(0.0, 0.5, x, np.sqrt(x)) is not None
+    assert fits.law(0.0, 0.5, x[:3], np.sqrt(x[:3])) is None
+
+
+# --- table of peaks -------------------------------------------------------------------------------------------
+
+EDGES = [
+    ([0.7755, 0.7755], [-0.3518, -0.3518]),
+    ([0.8049, 0.6295], [-0.3504, -0.1750]),
+    ([0.6053, 0.8058], [-0.1356, -0.3360]),
+    ([None, 0.6216], [None, -0.1530]),
+]
+"""Hoop stress at the left and right edge, plate and pin, in F/R, from another program, good to 3e-4."""
+
+
+@pytest.fixture(scope="module", params=[401, 801])
+def states(request):
+    return solve(problem(), FRETTING, nodes=request.param)
+
+
+@pytest.mark.parametrize("step", range(4))
+def test_hoop_stress_at_the_edges(states, step):
+    state = states[step]
+    for body, expected in zip(("plate", "pin"), EDGES[step], strict=True):
+        found = state.hoop_stress(body, state.contact[0])
+        for value, known in zip(found, expected, strict=True):
+            if known is not None:
+                assert value == pytest.approx(known, abs=3e-4)
+
+
+def test_a_slip_zone_of_half_a_degree(states):
+    """The peak lies at the border, not at the edge; both values hold for any number of nodes."""
+    state = states[3]
+    peak = state.peak_hoop_stress()
+    (start, _), border = state.contact[0], state.stick[0][0]
+    assert 0.44 < math.degrees(border - start) < 0.47
+    assert peak.angle == pytest.approx(border, abs=1e-4)
+    assert peak.value == pytest.approx(0.7448, abs=4e-4)
+    assert state.hoop_stress("plate", [start]) == pytest.approx([0.6750], abs=3e-4)
+    assert state.hoop_stress("pin", [start]) == pytest.approx([-0.2063], abs=3e-4)
+
+
+def test_straight_lines_miss_a_part_of_the_peak(states):
+    state = states[1]
+    assert state.hoop_stress("plate", straight=True).max() < 0.98 * state.peak_hoop_stress().value
+
+
+def test_a_slip_zone_narrower_than_the_nodes_is_seen():
+    """All nodes stick on the coarse grid, with T above mu N at the edge: the slip zone is between the nodes."""
+    state = solve(problem(), FRETTING, nodes=201)[3]
+    assert state.stick[0][0] == state.contact[0][0]
+    assert state.peak_hoop_stress().value == pytest.approx(0.7448, abs=0.04)
+    assert not state.peak_hoop_stress().resolved
+
+
+@pytest.mark.slow
+def test_peaks_of_random_states_converge():
+    """Against four times as many nodes; narrow slip zones and unlike bodies among them."""
+    errors = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        friction = rng.uniform(0.2, 0.8)
+        case = problem(LIKE if seed % 2 else UNLIKE, 10.0 ** rng.uniform(-1.5, -0.3), friction)
+        pull = friction * rng.uniform(0.3, 0.7)
+        history = [{"P": 1.0}, {"Q": pull, "sxx": 0.1 * (seed % 3)}, {"Q": -0.8 * pull, "sxx": 0.0}]
+        found, reference = (solve(case, history, nodes=nodes)[-1].peak_hoop_stress() for nodes in (401, 1601))
+        if found.resolved and reference.resolved:
+            errors.append(abs(found.value / reference.value - 1.0))
+    assert len(errors) >= 6
+    assert max(errors) < 1e-3
+
+
+# --- what holds for all states --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("pair", [LIKE, UNLIKE])
+def test_refined_tractions_obey_coulomb_and_keep_the_loads(pair):
+    for state in solve(problem(pair), FRETTING, nodes=301):
+        patch = state.refined.tractions.patches[0]
+        theta, pressure, shear = patch.T
+        assert np.all(np.diff(theta) > 0.0)
+        assert np.all(pressure >= 0.0)
+        assert np.all(np.abs(shear) <= 0.55 * pressure + 2e-3 * state.peak_pressure)
+        assert abs(np.trapezoid(shear, theta)) < 1e-14
+        coarse = state.resultants
+        cos, sin = np.cos(theta), np.sin(theta)
+        force = {"P": cos * shear - sin * pressure, "Q": sin * shear + cos * pressure}
+        for name, density in force.items():
+            assert np.trapezoid(density, theta) == pytest.approx(coarse[name], abs=2e-4)
+        nodes = np.flatnonzero(state.status != OPEN)
+        inner = nodes[25:-25]
+        assert np.interp(state.theta[inner], theta, pressure) == pytest.approx(state.pressure[inner], rel=5e-3)
+
+
+def test_mirrored_loads_have_mirrored_peaks():
+    one = solve(problem(UNLIKE), [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.2}], nodes=301)[-1]
+    two = solve(problem(UNLIKE), [{"P": 1.0}, {"Q": -0.3}, {"Q": 0.2}], nodes=301)[-1]
+    for body in ("plate", "pin"):
+        a, b = one.peak_hoop_stress(body), two.peak_hoop_stress(body)
+        assert a.value == pytest.approx(b.value, abs=1e-5)
+        assert a.angle - BOTTOM == pytest.approx(BOTTOM - b.angle, abs=1e-5)
+
+
+def test_a_contact_all_round_and_a_contact_across_the_first_node():
+    fit = Problem.from_load_parameter(LIKE, -0.1, 0.3, "body")
+    for state in solve(fit, [{"P": 0.1}, {"Q": 0.05}, {"sxx": 0.3}], nodes=241):
+        refined = state.refined
+        assert np.isfinite(state.hoop_stress()).all()
+        if refined.tractions.all_round:
+            assert refined.tractions.patches[0][0, 1:] == pytest.approx(refined.tractions.patches[0][-1, 1:])
+    one, two = (
+        solve(problem(), FRETTING[:2], grid=Grid.circle(288, BOTTOM - turned))[-1].peak_hoop_stress()
+        for turned in (0.0, math.pi)
+    )
+    assert one.value == pytest.approx(two.value, rel=1e-9)
+    assert one.angle == pytest.approx(two.angle, abs=1e-9)
+
+
+def test_two_contacts_and_coarse_grids():
+    """Narrow contacts have no power laws. They keep the straight lines between the nodes."""
+    state = solve(problem(), [{"P": 1.0}], nodes=21)[-1]
+    assert state.refined.unresolved or state.refined.resolved
+    loose = Problem.from_load_parameter(LIKE, 0.5, 0.3, "body")
+    squeezed = solve(loose, [{"P": 1.0, "sxx": 1.5, "syy": -1.5}], nodes=401)[-1]
+    assert np.isfinite(squeezed.peak_hoop_stress().value)
+    assert len(squeezed.refined.tractions.patches) == len(squeezed.contact)
+
+
+def test_without_friction_and_without_contact():
+    smooth = solve(problem(friction=0.0), [{"P": 1.0}], nodes=401)[-1]
+    outside = smooth.contact[0][1] + np.radians([1.0, 10.0])
+    assert smooth.hoop_stress("plate", outside) == pytest.approx(smooth.hoop_stress("plate", outside, True), rel=1e-3)
+    assert smooth.peak_hoop_stress().angle == pytest.approx(smooth.contact[0][1], abs=1e-6)
+    empty = solve(problem(), [{"P": 1.0}, {"P": 0.0, "sxx": 1.0}], nodes=101)[-1]
+    if not empty.in_contact:
+        peak = empty.peak_hoop_stress()
+        assert peak.value == pytest.approx(3.0, abs=1e-9)
+        assert math.isnan(peak.kt_bearing)
+
+
+# --- concentrations -------------------------------------------------------------------------------------------
+
+
+def test_concentrations_of_bearing_and_bypass():
+    state = solve(problem(), [{"P": 1.0, "sxx": 0.4, "sxy": 0.1}], nodes=301)[-1]
+    peak = state.peak_hoop_stress()
+    assert peak.bearing_stress == pytest.approx(0.5, rel=1e-9)
+    assert peak.gross_stress == pytest.approx(0.2 + math.hypot(0.2, 0.1))
+    whole = peak.kt_bearing_part * peak.bearing_stress + peak.kt_bypass_part * peak.gross_stress
+    assert whole == pytest.approx(peak.value)
+    assert peak.kt_gross == pytest.approx(peak.value / peak.gross_stress)
+    assert peak.kt_bearing == pytest.approx(peak.value / peak.bearing_stress)
+    alone = solve(problem(), [{"P": 1.0}], nodes=301)[-1].peak_hoop_stress()
+    assert math.isnan(alone.kt_gross)
+    assert alone.kt_bearing_part == alone.kt_bearing
+    pin = state.peak_hoop_stress("pin")
+    assert (pin.gross_stress, pin.bypass) == (0.0, 0.0)
+
+
+def test_peaks_are_the_largest_values_and_can_be_pickled():
+    state = solve(problem(UNLIKE), FRETTING, nodes=301)[-1]
+    around = np.linspace(-math.pi, math.pi, 5001)
+    for body in ("plate", "pin"):
+        peak = state.peak_hoop_stress(body)
+        assert state.hoop_stress(body, around).max() <= peak.value * (1.0 + 1e-9)
+        assert pickle.loads(pickle.dumps(state)).peak_hoop_stress(body) == peak
+
+
+def test_a_rigid_body_has_no_peak():
+    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
+    state = solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)[-1]
+    with pytest.raises(InputError, match="the pin is rigid"):
+        state.peak_hoop_stress("pin")
+    assert state.peak_hoop_stress().value > 0.0
