@@ -5,35 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.errors import InputError
-from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, check_figure_text, draw_and_save, fitted_legend, spread
+from fastpin.figures.states import drawn_states, name_states, state_lines
+from fastpin.figures.style import MAX_NAMED, Line, check_figure_text, draw_and_save
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import AT_TOP, turns_from_bottom
-from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.units import acting_loads, scaled, units
+from fastpin.model.units import scaled, units
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.zones import ALL_ROUND
 
 _SHADE = "0.93"
-
-MAX_LINES = 60
-"""Most states in a figure. Of more, it shows an even choice."""
 
 
 def plot_tractions(
@@ -51,7 +42,8 @@ def plot_tractions(
     only the upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
 
     Up to :data:`~fastpin.figures.style.MAX_NAMED` states are named in the legend. More states are coloured by their
-    place in the history, without a lower panel. Of more than :data:`MAX_LINES` states an even choice is drawn.
+    place in the history, without a lower panel. Of more than :data:`~fastpin.figures.states.MAX_LINES` states an even
+    choice is drawn.
 
     Parameters
     ----------
@@ -75,24 +67,14 @@ def plot_tractions(
         If there is no state, an argument is out of range, the figure's format is unknown, or the file can't be written.
     """
     inches = check_figure_text(title, width)
-    drawn = [states] if isinstance(states, State) else states
-    if not isinstance(drawn, Sequence) or not all(isinstance(state, State) for state in drawn):
-        raise InputError("states", f"must be states or a result, not {as_toml(states)}")
-    if any(not np.array_equal(state.theta, drawn[0].theta) for state in drawn):
-        raise InputError("states", "must all be on one grid")
-    drawn = list(drawn)
-    if not drawn:
-        raise InputError("states", "there is no state to plot")
-    if len(drawn) > MAX_LINES:
-        drawn = [drawn[k] for k in drawn_places(len(drawn))]
+    drawn = drawn_states(states)
     return draw_and_save(lambda: _draw(drawn, title, inches), path, dpi)
 
 
 def _draw(states: list[State], title: str, width: float) -> Figure:
     problem = states[0].problem
     named = len(states) <= MAX_NAMED
-    shades = _scale(states).to_rgba(np.array([load_point(state) for state in states]))
-    colours: Sequence[Any] = COLOURS if named else list(shades)
+    lines = state_lines(states)
     zones = named and not problem.frictionless and len(states) > 1
     strip = 0.16 * len(states) + 0.15  # inches
     panels = [1.9] if problem.frictionless else [1.9, 1.9]
@@ -107,16 +89,13 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     factor, label = scaled([float(state.pressure.max()) for state in states], unit)
     label = label.replace("beta*", "β*")
     for index, state in enumerate(states):
-        colour = colours[index]
-        dashes = DASHES[index] if named else DASHES[0]
-        thickness = 1.4 if named else 0.9
         angle, pressure, shear = frame.curves(state)
-        axes[0].plot(angle, factor * pressure, color=colour, linestyle=dashes, linewidth=thickness)
+        axes[0].plot(angle, factor * pressure, **lines[index])
         if not problem.frictionless:
             for sign in (1.0, -1.0) if named else ():
                 bound = factor * sign * problem.friction * pressure
-                axes[1].plot(angle, bound, color=colour, linewidth=0.5, alpha=0.55, zorder=1)
-            axes[1].plot(angle, factor * shear, color=colour, linestyle=dashes, linewidth=thickness)
+                axes[1].plot(angle, bound, color=lines[index]["color"], linewidth=0.5, alpha=0.55, zorder=1)
+            axes[1].plot(angle, factor * shear, **lines[index])
     axes[0].set_ylabel(f"pressure  N  [{label}]")
     axes[0].set_ylim(bottom=0.0)
     if not problem.frictionless:
@@ -125,7 +104,7 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     if len(states) == 1:
         _shade_slip(list(axes), states[0], frame)
     if zones:
-        _draw_zones(axes[-1], states, colours, frame)
+        _draw_zones(axes[-1], states, lines, frame)
     for panel in axes:
         panel.grid(True, axis="x", color="0.92", linewidth=0.6)
         panel.set_axisbelow(True)
@@ -133,13 +112,22 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     axes[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 2, 3, 4.5, 5, 6, 9, 10]))
     axes[-1].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
     figure.align_ylabels(axes)
-    _name_states(figure, axes, states, colours, title, named)
+    name_states(figure, list(axes), states, title, _styles(states))
     return figure
 
 
-def drawn_places(count: int) -> list[int]:
-    """Return the indices of the states that a figure draws of `count`: all, or :data:`MAX_LINES` spread evenly."""
-    return spread(count, MAX_LINES)
+def _styles(states: list[State]) -> list[Artist]:
+    """Return the entries of the legend that hold for all states."""
+    styles: list[Artist] = []
+    if not states[0].problem.frictionless:
+        friction = states[0].problem.friction
+        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {friction:g}"))
+        if len(states) == 1:
+            styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
+        else:
+            styles.append(Patch(color="0.35", linewidth=0, label="stick"))
+            styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip, → counter-clockwise"))
+    return styles
 
 
 class _Frame:
@@ -219,10 +207,10 @@ def _shade_slip(axes: Sequence[Axes], state: State, frame: _Frame) -> None:
                 panel.axvspan(left, left + width, color=_SHADE, linewidth=0, zorder=-1)
 
 
-def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame: _Frame) -> None:
+def _draw_zones(panel: Axes, states: list[State], lines: Sequence[Line], frame: _Frame) -> None:
     """Draw one row for each state: solid where it sticks, shaded where it slips. Arrows show the pin's direction."""
     for row, state in enumerate(states):
-        colour = colours[row]
+        colour = lines[row]["color"]
         for start, stop, sign in state.slip_zones:
             for left, width in frame.place(start, stop):
                 panel.barh(row, width, left=left, height=0.66, color=colour, alpha=0.22, linewidth=0)
@@ -237,72 +225,3 @@ def _draw_zones(panel: Axes, states: list[State], colours: Sequence[Any], frame:
     panel.tick_params(axis="y", length=0)
     panel.set_ylabel("stick, slip")
     panel.spines["left"].set_visible(False)
-
-
-def _name_states(
-    figure: Figure, axes: np.ndarray, states: list[State], colours: Sequence[Any], title: str, named: bool
-) -> None:
-    """Add the legend or the colour scale. Loads that are equal in all states stand in the title."""
-    loads = [state.load for state in states]
-    acting = acting_loads(loads)
-    varying = [name for name in acting if any(load[name] != loads[0][name] for load in loads)]
-    common = [_load_text(states, 0, name) for name in acting if name not in varying]
-    heading = "\n".join(line for line in (title, ",  ".join(common)) if line)
-    if heading:
-        figure.suptitle(heading, fontsize=9.5, x=0.5, parse_math=False)
-    if not named:
-        bar = figure.colorbar(_scale(states), ax=list(axes), aspect=40, pad=0.02)
-        bar.set_label("load point (1: first corner of the history)")
-        bar.ax.yaxis.set_major_locator(MaxNLocator(nbins=8, integer=True))
-        bar.outline.set_linewidth(0.5)
-        return
-    handles: list[Artist] = []
-    for index, state in enumerate(states):
-        parts = ",  ".join(_load_text(states, index, name) for name in varying)
-        text = f"{load_point(state):.4g}:  {parts}" if parts else f"{load_point(state):.4g}"
-        handles.append(Line2D([], [], color=colours[index], linestyle=DASHES[index], label=text))
-    styles: list[Artist] = []
-    if not states[0].problem.frictionless:
-        friction = states[0].problem.friction
-        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {friction:g}"))
-        if len(states) == 1:
-            styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
-        else:
-            styles.append(Patch(color="0.35", linewidth=0, label="stick"))
-            styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip, → counter-clockwise"))
-    handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
-    if handles:
-        fitted_legend(figure, handles, columns)
-
-
-def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:
-    """Return legend entries and the number of columns. Blank entries keep states and styles in separate columns."""
-    if not states:
-        return styles, max(len(styles), 1)
-    rows = len(states) if len(states) <= 3 else math.ceil(len(states) / 2)
-    columns = [states[k : k + rows] for k in range(0, len(states), rows)]
-    if styles:
-        columns.append(styles)
-    rows = max(len(column) for column in columns)
-    blank = Line2D([], [], linestyle="none", label=" ")
-    filled = [entry for column in columns for entry in [*column, *[blank] * (rows - len(column))]]
-    return filled, len(columns)
-
-
-def _load_text(states: list[State], index: int, name: str) -> str:
-    """Return a load with its unit as text. All loads of one kind have the same unit."""
-    same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
-    symbol = f"$σ_{{{name[1:]}}}$" if LOAD_KIND[name] == "traction" else name
-    value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
-    if states[index].load[name] == 0.0:
-        return f"{symbol} = 0"
-    value = value.lstrip("+") if name == "P" else value
-    return f"{symbol} = {value} {unit.replace('beta*', 'β*')}"
-
-
-def _scale(states: list[State]) -> ScalarMappable:
-    points = [load_point(state) for state in states]
-    # The lightest tenth of the scale can't be seen on white.
-    shades = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.9, 0.0, 256)))
-    return ScalarMappable(Normalize(min(points), max(points)), shades)

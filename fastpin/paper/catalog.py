@@ -20,7 +20,8 @@ from fastpin.errors import InputError
 from fastpin.figures.style import save_drawing
 from fastpin.model.checks import whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
-from fastpin.paper.curves import Curve, Report, write_csv
+from fastpin.paper.curves import Report
+from fastpin.report.curves import Curve, write_csv
 from fastpin.storage.files import check_writable
 from fastpin.version import __version__
 

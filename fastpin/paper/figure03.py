@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.tractions import Panel, chosen, pushed_curves, traction_figure
+from fastpin.report.curves import Curve
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium), L_p = 0.01 and 0.1"
 LEAST_NODES = 101

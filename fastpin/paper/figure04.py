@@ -13,8 +13,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.tractions import Panel, pushed_curves, traction_figure
+from fastpin.report.curves import Curve
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium) at high L_p and different mu"
 LEAST_NODES = 101

@@ -12,8 +12,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, line, panels
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.sweep import load_parameter_axis, swept
+from fastpin.report.curves import Curve
 
 TITLE = "Contact and stick half-angles in body force loading (Ti-6Al-4V on aluminium)"
 LEAST_NODES = 201

@@ -7,7 +7,8 @@ Poisson's ratio matters.
 from __future__ import annotations
 
 from fastpin.paper import figure03
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
+from fastpin.report.curves import Curve
 
 TITLE = "Tractions in body force loading of similar materials (Ti-6Al-4V), L_p = 0.01 and 0.1"
 LEAST_NODES = figure03.LEAST_NODES

@@ -7,7 +7,8 @@ up to 5 % of its peak. The material, Ti-6Al-4V, is our choice: for similar mater
 from __future__ import annotations
 
 from fastpin.paper import figure04
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
+from fastpin.report.curves import Curve
 
 TITLE = "Tractions in body force loading of similar materials (Ti-6Al-4V) at high L_p and different mu"
 LEAST_NODES = figure04.LEAST_NODES

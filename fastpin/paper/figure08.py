@@ -13,8 +13,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, line, panels
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.sweep import load_parameter_axis, swept
+from fastpin.report.curves import Curve
 
 TITLE = "Peak pressures and tan(rho/2)/tan(epsilon/2) in body force loading"
 LEAST_NODES = 201

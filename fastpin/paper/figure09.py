@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
 from fastpin.model.problem import PinLoad
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import Panel, pushed, traction_figure
+from fastpin.report.curves import Curve
 
 TITLE = "Centre loading and body force loading, Ti-6Al-4V/aluminium, mu = 0.4"
 LEAST_NODES = 101

@@ -12,8 +12,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import PAIRS, Panel, pushed, traction_figure
+from fastpin.report.curves import Curve
 
 TITLE = "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75"
 LEAST_NODES = 101

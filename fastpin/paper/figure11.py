@@ -10,8 +10,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.fretting import cycle_figure, cycled
+from fastpin.report.curves import Curve
 
 TITLE = "Fretting type loads, L_p = 0.05, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
 LEAST_NODES = 101

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from fastpin.paper import figure11
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
+from fastpin.report.curves import Curve
 
 TITLE = "Fretting type loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
 LEAST_NODES = figure11.LEAST_NODES

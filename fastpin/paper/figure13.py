@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 from fastpin.figures.style import line
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.fretting import FRICTION, label
 from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 TITLE = "Steady-state shear tractions with fretting loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"

@@ -6,8 +6,9 @@ The caption gives L_p = 0.05 and mu = 0.55. The horizontal load eta = B_x/(mu B_
 from __future__ import annotations
 
 from fastpin.paper import figure11
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.fretting import cycled
+from fastpin.report.curves import Curve
 
 TITLE = "Fretting type loads with body forces, free rotation, L_p = 0.05, mu = 0.55, Ti-6Al-4V/Ti-6Al-4V"
 LEAST_NODES = 101

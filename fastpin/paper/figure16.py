@@ -9,8 +9,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.fretting import cycle_figure, cycled
+from fastpin.report.curves import Curve
 
 TITLE = "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 0.25 and 0.50, |eta| = 1"
 LEAST_NODES = 101

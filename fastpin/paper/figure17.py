@@ -7,8 +7,9 @@ is visible with more than a thousand nodes only.
 from __future__ import annotations
 
 from fastpin.paper import figure16
-from fastpin.paper.curves import Curve, Report
+from fastpin.paper.curves import Report
 from fastpin.paper.fretting import cycled
+from fastpin.report.curves import Curve
 
 TITLE = "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 1.0, |eta| = 1"
 LEAST_NODES = 201

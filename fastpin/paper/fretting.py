@@ -8,8 +8,9 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
 from fastpin.model.problem import PinLoad, Problem, Rotation
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 FRICTION = 0.55

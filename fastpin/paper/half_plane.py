@@ -35,8 +35,9 @@ from scipy.optimize import brentq
 from fastpin.figures.style import Line, line, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import PinLoad, Problem
-from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.curves import Report, steps
 from fastpin.paper.tractions import BOTTOM
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms

@@ -17,9 +17,10 @@ from fastpin.figures.style import add_legend, line, panels
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.curves import Report, steps
 from fastpin.paper.fretting import FRICTION
 from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State

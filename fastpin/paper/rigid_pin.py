@@ -16,8 +16,9 @@ from matplotlib.figure import Figure
 from fastpin.figures.style import add_legend, angle_axis, line, panels
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import PinLoad, Problem
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import BOTTOM
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

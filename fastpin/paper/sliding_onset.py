@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, line, panels
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.curves import Report, steps
 from fastpin.paper.tractions import PAIRS
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

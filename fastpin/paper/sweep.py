@@ -16,8 +16,9 @@ from matplotlib.axes import Axes
 
 from fastpin.kernels.status import STICK
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Curve, Report, steps
+from fastpin.paper.curves import Report, steps
 from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

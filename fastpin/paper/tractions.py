@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import PinLoad, Problem
-from fastpin.paper.curves import Curve, Report, steps, traction_curve
+from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 

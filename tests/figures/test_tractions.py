@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
+from fastpin.figures.states import MAX_LINES
 from fastpin.figures.style import MAX_NAMED
-from fastpin.figures.tractions import MAX_LINES, plot_tractions
+from fastpin.figures.tractions import plot_tractions
 from fastpin.model.problem import Problem
 from tests.support.samples import PAIR, sample_result
 

@@ -9,7 +9,7 @@ import pytest
 
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, memory, sliding_onset, tractions
-from fastpin.paper.curves import Curve
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 

@@ -13,7 +13,8 @@ from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, figure10, figure13, sweep, tractions
-from fastpin.paper.curves import Curve, steps, traction_curve, write_csv
+from fastpin.paper.curves import steps, traction_curve
+from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.solving import solve
 from tests.support.samples import sample_result
 

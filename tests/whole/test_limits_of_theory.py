@@ -11,7 +11,7 @@ import pytest
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, half_plane, rigid_pin
-from fastpin.paper.curves import Curve
+from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 

@@ -1,0 +1,241 @@
+"""Figures of stresses: round hole and pin, below a place of the edge, and as a map of both bodies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fastpin.figures.states import drawn_states, name_states, state_lines
+from fastpin.figures.style import angle_axis, check_figure_text, draw_and_save, line, panels
+from fastpin.model.checks import instance
+from fastpin.model.points import Body
+from fastpin.model.units import named_loads, scaled, units
+from fastpin.report.curves import Curve
+from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+LEVELS = 15
+"""Colours of a map, about."""
+
+FARTHEST = 0.995
+"""Part of the points of a map whose values lie within the colours. The values beyond take the end colours."""
+
+
+def plot_hoop_stress(
+    states: Sequence[State] | State,
+    path: str | Path | None = None,
+    body: str = "both",
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 200.0,
+) -> Figure:
+    """Draw the hoop stress round the hole (upper panel) and round the pin (lower panel).
+
+    A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. Angles are in
+    degrees from the bottom of the hole, counter-clockwise positive. Tension is positive.
+
+    Parameters
+    ----------
+    states : State, Result or sequence of State
+        Of one problem and on one grid.
+    body : {"both", "plate", "pin"}
+        "both" leaves out a rigid body.
+    path, title, width, dpi
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
+    """
+    inches, drawn = check_figure_text(title, width), drawn_states(states)
+    curves = hoop_curves(drawn, body)
+    return draw_and_save(lambda: _draw_hoop(drawn, curves, title, inches), path, dpi)
+
+
+def _draw_hoop(states: list[State], curves: list[Curve], title: str, width: float) -> Figure:
+    bodies = list(dict.fromkeys(curve.parameters["body"] for curve in curves))
+    figure, axes = panels(len(bodies), 1, 2.1, width)
+    figure.set_figheight(2.1 * len(bodies) + 1.0)
+    unit, lines = units(states[0].problem)["traction"], state_lines(states)
+    column = f"hoop stress [{unit}]"
+    factor, label = scaled([float(np.abs(curve[column]).max()) for curve in curves], unit)
+    open_dots = False
+    for body, panel in zip(bodies, axes[:, 0], strict=True):
+        mine = [curve for curve in curves if curve.parameters["body"] == body]
+        for state, curve, style in zip(states, mine, lines, strict=True):
+            panel.plot(curve["angle [deg]"], factor * curve[column], **style)
+            peak = state.peak_hoop_stress(body)
+            open_dots = open_dots or not peak.resolved
+            face = style["color"] if peak.resolved else "white"
+            angle = math.degrees(peak.angle) + 90.0
+            panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
+        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        panel.set_ylabel(f"hoop stress, {body}  [{label}]")
+        panel.set_xlim(-180.0, 180.0)
+        angle_axis(panel)
+    axes[-1, 0].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
+    styles: list[Artist] = [_dot("largest", "0.4")]
+    if open_dots:
+        styles.append(_dot("largest, not resolved by the nodes", "white"))
+    name_states(figure, list(axes[:, 0]), states, title, styles)
+    return figure
+
+
+def _dot(label: str, face: str) -> Line2D:
+    return Line2D([], [], linestyle="none", marker="o", markersize=4.0, color="0.4", markerfacecolor=face, label=label)
+
+
+def plot_stress_profile(
+    states: Sequence[State] | State,
+    path: str | Path | None = None,
+    body: Body = "plate",
+    angle: float | None = None,
+    depth: float = 0.5,
+    title: str = "",
+    width: float = 6.7,
+) -> Figure:
+    """Draw radial, hoop, shear and von Mises stress below a place of the edge.
+
+    Parameters
+    ----------
+    states : State, Result or sequence of State
+        Of one problem and on one grid.
+    body : {"plate", "pin"}
+    angle : float, optional
+        The place in degrees from the bottom; that of each state's largest hoop stress unless given.
+    depth : float
+        Largest depth, in units of the hole's radius.
+    path, title, width
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
+    """
+    inches, drawn = check_figure_text(title, width), drawn_states(states)
+    curves = depth_curves(drawn, body, angle, depth)
+    return draw_and_save(lambda: _draw_profile(drawn, curves, title, inches), path, 200.0)
+
+
+def _draw_profile(states: list[State], curves: list[Curve], title: str, width: float) -> Figure:
+    figure, axes = panels(2, 2, 2.0, width)
+    figure.set_figheight(5.2)
+    radius = states[0].problem.hole_radius
+    depth, *columns = curves[0].columns
+    unit = units(states[0].problem)["traction"]
+    factor, label = scaled([float(np.abs(curve[name]).max()) for curve in curves for name in columns], unit)
+    for name, panel in zip(columns, axes.flat, strict=True):
+        for curve, style in zip(curves, state_lines(states), strict=True):
+            panel.plot(curve[depth] / radius, factor * curve[name], **style)
+        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        panel.set_ylabel(f"{name.partition(' [')[0]}  [{label}]")
+        panel.set_xlim(left=0.0)
+    for panel in axes[-1]:
+        panel.set_xlabel("depth / radius of the hole")
+    figure.align_ylabels(axes)
+    places = sorted({round(curve.parameters["angle [deg]"], 2) for curve in curves})
+    where = f"at {places[0]:.2f} deg" if len(places) == 1 else "at the largest hoop stress of each state"
+    heading = "\n".join(
+        part for part in (title, f"below the edge of the {curves[0].parameters['body']}, {where}") if part
+    )
+    name_states(figure, list(axes.flat), states, heading, [])
+    return figure
+
+
+def plot_stress_field(
+    state: State,
+    path: str | Path | None = None,
+    component: str = "von_mises",
+    body: str = "both",
+    extent: float = 2.0,
+    title: str = "",
+    width: float = 5.2,
+) -> Figure:
+    """Draw a map of one component of the stress in pin and plate.
+
+    The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen.
+
+    Parameters
+    ----------
+    state : State
+    component : str
+        A name of :data:`fastpin.report.stress.COMPONENTS`.
+    body : {"both", "plate", "pin"}
+        "both" leaves out a rigid body.
+    extent : float
+        Outer radius of the map, in units of the hole's radius.
+    path, title, width
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
+    """
+    instance("state", state, State, "a State")
+    inches, curves = check_figure_text(title, width), field_curves(state, component, body, extent)
+    return draw_and_save(lambda: _draw_field(state, curves, component, title, inches), path, 200.0)
+
+
+def _draw_field(state: State, curves: list[Curve], component: str, title: str, width: float) -> Figure:
+    figure = Figure(figsize=(width, 0.9 * width), layout="constrained")
+    FigureCanvasAgg(figure)
+    panel = figure.subplots()
+    unit, radius = units(state.problem)["traction"], state.problem.hole_radius
+    distance, angle, value = curves[0].columns
+    every = np.concatenate([curve[value] for curve in curves])
+    low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
+    factor, label = scaled([low, high], unit)
+    signed = low < -0.02 * max(high, -low)
+    levels = _levels(factor * low, factor * high)
+    for curve in curves:
+        around = int(np.flatnonzero(np.diff(curve[distance]) != 0.0)[0]) + 1
+        r, theta, z = (curve[name].reshape(-1, around) for name in (distance, angle, value))
+        x, y = (r / radius * turn(np.radians(theta - 90.0)) for turn in (np.cos, np.sin))
+        norm = TwoSlopeNorm(0.0, min(levels[0], -1e-12), max(levels[-1], 1e-12)) if signed else None
+        colours = panel.contourf(
+            x, y, factor * z, levels=levels, norm=norm, cmap="RdBu_r" if signed else "viridis_r", extend="both"
+        )
+        panel.contour(x, y, factor * z, levels=levels[:: max(1, LEVELS // 5)], colors="0.25", linewidths=0.3)
+    _draw_contact(panel, state)
+    bar = figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
+    bar.set_label(f"{COMPONENTS[component]}  [{label}]")
+    panel.set_aspect("equal")
+    panel.set_xlabel("x / R")
+    panel.set_ylabel("y / R")
+    heading = f"load point {load_point(state):.4g}: {named_loads(state.problem, state.load)}"
+    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    return figure
+
+
+def _levels(low: float, high: float) -> np.ndarray:
+    """Round values from `low` to `high`, about :data:`LEVELS`."""
+    span = max(high - low, 1e-300)
+    step = 10.0 ** math.floor(math.log10(span / LEVELS))
+    step *= next(part for part in (1.0, 2.0, 2.5, 5.0, 10.0) if span / (part * step) <= LEVELS)
+    first, last = math.floor(low / step), math.ceil(high / step)
+    return step * np.arange(first, max(last, first + 1) + 1)
+
+
+def _draw_contact(panel: Axes, state: State) -> None:
+    """Draw the edge of the hole, and the contact as a thick line: solid where it sticks, white-cored where it slips."""
+    turn = np.linspace(0.0, 2.0 * math.pi, 361)
+    panel.plot(np.cos(turn), np.sin(turn), color="0.2", linewidth=0.6)
+    for start, stop in state.contact:
+        part = np.linspace(start, stop, 181)
+        panel.plot(np.cos(part), np.sin(part), **{**line(5, 0, 3.0), "solid_capstyle": "butt"})
+    for start, stop, _ in state.slip_zones:
+        part = np.linspace(start, stop, 91)
+        panel.plot(np.cos(part), np.sin(part), color="white", linewidth=1.4, solid_capstyle="butt")

@@ -1,0 +1,164 @@
+"""Curves of stresses: round the hole and the pin, below a place of the edge, and as a field."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.angles import from_bottom
+from fastpin.model.checks import choice, number
+from fastpin.model.points import BODIES, Body, Points
+from fastpin.model.units import units
+from fastpin.report.curves import Curve
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+from fastpin.states.stress import Stress
+
+AROUND = 720
+"""Equally spaced angles of a curve round the hole, beside the places of its states where the stress turns sharply."""
+
+DEPTHS = 161
+"""Depths of a profile. They gather at the edge."""
+
+COMPONENTS = {
+    "radial": "radial stress",
+    "hoop": "hoop stress",
+    "shear": "shear stress (polar)",
+    "axial": "stress along the pin",
+    "sxx": "stress along x",
+    "syy": "stress along y",
+    "sxy": "shear stress xy",
+    "largest": "largest principal stress",
+    "von_mises": "von Mises stress",
+    "tresca": "Tresca stress",
+    "hydrostatic": "mean normal stress",
+}
+"""Components of the stress that can be drawn, and their names."""
+
+
+def component_of(stress: Stress, component: str) -> np.ndarray:
+    """A component of :data:`COMPONENTS`, shape of the points.
+
+    Raises
+    ------
+    InputError
+        If there is no such component.
+    """
+    name = choice("component", component, tuple(COMPONENTS))
+    values: np.ndarray = stress.principal[..., 0] if name == "largest" else getattr(stress, name)
+    return values
+
+
+def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
+    """The bodies to draw: "plate", "pin", or "both", which leaves out a rigid body.
+
+    Raises
+    ------
+    InputError
+        If there is no such body.
+    """
+    if choice("body", body, (*BODIES, "both")) != "both":
+        return (body,)  # type: ignore[return-value]
+    return tuple(each for each in BODIES if not getattr(state.problem.pair, each).is_rigid)  # type: ignore[misc]
+
+
+def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
+    """The hoop stress round hole and pin: a curve for each body and state.
+
+    Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R.
+    """
+    unit = units(states[0].problem)["traction"]
+    curves = []
+    for each in bodies_of(states[0], body):
+        for state in states:
+            around = -1.5 * math.pi + 2.0 * math.pi * np.arange(AROUND + 1) / AROUND
+            sharp = np.concatenate([np.zeros(0), *(patch[:, 0] for patch in state.refined.tractions.patches)])
+            sharp = np.remainder(sharp + 1.5 * math.pi, 2.0 * math.pi) - 1.5 * math.pi
+            theta = np.unique(np.r_[around, sharp])
+            columns = {"angle [deg]": np.degrees(theta) + 90.0, f"hoop stress [{unit}]": state.hoop_stress(each, theta)}
+            curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
+    return curves
+
+
+def depth_curves(
+    states: Sequence[State], body: Body = "plate", angle: float | None = None, depth: float = 1.0
+) -> list[Curve]:
+    """Radial, hoop, shear and von Mises stress below a place of the edge: a curve for each state.
+
+    Parameters
+    ----------
+    states : sequence of State
+    body : {"plate", "pin"}
+    angle : float, optional
+        Degrees from the bottom; the place of the state's largest hoop stress unless given.
+    depth : float
+        Largest depth, in units of the hole's radius; above 0, in the pin below 1.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    """
+    deepest = number("depth", depth)
+    if not 0.0 < deepest < (math.inf if body == "plate" else 1.0):
+        raise InputError("depth", "must be above 0, and below 1 radius in the pin")
+    unit = units(states[0].problem)
+    radius, curves = states[0].problem.hole_radius, []
+    below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
+    for state in states:
+        place = state.peak_hoop_stress(body).angle if angle is None else math.radians(number("angle", angle) - 90.0)
+        found = state.stress(Points.at_depth(below, place), body)
+        columns = {f"depth [{unit['length']}]": below}
+        for name in ("radial", "hoop", "shear", "von_mises"):
+            columns[f"{COMPONENTS[name]} [{unit['traction']}]"] = component_of(found, name)
+        parameters = {"body": body, "load point": load_point(state), "angle [deg]": from_bottom(place)}
+        curves.append(Curve(parameters, columns))
+    return curves
+
+
+def field_curves(
+    state: State, component: str = "von_mises", body: str = "both", extent: float = 2.0, fineness: int = 240
+) -> list[Curve]:
+    """A component of the stress in pin and plate on a polar grid: a curve for each body.
+
+    Columns: radius, angle in degrees from the bottom, and the component, from the inner circle outwards; each circle
+    has 2 * `fineness` + 1 points.
+
+    Parameters
+    ----------
+    state : State
+    component : str
+        A name of :data:`COMPONENTS`.
+    body : {"plate", "pin", "both"}
+    extent : float
+        Outer radius of the plate's part, in units of the hole's radius; above 1, at most 100.
+    fineness : int
+        Number of circles in each body.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or there is no such component.
+    """
+    choice("component", component, tuple(COMPONENTS))
+    outer = number("extent", extent)
+    if not 1.0 < outer <= 100.0:
+        raise InputError("extent", f"must be above 1 and at most 100 radii, not {outer:g}")
+    unit, radius, curves = units(state.problem), state.problem.hole_radius, []
+    theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
+    for each in bodies_of(state, body):
+        part = np.linspace(0.0, 1.0, fineness)[:, None]
+        # The force may act at the pin's centre, where the stress is infinite.
+        below = radius * ((outer - 1.0) * part**2 if each == "plate" else 0.98 * (1.0 - part) ** 2)
+        values = component_of(state.stress(Points.at_depth(below, theta), each), component)
+        distance = radius + below if each == "plate" else radius - below
+        columns = {
+            f"radius [{unit['length']}]": np.broadcast_to(distance, values.shape).ravel(),
+            "angle [deg]": np.broadcast_to(np.degrees(theta) + 90.0, values.shape).ravel(),
+            f"{COMPONENTS[component]} [{unit['traction']}]": values.ravel(),
+        }
+        curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
+    return curves
