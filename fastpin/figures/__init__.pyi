@@ -3,5 +3,8 @@ from .cycles import plot_cycles as plot_cycles
 from .notebook import result_html as result_html
 from .notebook import state_html as state_html
 from .states import drawn_places as drawn_places
+from .stress import plot_hoop_stress as plot_hoop_stress
+from .stress import plot_stress_field as plot_stress_field
+from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep
 from .tractions import plot_tractions as plot_tractions

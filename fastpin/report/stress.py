@@ -152,7 +152,7 @@ def field_curves(
     for each in bodies_of(state, body):
         part = np.linspace(0.0, 1.0, fineness)[:, None]
         # The force may act at the pin's centre, where the stress is infinite.
-        below = radius * ((outer - 1.0) * part**2 if each == "plate" else 0.98 * (1.0 - part) ** 2)
+        below = radius * ((outer - 1.0) * part**2 if each == "plate" else 0.999 * (1.0 - part) ** 2)
         values = component_of(state.stress(Points.at_depth(below, theta), each), component)
         distance = radius + below if each == "plate" else radius - below
         columns = {
