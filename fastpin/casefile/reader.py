@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -18,7 +18,8 @@ from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case, check_arc, check_keep
-from fastpin.model.checks import choice, closest, file_path, number, string, true_or_false
+from fastpin.model.checks import as_toml, choice, closest, file_path, number, string, true_or_false
+from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -31,7 +32,8 @@ EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 MOST_BYTES = 100_000_000
 """Most bytes of a case file or a plan."""
 
-_MATERIAL_KEYS = ("material", "E", "nu", "rigid")
+_MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue")
+_FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
 KEYS: dict[str, tuple[str, ...]] = {
     "pin": _MATERIAL_KEYS,
     "plate": _MATERIAL_KEYS,
@@ -232,13 +234,42 @@ def _pair(source: CaseText, contact: Section) -> MaterialPair | None:
             if name in source.root:
                 source.report(f"[{name}]: give either [dundurs] or [pin] and [plate]", name)
         return _dundurs(source.section("dundurs"), contact, plane)
-    pin, plate = (_material(source.section(name, required=True)) for name in ("pin", "plate"))
+    pin, plate = (_material(source, name) for name in ("pin", "plate"))
     if pin is None or plate is None:
         return None
     return _built(source.root, MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})
 
 
-def _material(section: Section) -> Material | None:
+def _material(source: CaseText, name: str) -> Material | None:
+    """The material of a body, with its fatigue constants. They replace the constants of a named material."""
+    section = source.section(name, required=True)
+    material, fatigue = _elastic(section), _fatigue(source, section)
+    if material is None or fatigue is None:
+        return material
+    return replace(material, fatigue=fatigue)
+
+
+def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
+    """The fatigue constants of a body; None if there are none, or they are wrong (reported)."""
+    table = section.value("fatigue")
+    if table is None:
+        return None
+    if section.value("rigid") is True:
+        section.report(f"[{section.name}]: fatigue can't be given together with rigid", "fatigue")
+        return None
+    if not isinstance(table, dict):
+        section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
+        return None
+    inner = Section(source, (section.name, "fatigue"), table)
+    for key in table:
+        if key not in _FATIGUE_KEYS:
+            hint = closest(key, _FATIGUE_KEYS) or f"; the keys are {', '.join(_FATIGUE_KEYS)}"
+            inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
+    given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
+    return _built(inner, FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
+
+
+def _elastic(section: Section) -> Material | None:
     if not section.present:
         return None
     rigid = section.checked("rigid", true_or_false)

@@ -1,4 +1,5 @@
 from .case import Case as Case
+from .fatigue import FatigueConstants as FatigueConstants
 from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory
 from .loads import LOADS as LOADS

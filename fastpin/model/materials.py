@@ -20,6 +20,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, number, string
+from fastpin.model.fatigue import FatigueConstants
 
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
@@ -55,16 +56,20 @@ class Material:
         Poisson's ratio, 0 to 0.5.
     name : str, optional
         Name in tables and plots.
+    fatigue : FatigueConstants, optional
+        They change no state, and serve :mod:`fastpin.damage` only.
 
     Raises
     ------
     InputError
-        If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], or `name` is no text.
+        If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, or `fatigue` is of
+        another class.
     """
 
     E: float
     nu: float
     name: str = ""
+    fatigue: FatigueConstants | None = None
 
     def __post_init__(self) -> None:
         rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
@@ -79,10 +84,13 @@ class Material:
         object.__setattr__(self, "E", float(modulus))
         object.__setattr__(self, "nu", ratio)
         string("name", self.name)
+        if self.fatigue is not None:
+            instance("fatigue", self.fatigue, FatigueConstants, "fastpin.model.FatigueConstants")
 
     def __repr__(self) -> str:
         name = f", {self.name!r}" if self.name else ""
-        return f"Material({self.E:g}, {self.nu:g}{name})"
+        fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
+        return f"Material({self.E:g}, {self.nu:g}{name}{fatigue})"
 
     @classmethod
     def rigid(cls) -> Material:
@@ -217,6 +225,8 @@ class MaterialPair:
 
     def scaled(self, beta_star: float) -> MaterialPair:
         """The same pair with both moduli scaled. Its composite compliance is then `beta_star`, 1/Pa.
+
+        Fatigue constants are left out, because the scaled materials are others.
 
         A `beta_star` beyond :data:`LEAST_BETA_STAR` and :data:`MOST_BETA_STAR` raises :class:`InputError`.
         """

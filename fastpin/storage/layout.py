@@ -31,6 +31,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
 from fastpin.model.checks import number, whole_number
+from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
@@ -168,7 +169,10 @@ def _write_problem(group: h5py.Group, problem: Problem) -> None:
             group.attrs[name] = value
     group.attrs["plane"] = problem.pair.plane
     for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
-        group.create_group(name).attrs.update(E=material.E, nu=material.nu, name=material.name)
+        body = group.create_group(name)
+        body.attrs.update(E=material.E, nu=material.nu, name=material.name)
+        if material.fatigue is not None:
+            body.create_group("fatigue").attrs.update(material.fatigue.given())
     group.attrs["units"] = [f"{kind}: {name}" for kind, name in units(problem).items()]
 
 
@@ -176,8 +180,11 @@ def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
     group, bodies = file["problem"], {}
     for name in ("pin", "plate"):
-        attributes = group[name].attrs
-        bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]))
+        attributes, fatigue = group[name].attrs, None
+        if "fatigue" in group[name]:
+            stored = group[name]["fatigue"].attrs.items()
+            fatigue = FatigueConstants(**{constant: as_python(value) for constant, value in stored})
+        bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue)
     given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
     return Problem(MaterialPair(bodies["pin"], bodies["plate"], group.attrs["plane"]), **given)
 

@@ -1,7 +1,7 @@
 """The identity of a run: its canonical input, and an id of this input and the version of fastpin.
 
-The order of keys, comments, names of materials and the spelling of a number make no difference. Every bit of a number
-makes a difference.
+The order of keys, comments, names of materials, sources of constants and the spelling of a number make no difference.
+Every bit of a number makes a difference.
 """
 
 from __future__ import annotations
@@ -71,7 +71,10 @@ def _number(value: float) -> float:
 
 
 def _material(material: Material) -> dict[str, Any]:
-    return {"E": "inf" if math.isinf(material.E) else material.E, "nu": _number(material.nu)}
+    elastic = {"E": "inf" if math.isinf(material.E) else material.E, "nu": _number(material.nu)}
+    constants = {} if material.fatigue is None else material.fatigue.given()
+    constants.pop("source", None)
+    return {**elastic, "fatigue": constants} if constants else elastic
 
 
 def _loads(history: LoadHistory) -> dict[str, Any]:

@@ -1,0 +1,10 @@
+from .criteria import Planes as Planes
+from .criteria import crossland as crossland
+from .criteria import crossland_limit as crossland_limit
+from .criteria import dang_van as dang_van
+from .criteria import dang_van_limit as dang_van_limit
+from .criteria import fatemi_socie as fatemi_socie
+from .criteria import findley as findley
+from .criteria import findley_limit as findley_limit
+from .criteria import smallest_spheres as smallest_spheres
+from .criteria import smith_watson_topper as smith_watson_topper

@@ -1,0 +1,283 @@
+"""Fatigue criteria on stress histories: the parameter of each point over one whole cycle.
+
+A history is an array of shape (stops, points, 4): the stresses sxx, syy, szz and sxy, Pa, tension positive, at the
+stops of a cycle. The order of the stops makes no difference, and the path may turn in any way. The other shear stresses
+are zero: plane strain or plane stress. The criteria of planes search all planes that hold the z axis.
+
+Sources: Smith, Watson and Topper, J. Materials 5 (1970) 767; Fatemi and Socie, Fatigue Fract. Eng. Mater. Struct. 11
+(1988) 149; Findley, J. Eng. Ind. 81 (1959) 301; Crossland, Proc. Int. Conf. Fatigue of Metals, London (1956) 138; Dang
+Van, Sci. Tech. Armement 47 (1973) 647; Papadopoulos et al., Int. J. Fatigue 19 (1997) 219, for the smallest sphere.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.errors import InputError
+from fastpin.kernels import planes, spheres
+from fastpin.model.checks import number, numbers
+
+COMPONENTS = ("sxx", "syy", "szz", "sxy")
+"""The components of a stress history, in the order of its last axis."""
+
+CHUNK = 64
+"""Points that one thread searches at a time."""
+
+
+class Planes(NamedTuple):
+    """The parameter of a criterion of planes, and its planes.
+
+    Attributes
+    ----------
+    parameter : ndarray, shape (points,)
+        The largest value over all planes.
+    angle : ndarray, shape (points,)
+        Angle of the plane's normal from the +x axis, counter-clockwise, in (-pi/2, pi/2], rad; NaN where the parameter
+        is 0. Several planes may share the largest value; one of them is given.
+    """
+
+    parameter: np.ndarray
+    angle: np.ndarray
+
+
+def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
+    """The largest normal stress times the amplitude of the normal strain, on the worst plane, Pa.
+
+    SWT = max over planes of max(s_n, 0) (max e_n - min e_n)/2, with e_n = ((1 + nu) s_n - nu (sxx + syy + szz))/E (Smith,
+    Watson and Topper 1970; on planes Socie 1987). It is 0 where no plane is ever in tension.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    E, nu : float
+        Young's modulus, Pa, and Poisson's ratio.
+
+    Raises
+    ------
+    InputError
+        If the history has another shape or a number that is not finite, or a constant is out of range.
+    """
+    stresses, modulus = _checked(history), _positive("E", E)
+    ratio = number("nu", nu, 0.0, 0.5)
+    normal = _on_planes(stresses)
+    strain = (1.0 + ratio) / modulus * normal
+    strain[..., 0] -= ratio / modulus * stresses[..., :3].sum(axis=-1)
+    return _worst(strain, normal, planes.SWING_TIMES_PUSH)
+
+
+def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_strength: float) -> Planes:
+    """The amplitude of the shear strain, raised by the largest normal stress, on the worst plane, rad.
+
+    FS = max over planes of (max gamma - min gamma)/2 (1 + k max(s_n, 0)/s_y), gamma = tau/G (Fatemi and Socie 1988). The
+    plane is the one with the largest parameter, not the one with the largest shear.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    shear_modulus, yield_strength : float
+        G and s_y, Pa.
+    k : float
+        Weight of the normal stress, at least 0.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper`.
+    """
+    normal = _on_planes(_checked(history))
+    weight = number("k", k, 0.0) / _positive("yield_strength", yield_strength)
+    strain = _shear(normal) / _positive("shear_modulus", shear_modulus)
+    return _worst(strain, weight * normal, planes.SWING_TIMES_MORE)
+
+
+def findley(history: ArrayLike, k: float) -> Planes:
+    """The amplitude of the shear stress plus a part of the largest normal stress, on the worst plane, Pa.
+
+    max over planes of (max tau - min tau)/2 + k max s_n (Findley 1959). See :func:`findley_limit` for k and the limit.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    k : float
+        Weight of the normal stress, at least 0.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper`.
+    """
+    normal = _on_planes(_checked(history))
+    return _worst(_shear(normal), number("k", k, 0.0) * normal, planes.SWING_AND_PUSH)
+
+
+def crossland(history: ArrayLike, alpha: float) -> np.ndarray:
+    """The amplitude of the deviator plus a part of the largest hydrostatic stress, Pa, shape (points,).
+
+    sqrt(J2,a) + alpha max(s_H) (Crossland 1956), s_H = (sxx + syy + szz)/3. sqrt(J2,a) is the radius of the smallest
+    sphere round the path of the deviator, with the distance sqrt(s:s/2) (Papadopoulos et al. 1997). See
+    :func:`crossland_limit` for alpha and the limit.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    alpha : float
+        Weight of the hydrostatic stress.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper`.
+    """
+    stresses = _checked(history)
+    radius = smallest_spheres(_deviator(stresses))[1]
+    return radius + number("alpha", alpha) * stresses[..., :3].mean(axis=-1).max(axis=0)
+
+
+def dang_van(history: ArrayLike, a: float) -> np.ndarray:
+    """The largest shear stress of a grain plus a part of the hydrostatic stress, Pa, shape (points,).
+
+    max over the stops of tau(t) + a s_H(t) (Dang Van 1973). tau is half Tresca's stress of the deviator, less its residual
+    part. This part is the centre of the smallest sphere round the path of the deviator. See :func:`dang_van_limit` for a
+    and the limit.
+
+    Parameters
+    ----------
+    history : array_like, shape (stops, points, 4)
+        Stresses, Pa; see :mod:`fastpin.damage.criteria`.
+    a : float
+        Weight of the hydrostatic stress.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper`.
+    """
+    stresses = _checked(history)
+    path = _deviator(stresses)
+    out_of_plane, half, shear = np.moveaxis(path - smallest_spheres(path)[0], -1, 0)
+    circle, middle = np.hypot(half, shear), out_of_plane / math.sqrt(3.0)
+    principal = np.stack([middle + circle, middle - circle, -2.0 * middle])
+    tresca = principal.max(axis=0) - principal.min(axis=0)
+    return (0.5 * tresca + number("a", a) * stresses[..., :3].mean(axis=-1)).max(axis=0)
+
+
+def findley_limit(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
+    """k of Findley's criterion, and the limit of its parameter, Pa.
+
+    k = (2 t - f)/(2 sqrt(t (f - t))), limit t sqrt(1 + k^2), from the amplitudes f and t of the fatigue limits under fully
+    reversed bending and torsion. Both then lie at the limit.
+
+    Raises
+    ------
+    InputError
+        If the limits do not satisfy f/2 <= t < f.
+    """
+    f, t = _limits(bending_limit, torsion_limit)
+    if not 0.5 * f <= t < f:
+        raise InputError("torsion_limit", f"must lie between half the bending limit of {f:g} and this limit, not {t:g}")
+    k = (2.0 * t - f) / (2.0 * math.sqrt(t * (f - t)))
+    return k, t * math.sqrt(1.0 + k * k)
+
+
+def crossland_limit(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
+    """alpha = 3 t/f - sqrt(3) of Crossland's criterion, and the limit t of its parameter, Pa (Crossland 1956)."""
+    f, t = _limits(bending_limit, torsion_limit)
+    return 3.0 * t / f - math.sqrt(3.0), t
+
+
+def dang_van_limit(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
+    """a = 3 t/f - 3/2 of Dang Van's criterion, and the limit t of its parameter, Pa."""
+    f, t = _limits(bending_limit, torsion_limit)
+    return 3.0 * t / f - 1.5, t
+
+
+def smallest_spheres(paths: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """The smallest sphere round the path of each point, exact to rounding.
+
+    Parameters
+    ----------
+    paths : array_like, shape (stops, points, dimension)
+
+    Returns
+    -------
+    centre : ndarray, shape (points, dimension)
+    radius : ndarray, shape (points,)
+
+    Raises
+    ------
+    InputError
+        If the paths have another shape, or a number that is not finite.
+    """
+    array = numbers("paths", paths)
+    if array.ndim != 3 or 0 in array.shape:
+        raise InputError("paths", f"must have the shape (stops, points, dimension), not {array.shape}")
+    shift = int(np.frexp(np.abs(array).max())[1])
+    scaled = np.ldexp(np.ascontiguousarray(array.transpose(1, 0, 2)), -shift)
+    out = np.empty((scaled.shape[0], scaled.shape[2] + 1))
+    _in_threads(scaled.shape[0], lambda part: spheres.enclosing_spheres(scaled[part], out[part]))
+    out = np.ldexp(out, shift)
+    return out[:, :-1], out[:, -1]
+
+
+def _checked(history: ArrayLike) -> np.ndarray:
+    array = numbers("history", history)
+    if array.ndim != 3 or array.shape[2] != len(COMPONENTS) or 0 in array.shape:
+        raise InputError("history", f"must have the shape (stops, points, {len(COMPONENTS)}), not {array.shape}")
+    return array
+
+
+def _positive(field: str, value: float) -> float:
+    checked = number(field, value)
+    if checked <= 0.0:
+        raise InputError(field, f"must be positive, not {checked:g}")
+    return checked
+
+
+def _limits(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
+    return _positive("bending_limit", bending_limit), _positive("torsion_limit", torsion_limit)
+
+
+def _on_planes(stresses: np.ndarray) -> np.ndarray:
+    """The normal stress as coefficients of 1, cos 2 phi and sin 2 phi, shape (stops, points, 3)."""
+    sxx, syy, _, sxy = np.moveaxis(stresses, -1, 0)
+    return np.stack([0.5 * (sxx + syy), 0.5 * (sxx - syy), sxy], axis=-1)
+
+
+def _shear(normal: np.ndarray) -> np.ndarray:
+    """The shear stress on planes in the same form, from the normal stress."""
+    return np.stack([np.zeros(normal.shape[:2]), normal[..., 2], -normal[..., 1]], axis=-1)
+
+
+def _deviator(stresses: np.ndarray) -> np.ndarray:
+    """The deviator as a vector of length sqrt(J2), shape (stops, points, 3)."""
+    sxx, syy, szz, sxy = np.moveaxis(stresses, -1, 0)
+    return np.stack([(sxx + syy - 2.0 * szz) / math.sqrt(12.0), 0.5 * (sxx - syy), sxy], axis=-1)
+
+
+def _worst(swung: np.ndarray, push: np.ndarray, form: int) -> Planes:
+    """The worst planes, from the coefficients of both components, each of shape (stops, points, 3)."""
+    paths = np.ascontiguousarray(np.concatenate([swung, push], axis=-1).transpose(1, 0, 2))
+    out = np.empty((paths.shape[0], 2))
+    _in_threads(paths.shape[0], lambda part: planes.worst_planes(paths[part], form, out[part]))
+    return Planes(out[:, 0], out[:, 1])
+
+
+def _in_threads(count: int, compute: Callable[[slice], None]) -> None:
+    """Compute all points, chunk by chunk. Each point is computed by itself: no bit depends on the threads."""
+    parts = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
+    if len(parts) == 1:
+        compute(parts[0])
+    else:
+        with ThreadPoolExecutor(min(len(parts), os.cpu_count() or 1)) as threads:
+            list(threads.map(compute, parts))

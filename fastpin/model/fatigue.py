@@ -1,0 +1,101 @@
+"""Fatigue constants of a material."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from fastpin.errors import InputError
+from fastpin.model.checks import number, string
+
+_EXPONENTS = ("strength_exponent", "ductility_exponent", "shear_strength_exponent", "shear_ductility_exponent")
+
+
+@dataclass(frozen=True, repr=False)
+class FatigueConstants:
+    """Fatigue constants of a material, each of them optional. A criterion says which ones it needs.
+
+    2N counts reversals: two in a cycle.
+
+    Parameters
+    ----------
+    fatigue_strength, strength_exponent : float, optional
+        Coefficient sf' of the fatigue strength, Pa, and its exponent b < 0: the elastic strain amplitude is
+        sf'/E (2N)^b (Basquin 1910).
+    fatigue_ductility, ductility_exponent : float, optional
+        Coefficient ef' of the fatigue ductility and its exponent c < 0: the plastic strain amplitude is ef' (2N)^c
+        (Coffin 1954, Manson 1953).
+    shear_fatigue_strength, shear_strength_exponent, shear_fatigue_ductility, shear_ductility_exponent : float, optional
+        The same for torsion: tf', Pa, b0 < 0, gf' and c0 < 0.
+    yield_strength : float, optional
+        Pa.
+    bending_limit, torsion_limit : float, optional
+        Amplitudes of the fatigue limits under fully reversed bending, f, and torsion, t, Pa.
+    threshold_range : float, optional
+        Range dK_th of the stress intensity below which long cracks do not grow, Pa sqrt(m).
+    limit_range : float, optional
+        Range ds_0 of the stress at the fatigue limit of a smooth specimen, Pa. `threshold_range` belongs to the same
+        stress ratio.
+    normal_stress_factor : float, optional
+        Weight k of the normal stress in the criterion of Fatemi and Socie.
+    wear_coefficient : float, optional
+        Archard's coefficient k_w: volume worn off per force and sliding distance, 1/Pa.
+    source : str
+        Where the constants come from.
+
+    Raises
+    ------
+    InputError
+        If a constant is not positive and finite, or an exponent not negative and finite.
+    """
+
+    fatigue_strength: float | None = None
+    strength_exponent: float | None = None
+    fatigue_ductility: float | None = None
+    ductility_exponent: float | None = None
+    shear_fatigue_strength: float | None = None
+    shear_strength_exponent: float | None = None
+    shear_fatigue_ductility: float | None = None
+    shear_ductility_exponent: float | None = None
+    yield_strength: float | None = None
+    bending_limit: float | None = None
+    torsion_limit: float | None = None
+    threshold_range: float | None = None
+    limit_range: float | None = None
+    normal_stress_factor: float | None = None
+    wear_coefficient: float | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        string("source", self.source)
+        for name, value in self.given().items():
+            if name == "source":
+                continue
+            checked = number(name, value)
+            if name in _EXPONENTS and checked >= 0.0:
+                raise InputError(name, f"must be negative, not {checked:g}")
+            if name not in _EXPONENTS and checked <= 0.0:
+                raise InputError(name, f"must be positive, not {checked:g}")
+            object.__setattr__(self, name, checked)
+
+    def __repr__(self) -> str:
+        return f"FatigueConstants({', '.join(f'{name}={value!r}' for name, value in self.given().items())})"
+
+    def given(self) -> dict[str, Any]:
+        """The constants that are given, by name, and the source unless it is empty."""
+        values = ((field.name, getattr(self, field.name)) for field in fields(self))
+        return {name: value for name, value in values if value is not None and value != ""}
+
+    def required(self, names: Sequence[str], purpose: str, body: str) -> tuple[float, ...]:
+        """The constants of these names.
+
+        Raises
+        ------
+        InputError
+            If some of them are missing. The message names the constants, the `purpose` and the `body`.
+        """
+        missing = [name for name in names if getattr(self, name) is None]
+        if missing:
+            raise InputError("fatigue", f"{purpose} needs {', '.join(missing)} of the {body}'s material")
+        return tuple(getattr(self, name) for name in names)
