@@ -1,3 +1,5 @@
+from .counting import rainflow as rainflow
+from .counting import stress_life as stress_life
 from .criteria import Planes as Planes
 from .criteria import crossland as crossland
 from .criteria import crossland_limit as crossland_limit
@@ -8,3 +10,17 @@ from .criteria import findley as findley
 from .criteria import findley_limit as findley_limit
 from .criteria import smallest_spheres as smallest_spheres
 from .criteria import smith_watson_topper as smith_watson_topper
+from .distance import critical_distance as critical_distance
+from .distance import fatigue_at_distance as fatigue_at_distance
+from .hot_spots import CRITERIA as CRITERIA
+from .hot_spots import Fatigue as Fatigue
+from .hot_spots import HotSpot as HotSpot
+from .hot_spots import cycle_states as cycle_states
+from .hot_spots import damage_sum as damage_sum
+from .hot_spots import fatigue as fatigue
+from .hot_spots import stress_history as stress_history
+from .lives import fatemi_socie_life as fatemi_socie_life
+from .lives import miner as miner
+from .lives import smith_watson_topper_life as smith_watson_topper_life
+from .wear import archard_depth as archard_depth
+from .wear import ruiz as ruiz

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.kernels import planes, spheres
-from fastpin.model.checks import number, numbers
+from fastpin.model.checks import number, numbers, positive
 
 COMPONENTS = ("sxx", "syy", "szz", "sxy")
 """The components of a stress history, in the order of its last axis."""
@@ -50,8 +50,8 @@ class Planes(NamedTuple):
 def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
     """The largest normal stress times the amplitude of the normal strain, on the worst plane, Pa.
 
-    SWT = max over planes of max(s_n, 0) (max e_n - min e_n)/2, with e_n = ((1 + nu) s_n - nu (sxx + syy + szz))/E (Smith,
-    Watson and Topper 1970; on planes Socie 1987). It is 0 where no plane is ever in tension.
+    SWT = max over planes of max(s_n, 0) (max e_n - min e_n)/2, with e_n = ((1 + nu) s_n - nu (sxx + syy + szz))/E
+    (Smith, Watson and Topper 1970; on planes Socie 1987). It is 0 where no plane is ever in tension.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
     InputError
         If the history has another shape or a number that is not finite, or a constant is out of range.
     """
-    stresses, modulus = _checked(history), _positive("E", E)
+    stresses, modulus = _checked(history), positive("E", E)
     ratio = number("nu", nu, 0.0, 0.5)
     normal = _on_planes(stresses)
     strain = (1.0 + ratio) / modulus * normal
@@ -76,8 +76,8 @@ def smith_watson_topper(history: ArrayLike, E: float, nu: float) -> Planes:
 def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_strength: float) -> Planes:
     """The amplitude of the shear strain, raised by the largest normal stress, on the worst plane, rad.
 
-    FS = max over planes of (max gamma - min gamma)/2 (1 + k max(s_n, 0)/s_y), gamma = tau/G (Fatemi and Socie 1988). The
-    plane is the one with the largest parameter, not the one with the largest shear.
+    FS = max over planes of (max gamma - min gamma)/2 (1 + k max(s_n, 0)/s_y), gamma = tau/G (Fatemi and Socie 1988).
+    The plane is the one with the largest parameter, not the one with the largest shear.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def fatemi_socie(history: ArrayLike, shear_modulus: float, k: float, yield_stren
         As :func:`smith_watson_topper`.
     """
     normal = _on_planes(_checked(history))
-    weight = number("k", k, 0.0) / _positive("yield_strength", yield_strength)
-    strain = _shear(normal) / _positive("shear_modulus", shear_modulus)
+    weight = number("k", k, 0.0) / positive("yield_strength", yield_strength)
+    strain = _shear(normal) / positive("shear_modulus", shear_modulus)
     return _worst(strain, weight * normal, planes.SWING_TIMES_MORE)
 
 
@@ -147,9 +147,9 @@ def crossland(history: ArrayLike, alpha: float) -> np.ndarray:
 def dang_van(history: ArrayLike, a: float) -> np.ndarray:
     """The largest shear stress of a grain plus a part of the hydrostatic stress, Pa, shape (points,).
 
-    max over the stops of tau(t) + a s_H(t) (Dang Van 1973). tau is half Tresca's stress of the deviator, less its residual
-    part. This part is the centre of the smallest sphere round the path of the deviator. See :func:`dang_van_limit` for a
-    and the limit.
+    max over the stops of tau(t) + a s_H(t) (Dang Van 1973). tau is half Tresca's stress of the deviator, less its
+    residual part. This part is the centre of the smallest sphere round the path of the deviator. See
+    :func:`dang_van_limit` for a and the limit.
 
     Parameters
     ----------
@@ -175,8 +175,8 @@ def dang_van(history: ArrayLike, a: float) -> np.ndarray:
 def findley_limit(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
     """k of Findley's criterion, and the limit of its parameter, Pa.
 
-    k = (2 t - f)/(2 sqrt(t (f - t))), limit t sqrt(1 + k^2), from the amplitudes f and t of the fatigue limits under fully
-    reversed bending and torsion. Both then lie at the limit.
+    k = (2 t - f)/(2 sqrt(t (f - t))), limit t sqrt(1 + k^2), from the amplitudes f and t of the fatigue limits under
+    fully reversed bending and torsion. Both then lie at the limit.
 
     Raises
     ------
@@ -237,15 +237,8 @@ def _checked(history: ArrayLike) -> np.ndarray:
     return array
 
 
-def _positive(field: str, value: float) -> float:
-    checked = number(field, value)
-    if checked <= 0.0:
-        raise InputError(field, f"must be positive, not {checked:g}")
-    return checked
-
-
 def _limits(bending_limit: float, torsion_limit: float) -> tuple[float, float]:
-    return _positive("bending_limit", bending_limit), _positive("torsion_limit", torsion_limit)
+    return positive("bending_limit", bending_limit), positive("torsion_limit", torsion_limit)
 
 
 def _on_planes(stresses: np.ndarray) -> np.ndarray:

@@ -45,6 +45,22 @@ def number(field: str, value: object, least: float = -math.inf, most: float = ma
     return converted
 
 
+def positive(field: str, value: object) -> float:
+    """Check a finite number above 0, and return it as a float."""
+    converted = number(field, value)
+    if converted <= 0.0:
+        raise InputError(field, f"must be positive, not {converted:g}")
+    return converted
+
+
+def negative(field: str, value: object) -> float:
+    """Check a finite number below 0, and return it as a float."""
+    converted = number(field, value)
+    if converted >= 0.0:
+        raise InputError(field, f"must be negative, not {converted:g}")
+    return converted
+
+
 def whole_number(field: str, value: object, least: int, most: int | None = None) -> int:
     """Check a whole number from `least` to `most`. No `most` means no upper limit."""
     if not is_whole(value) or value < least or (most is not None and value > most):  # type: ignore[operator]

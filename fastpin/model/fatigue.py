@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import number, string
+from fastpin.model.checks import negative, positive, string
 
 _EXPONENTS = ("strength_exponent", "ductility_exponent", "shear_strength_exponent", "shear_ductility_exponent")
 
@@ -70,14 +70,9 @@ class FatigueConstants:
     def __post_init__(self) -> None:
         string("source", self.source)
         for name, value in self.given().items():
-            if name == "source":
-                continue
-            checked = number(name, value)
-            if name in _EXPONENTS and checked >= 0.0:
-                raise InputError(name, f"must be negative, not {checked:g}")
-            if name not in _EXPONENTS and checked <= 0.0:
-                raise InputError(name, f"must be positive, not {checked:g}")
-            object.__setattr__(self, name, checked)
+            if name != "source":
+                check = negative if name in _EXPONENTS else positive
+                object.__setattr__(self, name, check(name, value))
 
     def __repr__(self) -> str:
         return f"FatigueConstants({', '.join(f'{name}={value!r}' for name, value in self.given().items())})"

@@ -12,6 +12,7 @@ import numpy as np
 from fastpin.model.checks import items, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
+from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
@@ -137,6 +138,28 @@ class Result(Sequence[State]):
             last = len(self) - 1
             chosen = [self.states[whole_number("states", place, -len(self), last)] for place in places]
         return fastpin.plot_tractions(chosen, path, **options)
+
+    def fatigue(self, criterion: Any, body: Body = "plate", **options: Any) -> Any:
+        """Fatigue of plate or pin over the last cycle of the history, or over all states if it has no cycles.
+
+        Parameters
+        ----------
+        criterion, body, **options
+            See :func:`fastpin.damage.fatigue`.
+
+        Returns
+        -------
+        fastpin.damage.Fatigue
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.damage.fatigue` and :func:`fastpin.damage.cycle_states`.
+        """
+        from fastpin.damage import cycle_states, fatigue
+
+        states = cycle_states(self, self.cycles[-1]) if self.cycles else self.states
+        return fatigue(states, criterion, body, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 file; see :func:`fastpin.save`."""

@@ -183,7 +183,7 @@ def read_problem(file: h5py.File) -> Problem:
         attributes, fatigue = group[name].attrs, None
         if "fatigue" in group[name]:
             stored = group[name]["fatigue"].attrs.items()
-            fatigue = FatigueConstants(**{constant: as_python(value) for constant, value in stored})
+            fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
         bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue)
     given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
     return Problem(MaterialPair(bodies["pin"], bodies["plate"], group.attrs["plane"]), **given)

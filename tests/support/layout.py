@@ -19,6 +19,7 @@ RANKS = {
     "casefile": 3,
     "states": 4,
     "solver": 5,
+    "damage": 5,
     "verification": 6,
     "storage": 6,
     "studies": 7,
@@ -45,7 +46,7 @@ HOMES = {
 }
 """Packages that only some folders may import."""
 
-OPTIONAL = ("xarray", "pandas", "distributed")
+OPTIONAL = ("xarray", "pandas", "pylife", "distributed")
 """Packages that may be missing. They are imported inside functions."""
 
 MOST_LINES = 600
@@ -55,9 +56,9 @@ MOST_PUBLIC_NAMES = 40
 
 UPWARD = {
     "states/state.py": "State shows itself in notebooks",
-    "solver/result.py": "Result plots, saves and shows itself",
+    "solver/result.py": "Result plots, saves and shows itself, and has its fatigue computed",
 }
-"""Files that call the public face of fastpin inside functions, and why."""
+"""Files that call public faces, of fastpin or of other folders, inside functions, and why."""
 
 LOCAL_IMPORTS = {"cli/progress.py": "tqdm takes 60 ms, and a refused option needs no progress bar"}
 """Files that import other packages inside functions, and why."""
@@ -167,15 +168,20 @@ def one_direction(tree: Tree) -> Iterator[str]:
     """A file imports from its own folder and from lower ranks."""
     for one in tree.imports:
         target = tree.target(one)
-        if target is None or one.file in ("__init__.py", "__main__.py"):
+        if target is None or one.file in ("__init__.py", "__main__.py") or _calls_a_face(tree, one):
             continue
         if target == "":
-            if not (one.inside and one.file in UPWARD and one.module == "fastpin"):
-                yield f"{one.file}:{one.line} imports the public face"
+            yield f"{one.file}:{one.line} imports the public face"
         elif _folder(target) != _folder(one.file) and rank(target) >= rank(one.file):
             yield f"{one.file}:{one.line} imports {target}, which is not of a lower rank"
         elif _folder(target) == "" and rank(target) >= rank(one.file) and rank(one.file) > 0:
             yield f"{one.file}:{one.line} imports {target}"
+
+
+def _calls_a_face(tree: Tree, one: Import) -> bool:
+    """Whether an excepted file imports the public face of fastpin, or of a folder, inside a function."""
+    face = one.module == "fastpin" or (tree.target(one) or "").endswith("/__init__.py")
+    return one.inside and one.file in UPWARD and face
 
 
 def no_circles(tree: Tree) -> Iterator[str]:
@@ -258,7 +264,7 @@ def imports_at_the_top(tree: Tree) -> Iterator[str]:
     for one in tree.imports:
         if not one.inside or one.module.split(".")[0] in OPTIONAL:
             continue
-        if one.file in LOCAL_IMPORTS or (one.file in UPWARD and one.module == "fastpin"):
+        if one.file in LOCAL_IMPORTS or _calls_a_face(tree, one):
             continue
         yield f"{one.file}:{one.line} imports {one.module} inside a function"
 

@@ -1,0 +1,132 @@
+"""The theory of critical distances: fatigue from the stresses over a length of the material, not at one point.
+
+Sources: Tanaka, Int. J. Fract. 22 (1983) R39; Taylor, Int. J. Fatigue 21 (1999) 413 (point, line and area method);
+Bellett et al., Int. J. Fatigue 27 (2005) 207 (radius 1.32 L of the area method); Araujo et al., Fatigue Fract. Eng.
+Mater. Struct. 30 (2007) 582 (multiaxial criteria in fretting).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.damage.hot_spots import Criterion, Fatigue, evaluated, fatigue, stress_history
+from fastpin.model.checks import choice, numbers, positive
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.points import Body, Points
+from fastpin.states.state import State
+
+Method = Literal["point", "line", "area"]
+
+METHODS = ("point", "line", "area")
+"""The methods of the theory of critical distances."""
+
+AREA_RADIUS = 0.5 * (4.0 * (2.0 * math.sqrt(2.0) + 1.0) / (3.0 * math.pi)) ** 2
+"""Radius of the area method in units of L: 1.32.
+
+The mean of the largest principal stress over such a semicircle before a long crack at its threshold is ds_0.
+"""
+
+GAUSS = 32
+"""Gauss points along the line, and in both directions of the area."""
+
+
+def critical_distance(threshold_range: float, limit_range: float) -> float:
+    """L = (dK_th/ds_0)^2/pi, m (Taylor 1999).
+
+    Parameters
+    ----------
+    threshold_range : float
+        Range dK_th of the stress intensity below which long cracks do not grow, Pa sqrt(m).
+    limit_range : float
+        Range ds_0 of the stress at the fatigue limit of a smooth specimen, Pa.
+
+    Raises
+    ------
+    InputError
+        If a range is not positive and finite.
+    """
+    return (positive("threshold_range", threshold_range) / positive("limit_range", limit_range)) ** 2 / math.pi
+
+
+def fatigue_at_distance(
+    states: Sequence[State],
+    criterion: Criterion,
+    method: Method = "point",
+    body: Body = "plate",
+    *,
+    theta: ArrayLike | None = None,
+    length: float | None = None,
+    constants: FatigueConstants | None = None,
+) -> Fatigue:
+    """Fatigue at angles of the edge by the theory of critical distances.
+
+    The point method takes the stresses at the depth L/2. The line method takes their mean along the inward normal, from
+    the edge to the depth 2 L. The area method takes their mean over the part of the body within 1.32 L of the point on
+    the edge. Each stress component is averaged at each stop, as Taylor averages the stress; the criterion then takes
+    the means. The parameter of a mean is not the mean of the parameter.
+
+    Parameters
+    ----------
+    states, criterion, body, constants
+        See :func:`fatigue`.
+    method : {"point", "line", "area"}
+    theta : array_like, optional
+        Angles on the edge, rad; the hot spot of the edge unless given.
+    length : float, optional
+        L, m; from ``threshold_range`` and ``limit_range`` of the constants unless given.
+
+    Returns
+    -------
+    Fatigue
+        With the shape of `theta`, depth L/2 for the point method, and 0 for the others.
+
+    Raises
+    ------
+    InputError
+        See :func:`fatigue`; also if the method is unknown, constants for L are missing, or the length reaches beyond
+        the pin.
+    """
+    choice("method", method, METHODS)
+    edge = np.asarray(fatigue(states, criterion, body, constants=constants).hot_spot.theta) if theta is None else None
+    angles = numbers("theta", theta) if edge is None and theta is not None else edge
+    assert angles is not None
+    given = getattr(states[0].problem.pair, body).fatigue if constants is None else constants
+    if length is None:
+        given = given or FatigueConstants()
+        length = critical_distance(*given.required(("threshold_range", "limit_range"), f'method "{method}"', body))
+    length = positive("length", length)
+    radius = states[0].problem.hole_radius
+    depth, turn, weights = _places(method, length / radius, body)
+    points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
+    history = stress_history(states, points, body).reshape(len(states), *points.shape, 4)
+    place = angles, np.full(angles.shape, 0.5 * length if method == "point" else 0.0)
+    return evaluated(np.einsum("tpqc,q->tpc", history, weights), states[0], criterion, body, place, constants)
+
+
+def _places(method: Method, length: float, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Depths and angles of the points of a mean, counted from a point on the edge, and their weights, each (q,).
+
+    Depths and `length` are in units of the radius. The points crowd towards the edge, where the stress has a root.
+    """
+    if method == "point":
+        return np.array([0.5 * length]), np.zeros(1), np.ones(1)
+    u, part = np.polynomial.legendre.leggauss(GAUSS)
+    u, part = 0.5 * (u + 1.0), 0.5 * part
+    if method == "line":
+        return 2.0 * length * u**2, np.zeros(GAUSS), 2.0 * u * part
+    away = AREA_RADIUS * length * u**2
+    sign = 1.0 if body == "plate" else -1.0
+    widest = np.arccos(np.clip(-0.5 * sign * away, -1.0, 1.0))
+    swing = np.outer(widest, 2.0 * u - 1.0)  # angles from the inward normal
+    distance = np.broadcast_to(away[:, None], swing.shape)
+    inward, sideways = distance * np.cos(swing), distance * np.sin(swing)
+    beyond = distance**2 + 2.0 * sign * inward  # r^2 - 1
+    depth = np.maximum(sign * beyond / (np.sqrt(np.maximum(1.0 + beyond, 0.0)) + 1.0), 0.0)
+    weights = np.outer(away * u * part * widest, part)
+    turn = np.arctan2(sideways, 1.0 + sign * inward)
+    return depth.ravel(), turn.ravel(), (weights / weights.sum()).ravel()

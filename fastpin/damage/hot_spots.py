@@ -1,0 +1,310 @@
+"""Fatigue of plate or pin over one load cycle: parameters, planes, lives and hot spots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.damage import criteria, lives
+from fastpin.errors import InputError
+from fastpin.model.angles import near_bottom
+from fastpin.model.checks import choice, instance, items, whole_number
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.materials import Material
+from fastpin.model.points import Body, Points
+from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+
+Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
+
+CRITERIA = ("smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van")
+"""The criteria; :mod:`fastpin.damage.criteria` has their formulas and sources."""
+
+EVERYWHERE = 360
+"""Angles round the whole edge, besides the nodes and the ends of zones."""
+
+
+class HotSpot(NamedTuple):
+    """The point with the largest parameter.
+
+    Attributes
+    ----------
+    parameter : float
+    theta : float
+        Angle of the point, rad.
+    depth : float
+        Distance from the edge, m.
+    plane : float
+        Angle of the worst plane's normal from the +x axis, rad; NaN for a criterion without planes.
+    life : float
+        Cycles; NaN if the life is unknown.
+    """
+
+    parameter: float
+    theta: float
+    depth: float
+    plane: float
+    life: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fatigue:
+    """Fatigue of one body over one load cycle. All arrays have the shape of the points.
+
+    Attributes
+    ----------
+    criterion : str
+        One of :data:`CRITERIA`.
+    body : str
+        "plate" or "pin".
+    theta, depth : ndarray
+        Angles of the points, rad, and distances from the edge, m.
+    parameter : ndarray
+        Pa; rad for "fatemi-socie".
+    plane : ndarray or None
+        Angle of the worst plane's normal from the +x axis, rad, in (-pi/2, pi/2]; NaN where the parameter is 0. None
+        for "crossland" and "dang-van".
+    life : ndarray or None
+        Cycles, infinite where the parameter is 0; None if the criterion has no life or the material no constants for
+        it.
+    limit : float or None
+        Parameter at the fatigue limit, Pa; None for "smith-watson-topper" and "fatemi-socie".
+    """
+
+    criterion: str
+    body: str
+    theta: np.ndarray
+    depth: np.ndarray
+    parameter: np.ndarray
+    plane: np.ndarray | None
+    life: np.ndarray | None
+    limit: float | None
+
+    def __repr__(self) -> str:
+        spot = self.hot_spot
+        found = f"{spot.parameter:.5g} at theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
+        life = "" if self.life is None else f", life {spot.life:.4g} cycles"
+        return f"<Fatigue of the {self.body}, {self.criterion}: largest parameter {found}{life}>"
+
+    @property
+    def margin(self) -> np.ndarray | None:
+        """1 - parameter/limit: positive below the fatigue limit, 0 at the limit. None without a limit."""
+        return None if self.limit is None else 1.0 - self.parameter / self.limit
+
+    @property
+    def hot_spot(self) -> HotSpot:
+        """The point with the largest parameter; the first one of equal points."""
+        at = np.unravel_index(int(np.argmax(self.parameter)), self.parameter.shape)
+        optional = (np.nan if array is None else float(array[at]) for array in (self.plane, self.life))
+        return HotSpot(float(self.parameter[at]), float(self.theta[at]), float(self.depth[at]), *optional)
+
+
+def fatigue(
+    states: Sequence[State],
+    criterion: Criterion,
+    body: Body = "plate",
+    *,
+    points: Points | None = None,
+    depth: ArrayLike | None = None,
+    constants: FatigueConstants | None = None,
+) -> Fatigue:
+    """Fatigue of plate or pin over one load cycle, at points on its edge or inside.
+
+    The states are the stops of the cycle. Between two stops the stresses are unknown: keep states between the corners,
+    ``solve(..., between=10)``. The order of the states makes no difference.
+
+    Parameters
+    ----------
+    states : sequence of State
+        All stops of one cycle of one problem, at least two.
+    criterion : str
+        One of :data:`CRITERIA`.
+    body : {"plate", "pin"}
+    points : Points, optional
+        Unless given, the points lie all round the edge: at the nodes, at the ends of all contact and stick zones, and
+        at each degree.
+    depth : array_like, optional
+        Distance of these points from the edge, m; 0 unless given. A column of depths gives a grid.
+    constants : FatigueConstants, optional
+        In place of the constants of the body's material.
+
+    Raises
+    ------
+    InputError
+        If the states are no cycle of one problem, a point lies outside the body or its stress is infinite, both points
+        and depth are given, the body is rigid, or the material lacks constants of the criterion.
+    """
+    stops = _stops(states)
+    if points is None:
+        points = Points.at_depth(0.0 if depth is None else depth, edge_angles(stops))
+    elif depth is not None:
+        raise InputError("depth", "can't be given together with points")
+    history = stress_history(stops, points, body)
+    place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
+    return evaluated(history, stops[0], criterion, body, place, constants)
+
+
+def stress_history(states: Sequence[State], points: Points, body: Body = "plate") -> np.ndarray:
+    """The stresses at points over the states, Pa, shape (states, points, 4): sxx, syy, szz, sxy.
+
+    Raises
+    ------
+    InputError
+        See :meth:`fastpin.State.stress`.
+    """
+    rows = []
+    for state in states:
+        stress = state.stress(points, body)
+        rows.append(np.stack([stress.sxx, stress.syy, stress.axial, stress.sxy], axis=-1).reshape(-1, 4))
+    return np.array(rows)
+
+
+def edge_angles(states: Sequence[State]) -> np.ndarray:
+    """Angles all round the edge, rad, in (-3 pi/2, pi/2], in increasing order.
+
+    They are the nodes, the ends of all contact and stick zones of the states, and each degree.
+    """
+    ends = [angle for state in states for interval in (*state.contact, *state.stick) for angle in interval]
+    degrees = np.linspace(-1.5 * np.pi, 0.5 * np.pi, EVERYWHERE, endpoint=False)
+    return np.unique([near_bottom(angle) for angle in np.concatenate([states[0].theta, ends, degrees])])
+
+
+def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
+    """The states of a cycle, from the corner at which it begins to the corner at which it ends.
+
+    Parameters
+    ----------
+    states : sequence of State
+        For example a result.
+    cycle : Cycle
+        For example ``result.cycles[-1]``.
+
+    Raises
+    ------
+    InputError
+        If the states at some corners of the cycle were not kept.
+    """
+    end = instance("cycle", cycle, Cycle, "a fastpin.states.cycles.Cycle").corner
+    begin = end - cycle.length
+    found = [state for state in states if begin <= state.step + state.fraction - 1.0 <= end]
+    if not {state.step for state in found if state.fraction == 1.0}.issuperset(range(max(begin, 0), end + 1)):
+        raise InputError("states", f"must hold all corners of the cycle, {max(begin, 0)} to {end}")
+    return found
+
+
+def damage_sum(
+    states: Sequence[State],
+    cycles: Sequence[Cycle],
+    criterion: Criterion,
+    body: Body = "plate",
+    *,
+    depth: ArrayLike = 0.0,
+    repeats: int = 1,
+    constants: FatigueConstants | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Miner's sum over the cycles of a history, along the edge; 1 means failure.
+
+    Parameters
+    ----------
+    states : sequence of State
+        The states of the history, such as a result.
+    cycles : sequence of Cycle
+        The cycles to count. Cycles inside others must not be counted with these.
+    criterion, body, depth, constants
+        See :func:`fatigue`. The criterion needs a life.
+    repeats : int
+        How often the cycles are run through.
+
+    Returns
+    -------
+    theta, damage : ndarray
+        Angles, rad, and damage sums, in one shape.
+
+    Raises
+    ------
+    InputError
+        See :func:`fatigue`; also if there are no cycles, or the material has no constants for a life.
+    """
+    chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles")]
+    if not chosen:
+        raise InputError("cycles", "must be at least one")
+    points = Points.at_depth(depth, edge_angles(_stops(states)))
+    found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
+    known = [life for life in found if life is not None]
+    if len(known) < len(found):
+        raise InputError("criterion", f"the {body}'s material has no constants for a life by {criterion}")
+    counts = np.full(len(known), whole_number("repeats", repeats, 1))
+    return points.theta, lives.miner(counts, np.array(known))
+
+
+def evaluated(
+    history: np.ndarray,
+    state: State,
+    criterion: Criterion,
+    body: Body,
+    place: tuple[np.ndarray, np.ndarray],
+    constants: FatigueConstants | None,
+) -> Fatigue:
+    """The criterion on a history of stresses; `place` holds angles and depths of its points, in their shape."""
+    material = getattr(state.problem.pair, body)
+    given = material.fatigue if constants is None else instance("constants", constants, FatigueConstants, "constants")
+    given = given or FatigueConstants()
+    choice("criterion", criterion, CRITERIA)
+    by_planes = criterion in ("smith-watson-topper", "fatemi-socie")
+    values = _with_life if by_planes else _with_limit
+    parameter, plane, life, limit = values(history, criterion, material, given, body)
+    shaped = [None if array is None else array.reshape(place[0].shape) for array in (parameter, plane, life)]
+    assert shaped[0] is not None
+    return Fatigue(criterion, body, *place, shaped[0], shaped[1], shaped[2], limit)
+
+
+_Found = tuple[np.ndarray, np.ndarray | None, np.ndarray | None, float | None]
+
+
+def _with_life(
+    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: Body
+) -> _Found:
+    """Parameter, plane and life; the life is None if the constants do not give one."""
+    if criterion == "smith-watson-topper":
+        found = criteria.smith_watson_topper(history, material.E, material.nu)
+        axial = ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent")
+        known = [getattr(given, name) for name in axial]
+        life = None if None in known else lives.smith_watson_topper_life(found.parameter, material.E, *known)
+    else:
+        k, strength = given.required(("normal_stress_factor", "yield_strength"), criterion, body)
+        found = criteria.fatemi_socie(history, material.shear_modulus, k, strength)
+        torsional = (
+            "shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"
+        )  # fmt: skip
+        known = [getattr(given, name) for name in torsional]
+        life = None if None in known else lives.fatemi_socie_life(found.parameter, material.shear_modulus, *known)
+    return found.parameter, found.angle, life, None
+
+
+def _with_limit(
+    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: Body
+) -> _Found:
+    """Parameter, plane and limit, from the fatigue limits under bending and torsion."""
+    limits = given.required(("bending_limit", "torsion_limit"), criterion, body)
+    if criterion == "findley":
+        k, limit = criteria.findley_limit(*limits)
+        found = criteria.findley(history, k)
+        return found.parameter, found.angle, None, limit
+    if criterion == "crossland":
+        alpha, limit = criteria.crossland_limit(*limits)
+        return criteria.crossland(history, alpha), None, None, limit
+    a, limit = criteria.dang_van_limit(*limits)
+    return criteria.dang_van(history, a), None, None, limit
+
+
+def _stops(states: Sequence[State]) -> list[State]:
+    stops = [instance("states", state, State, "states") for state in items("states", states, "states")]
+    if len(stops) < 2:
+        raise InputError("states", f"must be the stops of a cycle, at least two, not {len(stops)}")
+    if any(state.problem != stops[0].problem for state in stops):
+        raise InputError("states", "must be states of one problem")
+    return stops

@@ -1,0 +1,131 @@
+"""Lives from parameters of criteria, and sums of damage."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fastpin.errors import InputError
+from fastpin.model.checks import negative, number_array, numbers, positive
+
+STEPS = 100
+"""Most steps of Newton's method for a life."""
+
+
+def smith_watson_topper_life(
+    parameter: ArrayLike,
+    E: float,
+    fatigue_strength: float,
+    strength_exponent: float,
+    fatigue_ductility: float,
+    ductility_exponent: float,
+) -> np.ndarray:
+    """Cycles N at which sf'^2/E (2N)^(2b) + sf' ef' (2N)^(b+c) equals the parameter (Smith, Watson and Topper 1970).
+
+    Parameters
+    ----------
+    parameter : array_like
+        Values of :func:`smith_watson_topper`, Pa; any shape.
+    E, fatigue_strength, strength_exponent, fatigue_ductility, ductility_exponent : float
+        Young's modulus, Pa, and the constants sf', Pa, b, ef' and c of :class:`fastpin.model.FatigueConstants`.
+
+    Returns
+    -------
+    ndarray
+        Cycles, shape of the parameter; infinite where it is 0.
+
+    Raises
+    ------
+    InputError
+        If a parameter is negative, a coefficient not positive or an exponent not negative.
+    """
+    strength = positive("fatigue_strength", fatigue_strength)
+    elastic = strength**2 / positive("E", E)
+    plastic = strength * positive("fatigue_ductility", fatigue_ductility)
+    b, c = negative("strength_exponent", strength_exponent), negative("ductility_exponent", ductility_exponent)
+    return _cycles(parameter, (elastic, plastic), (2.0 * b, b + c))
+
+
+def fatemi_socie_life(
+    parameter: ArrayLike,
+    shear_modulus: float,
+    shear_fatigue_strength: float,
+    shear_strength_exponent: float,
+    shear_fatigue_ductility: float,
+    shear_ductility_exponent: float,
+) -> np.ndarray:
+    """Cycles N at which tf'/G (2N)^b0 + gf' (2N)^c0 equals the parameter (Fatemi and Socie 1988).
+
+    Parameters
+    ----------
+    parameter : array_like
+        Values of :func:`fatemi_socie`, rad; any shape.
+    shear_modulus, shear_fatigue_strength : float
+    shear_strength_exponent, shear_fatigue_ductility, shear_ductility_exponent : float
+        G, Pa, and the constants tf', Pa, b0, gf' and c0 of :class:`fastpin.model.FatigueConstants`.
+
+    Returns
+    -------
+    ndarray
+        Cycles, shape of the parameter; infinite where it is 0.
+
+    Raises
+    ------
+    InputError
+        As :func:`smith_watson_topper_life`.
+    """
+    strength = positive("shear_fatigue_strength", shear_fatigue_strength)
+    elastic = strength / positive("shear_modulus", shear_modulus)
+    plastic = positive("shear_fatigue_ductility", shear_fatigue_ductility)
+    b = negative("shear_strength_exponent", shear_strength_exponent)
+    return _cycles(parameter, (elastic, plastic), (b, negative("shear_ductility_exponent", shear_ductility_exponent)))
+
+
+def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
+    """The sum of n_i/N_i over the blocks of a spectrum (Palmgren 1924, Miner 1945); 1 means failure.
+
+    Parameters
+    ----------
+    counts : array_like, shape (blocks,)
+        Numbers n_i of cycles, at least 0.
+    lives : array_like, shape (blocks, ...)
+        Lives N_i in cycles, above 0; an infinite life does no damage.
+
+    Returns
+    -------
+    ndarray
+        Damage sums, shape of the lives of one block.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or there are not as many lives as counts.
+    """
+    number_of, cycles = numbers("counts", counts, 0.0), number_array("lives", lives)
+    if number_of.ndim != 1 or cycles.shape[:1] != number_of.shape:
+        raise InputError("lives", f"must have as many rows as there are counts, not {cycles.shape[:1]}")
+    if not np.all(cycles > 0.0):
+        raise InputError("lives", "must be above 0")
+    return np.tensordot(number_of, 1.0 / cycles, axes=1)
+
+
+def _cycles(parameter: ArrayLike, coefficients: tuple[float, float], exponents: tuple[float, float]) -> np.ndarray:
+    """Cycles at which the sum of two falling powers of 2N equals the parameter.
+
+    The logarithm of the sum is a convex, falling function of x = log 2N. Newton's method begins where one power alone
+    equals the parameter. It goes up to the root without passing it.
+    """
+    values = numbers("parameter", parameter, 0.0)
+    logs, slopes = np.log(coefficients), np.array(exponents)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        target = np.log(values)
+        x = np.max((target[..., None] - logs) / slopes, axis=-1)
+        for _ in range(STEPS):
+            powers = logs + x[..., None] * slopes
+            total = np.logaddexp(powers[..., 0], powers[..., 1])
+            slope = np.sum(slopes * np.exp(powers - total[..., None]), axis=-1)
+            moved = np.where(np.isfinite(target), np.maximum(x, x - (total - target) / slope), np.inf)
+            if np.array_equal(moved, x):
+                break
+            x = moved
+        return 0.5 * np.exp(x)
