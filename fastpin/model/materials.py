@@ -122,6 +122,32 @@ MATERIALS: dict[str, Material] = {
     "aluminium": Material(69e9, 0.33, "aluminium"),
     "steel": Material(210e9, 0.30, "steel"),
     "nickel alloy": Material(199.9e9, 0.294, "nickel alloy"),
+    "2024-T3": Material(
+        70e9,
+        0.33,
+        "2024-T3",
+        FatigueConstants(
+            fatigue_strength=1100e6,
+            strength_exponent=-0.124,
+            fatigue_ductility=0.22,
+            ductility_exponent=-0.59,
+            yield_strength=379e6,
+            source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+        ),
+    ),
+    "SAE 1020": Material(
+        203e9,
+        0.30,
+        "SAE 1020",
+        FatigueConstants(
+            fatigue_strength=896e6,
+            strength_exponent=-0.12,
+            fatigue_ductility=0.41,
+            ductility_exponent=-0.51,
+            yield_strength=262e6,
+            source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+        ),
+    ),
 }
 """Named materials at room temperature.
 
@@ -129,6 +155,9 @@ MATERIALS: dict[str, Material] = {
   and 0.0595. The paper's Ti6Al4V-Al pair has -0.2503 and -0.0594, in the paper's sign convention.
 * steel (210 GPa, 0.30): EN 1993-1-1, 3.2.6.
 * nickel alloy (199.9 GPa, 0.294): INCONEL alloy 718, Special Metals data sheet SMC-045, annealed and aged, 21 C.
+* 2024-T3 sheet (70 GPa) and SAE 1020 hot-rolled sheet (203 GPa) have fatigue constants. They are quoted after Stephens,
+  Fatemi, Stephens and Fuchs, Metal Fatigue in Engineering, 2nd ed. (Wiley 2001), appendix A, which cites SAE J1099.
+  Compare them with the print before relying on a life. Poisson's ratios (0.33, 0.30) are usual values of such alloys.
 """
 
 

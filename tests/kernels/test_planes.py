@@ -1,0 +1,105 @@
+"""The search for the worst plane: compiled, as plain Python, and against a scan of many planes."""
+
+import numpy as np
+import pytest
+
+from fastpin.kernels import planes
+
+KERNELS = ("worst_planes",)
+INNER = ("_product", "_value", "_curvature", "_refined")
+FORMS = (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, planes.SWING_AND_PUSH)
+
+
+def python_kernel():
+    """The kernel as plain Python: its parts are taken from the same module."""
+    space = dict(vars(planes))
+    for name in (*INNER, *KERNELS):
+        function = getattr(planes, name).py_func
+        space[name] = type(function)(function.__code__, space, name)
+    return space["worst_planes"]
+
+
+def on_plane(path, x, form):
+    """The criterion on the planes x, without any search."""
+    sums = np.stack([np.ones_like(x), np.cos(x), np.sin(x)])
+    swung, push = path[:, :3] @ sums, path[:, 3:] @ sums
+    swing, most = 0.5 * np.ptp(swung, axis=0), push.max(axis=0)
+    if form == planes.SWING_AND_PUSH:
+        return swing + most
+    return swing * (np.maximum(most, 0.0) + (form == planes.SWING_TIMES_MORE))
+
+
+def scan(path, form, levels=6):
+    """The largest value on a fine grid of planes, refined about its best planes."""
+    x = np.linspace(-np.pi, np.pi, 20_001)
+    step = x[1] - x[0]
+    values = on_plane(path, x, form)
+    for _ in range(levels):
+        best = x[np.argsort(values)[-20:]]
+        x = (best[:, None] + np.linspace(-step, step, 41)).ravel()
+        step, values = step / 20.0, on_plane(path, x, form)
+    return values.max()
+
+
+def random_paths(seed, points, times):
+    """Random paths: rough, smooth and closed, and in proportion."""
+    rng = np.random.default_rng(seed)
+    rough = rng.normal(size=(points, times, 6))
+    turn = np.linspace(0.0, 2.0 * np.pi, times)
+    waves = [rng.normal(size=(points, 1, 6)) * np.cos(k * turn + rng.uniform(0.0, 6.0))[:, None] for k in range(4)]
+    straight = rng.normal(size=(points, 1, 6)) * np.sin(turn)[:, None] + rng.normal(size=(points, 1, 6))
+    return np.ascontiguousarray(np.concatenate([rough, sum(waves), straight]))
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_worst_plane_is_that_of_a_scan(form):
+    paths = random_paths(1, 40, 50)
+    out = np.empty((len(paths), 2))
+    planes.worst_planes(paths, form, out)
+    for path, (value, angle) in zip(paths, out, strict=True):
+        scanned = scan(path, form)
+        assert value == pytest.approx(scanned, rel=1e-10)
+        assert value >= scanned * (1.0 - 1e-13)
+        if value == 0.0:  # no push on any plane
+            assert np.isnan(angle)
+            continue
+        assert on_plane(path, np.array([2.0 * angle]), form)[0] == pytest.approx(value, rel=1e-12)
+        assert -0.5 * np.pi < angle <= 0.5 * np.pi
+    assert np.count_nonzero(out[:, 0]) > 100
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_compiled_and_plain_python_agree(form):
+    paths = random_paths(2, 3, 12)
+    out, plain = np.empty((len(paths), 2)), np.empty((len(paths), 2))
+    planes.worst_planes(paths, form, out)
+    python_kernel()(paths, form, plain)
+    np.testing.assert_allclose(out[:, 0], plain[:, 0], rtol=1e-13)
+    np.testing.assert_allclose(out[:, 1], plain[:, 1], rtol=1e-7)
+
+
+def test_the_angle_is_a_zero_of_the_derivative():
+    """U = 1 + cos x is swung once, V = 2 + sin x pushes: (1 + cos x)(2 + sin x)/2 is largest near x = 0.27."""
+    path = np.array([[[1.0, 1.0, 0.0, 2.0, 0.0, 1.0], [0.0, 0.0, 0.0, 2.0, 0.0, 1.0]]])
+    out = np.empty((1, 2))
+    planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
+    x = 2.0 * out[0, 1]
+    assert -np.sin(x) * (2.0 + np.sin(x)) + (1.0 + np.cos(x)) * np.cos(x) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_a_swing_without_push_counts_nothing():
+    path = np.array([[[1.0, 0.3, 0.2, -2.0, 0.5, 0.5], [0.0, -0.4, 0.1, -2.0, 0.4, 0.4]]])
+    out = np.empty((1, 2))
+    planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
+    assert out[0, 0] == 0.0
+    assert np.isnan(out[0, 1])
+
+
+def test_planes_that_are_all_alike_end_the_search():
+    """A component that turns with time: every plane is as bad as any other, but for the number of stops."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
+    ones = np.ones_like(turn)
+    path = np.stack([0.0 * ones, np.cos(turn), np.sin(turn), ones, 0.5 * np.cos(turn), 0.5 * np.sin(turn)], axis=-1)
+    out = np.empty((1, 2))
+    planes.worst_planes(path[None], planes.SWING_TIMES_PUSH, out)
+    assert out[0, 0] == pytest.approx(1.5, rel=1e-12)
