@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage.hot_spots import Criterion, Fatigue, evaluated, fatigue, stress_history
+from fastpin.damage.hot_spots import Criterion, Fatigue, cycle_stops, evaluated, fatigue, stress_history
 from fastpin.model.checks import choice, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import Body, Points
+from fastpin.model.points import BODIES, Body, Points
 from fastpin.states.state import State
 
 Method = Literal["point", "line", "area"]
@@ -92,20 +92,22 @@ def fatigue_at_distance(
         the pin.
     """
     choice("method", method, METHODS)
-    edge = np.asarray(fatigue(states, criterion, body, constants=constants).hot_spot.theta) if theta is None else None
-    angles = numbers("theta", theta) if edge is None and theta is not None else edge
-    assert angles is not None
-    given = getattr(states[0].problem.pair, body).fatigue if constants is None else constants
+    choice("body", body, BODIES)
+    stops = cycle_stops(states)
+    if theta is None:
+        theta = fatigue(stops, criterion, body, constants=constants).hot_spot.theta
+    angles, problem = numbers("theta", theta), stops[0].problem
+    given = getattr(problem.pair, body).fatigue if constants is None else constants
     if length is None:
         given = given or FatigueConstants()
         length = critical_distance(*given.required(("threshold_range", "limit_range"), f'method "{method}"', body))
     length = positive("length", length)
-    radius = states[0].problem.hole_radius
+    radius = problem.hole_radius
     depth, turn, weights = _places(method, length / radius, body)
     points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
-    history = stress_history(states, points, body).reshape(len(states), *points.shape, 4)
+    history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
     place = angles, np.full(angles.shape, 0.5 * length if method == "point" else 0.0)
-    return evaluated(np.einsum("tpqc,q->tpc", history, weights), states[0], criterion, body, place, constants)
+    return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
 
 
 def _places(method: Method, length: float, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -138,7 +138,7 @@ def fatigue(
         If the states are no cycle of one problem, a point lies outside the body or its stress is infinite, both points
         and depth are given, the body is rigid, or the material lacks constants of the criterion.
     """
-    stops = _stops(states)
+    stops = cycle_stops(states)
     if points is None:
         points = Points.at_depth(0.0 if depth is None else depth, edge_angles(stops))
     elif depth is not None:
@@ -188,12 +188,31 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     InputError
         If the states at some corners of the cycle were not kept.
     """
-    end = instance("cycle", cycle, Cycle, "a fastpin.states.cycles.Cycle").corner
+    end = instance("cycle", cycle, Cycle, "a cycle of a result").corner
     begin = end - cycle.length
     found = [state for state in states if begin <= state.step + state.fraction - 1.0 <= end]
     if not {state.step for state in found if state.fraction == 1.0}.issuperset(range(max(begin, 0), end + 1)):
         raise InputError("states", f"must hold all corners of the cycle, {max(begin, 0)} to {end}")
     return found
+
+
+def cycle_stops(states: Sequence[State]) -> list[State]:
+    """Check the stops of a cycle, and return them as a list.
+
+    Raises
+    ------
+    InputError
+        If they are no states of one problem, or less than two.
+    """
+    stops = [
+        instance("states", state, State, "a sequence of fastpin.State")
+        for state in items("states", states, "a sequence of fastpin.State")
+    ]
+    if len(stops) < 2:
+        raise InputError("states", f"must be the stops of a cycle, at least two, not {len(stops)}")
+    if any(state.problem != stops[0].problem for state in stops):
+        raise InputError("states", "must be states of one problem")
+    return stops
 
 
 def damage_sum(
@@ -229,10 +248,10 @@ def damage_sum(
     InputError
         See :func:`fatigue`; also if there are no cycles, or the material has no constants for a life.
     """
-    chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles")]
+    chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles of a result")]
     if not chosen:
         raise InputError("cycles", "must be at least one")
-    points = Points.at_depth(depth, edge_angles(_stops(states)))
+    points = Points.at_depth(depth, edge_angles(cycle_stops(states)))
     found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
     known = [life for life in found if life is not None]
     if len(known) < len(found):
@@ -251,7 +270,11 @@ def evaluated(
 ) -> Fatigue:
     """The criterion on a history of stresses; `place` holds angles and depths of its points, in their shape."""
     material = getattr(state.problem.pair, body)
-    given = material.fatigue if constants is None else instance("constants", constants, FatigueConstants, "constants")
+    given = (
+        material.fatigue
+        if constants is None
+        else instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+    )
     given = given or FatigueConstants()
     choice("criterion", criterion, CRITERIA)
     by_planes = criterion in ("smith-watson-topper", "fatemi-socie")
@@ -299,12 +322,3 @@ def _with_limit(
         return criteria.crossland(history, alpha), None, None, limit
     a, limit = criteria.dang_van_limit(*limits)
     return criteria.dang_van(history, a), None, None, limit
-
-
-def _stops(states: Sequence[State]) -> list[State]:
-    stops = [instance("states", state, State, "states") for state in items("states", states, "states")]
-    if len(stops) < 2:
-        raise InputError("states", f"must be the stops of a cycle, at least two, not {len(stops)}")
-    if any(state.problem != stops[0].problem for state in stops):
-        raise InputError("states", "must be states of one problem")
-    return stops

@@ -320,7 +320,8 @@ pin.E = 1e11
         'plan, line 3: load.2.Q: must be a number, not "a" '
         '(in 4 runs, first pin.material = "stahl", contact.friction = 0.2, load.2.Q = "a")',
         'plan, line 6: pin.material: must be "Ti-6Al-4V" or "aluminium" or "steel" or "nickel alloy" or "2024-T3" or '
-        '"SAE 1020", not "stahl", did you mean "steel"? (in 4 runs, first pin.material = "stahl", contact.friction = 0.2, load.2.Q = 2)',
+        '"SAE 1020", not "stahl", did you mean "steel"? '
+        '(in 4 runs, first pin.material = "stahl", contact.friction = 0.2, load.2.Q = 2)',
     ]
 
 
