@@ -14,10 +14,12 @@ from collections.abc import Callable
 from typing import Any
 
 import cases
+import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
 import fastpin
+from fastpin import damage
 from fastpin.elasticity.system import System
 
 Timed = Callable[..., Any]
@@ -83,3 +85,12 @@ def test_readings(timed: Timed, nodes: int) -> None:
         return fresh.contact, fresh.stick, fresh.slip_zones, fresh.peak_pressure, fresh.peak_shear, fresh.resultants
 
     assert timed(read, nodes, least=5, setup=lambda: dataclasses.replace(state))[0]
+
+
+@pytest.mark.benchmark(group="fatigue")
+def test_fatigue(timed: Timed, nodes: int) -> None:
+    """Time Smith, Watson and Topper's parameter at 2,000 points from some 200 stops of a cycle, with the stresses."""
+    stops = fastpin.solve(cases.PROBLEM, cases.CYCLE, start=cases.steady_state(nodes), between=99)
+    points = fastpin.Points.at_depth(np.linspace(0.0, 0.1, 20)[:, None], np.linspace(-2.5, -0.6, 100))
+    found = timed(lambda: damage.fatigue(stops, "smith-watson-topper", points=points), nodes)
+    assert found.parameter.max() > 0.0

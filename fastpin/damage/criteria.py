@@ -6,7 +6,7 @@ are zero: plane strain or plane stress. The criteria of planes search all planes
 
 Sources: Smith, Watson and Topper, J. Materials 5 (1970) 767; Fatemi and Socie, Fatigue Fract. Eng. Mater. Struct. 11
 (1988) 149; Findley, J. Eng. Ind. 81 (1959) 301; Crossland, Proc. Int. Conf. Fatigue of Metals, London (1956) 138; Dang
-Van, Sci. Tech. Armement 47 (1973) 647; Papadopoulos et al., Int. J. Fatigue 19 (1997) 219, for the smallest sphere.
+Van, Sci. Tech. Armement 47 (1973); Papadopoulos et al., Int. J. Fatigue 19 (1997) 219, for the smallest sphere.
 """
 
 from __future__ import annotations

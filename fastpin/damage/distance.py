@@ -1,8 +1,8 @@
 """The theory of critical distances: fatigue from the stresses over a length of the material, not at one point.
 
 Sources: Tanaka, Int. J. Fract. 22 (1983) R39; Taylor, Int. J. Fatigue 21 (1999) 413 (point, line and area method);
-Bellett et al., Int. J. Fatigue 27 (2005) 207 (radius 1.32 L of the area method); Araujo et al., Fatigue Fract. Eng.
-Mater. Struct. 30 (2007) 582 (multiaxial criteria in fretting).
+Bellett et al., Int. J. Fatigue 27 (2005) 207 (radius 1.32 L of the area method); Araujo et al., Int. J. Fatigue 29
+(2007) 95 (multiaxial criteria in fretting).
 """
 
 from __future__ import annotations

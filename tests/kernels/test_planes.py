@@ -6,7 +6,7 @@ import pytest
 from fastpin.kernels import planes
 
 KERNELS = ("worst_planes",)
-INNER = ("_product", "_value", "_curvature", "_refined")
+INNER = ("_product", "_value", "_bounds", "_refined")
 FORMS = (planes.SWING_TIMES_PUSH, planes.SWING_TIMES_MORE, planes.SWING_AND_PUSH)
 
 
@@ -93,6 +93,19 @@ def test_a_swing_without_push_counts_nothing():
     planes.worst_planes(path, planes.SWING_TIMES_PUSH, out)
     assert out[0, 0] == 0.0
     assert np.isnan(out[0, 1])
+
+
+@pytest.mark.parametrize("excess", [1e-1, 1e-3, 1e-5, 1e-7])
+def test_planes_that_are_hardly_pushed_are_found(excess):
+    """V is above 0 on a few planes only, by a small excess."""
+    paths = random_paths(5, 10, 60)
+    paths[..., 3] -= np.max(paths[..., 3] + np.hypot(paths[..., 4], paths[..., 5]), axis=1)[:, None] - excess
+    out = np.empty((len(paths), 2))
+    planes.worst_planes(paths, planes.SWING_TIMES_PUSH, out)
+    scanned = np.array([scan(path, planes.SWING_TIMES_PUSH, levels=8) for path in paths])
+    assert np.all(out[:, 0] > 0.0)
+    rounding = 1e-15 * np.abs(paths).max() ** 2  # of V, a small difference of large terms
+    np.testing.assert_array_less(scanned - out[:, 0], 1e-10 * scanned + rounding)
 
 
 def test_planes_that_are_all_alike_end_the_search():

@@ -85,6 +85,13 @@ def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
     assert "3 x 10 x 2 x 2 = 120 runs" in text
 
 
+def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (ROOT / "docs" / "fatigue.md").read_text(encoding="utf-8")
+    (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
+    exec(compile(code, "fatigue.md", "exec"), {})
+    assert capsys.readouterr().out == printed
+
+
 def test_every_column_of_the_index_is_explained() -> None:
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
     for name in (
