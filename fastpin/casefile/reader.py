@@ -257,6 +257,9 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     if section.value("rigid") is True:
         section.report(f"[{section.name}]: fatigue can't be given together with rigid", "fatigue")
         return None
+    if "load_parameter" in source.section("contact"):
+        section.report("fatigue: has no meaning with load_parameter, for the stresses have no unit", "fatigue")
+        return None
     if not isinstance(table, dict):
         section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
         return None

@@ -130,7 +130,7 @@ def fatigue(
     depth : array_like, optional
         Distance of these points from the edge, m; 0 unless given. A column of depths gives a grid.
     constants : FatigueConstants, optional
-        In place of the constants of the body's material.
+        In place of the constants of the body's material. In a dimensionless problem they count in its units.
 
     Raises
     ------

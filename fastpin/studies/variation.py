@@ -70,10 +70,10 @@ class BaseCase:
 
 
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid"),
+    "material": ("E", "nu", "rigid", "fatigue"),
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu"),
+    "rigid": ("material", "E", "nu", "fatigue"),
 }
 """Keys of the base case that each key of [pin] and [plate] replaces, in the same section."""
 
@@ -149,8 +149,10 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
         return
     material_name = body.get("material")
     if key in ("E", "nu") and isinstance(material_name, str) and material_name in MATERIALS:
-        # One constant is varied. The other constant of the material stays.
+        # One constant is varied. The other constants of the material stay.
         material = MATERIALS[material_name]
         body |= {"E": material.E, "nu": material.nu}
+        if material.fatigue is not None:
+            body.setdefault("fatigue", material.fatigue.given())
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)

@@ -11,6 +11,7 @@ from fastpin.casefile import parse_case
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model import FatigueConstants
 from fastpin.studies.identity import canonical
+from fastpin.studies.variation import with_values
 
 CONSTANTS = FatigueConstants(fatigue_strength=1.1e9, strength_exponent=-0.124, source="a book")
 TABLE = 'fatigue = { fatigue_strength = 1.1e9, strength_exponent = -0.124, source = "a book" }'
@@ -131,6 +132,22 @@ def test_a_rigid_body_has_no_constants():
     text = CASE.replace("E = 70e9\nnu = 0.33", "rigid = true").format(plate=TABLE)
     with pytest.raises(CaseFileError, match=r"\[plate\]: fatigue can't be given together with rigid"):
         parse_case(text)
+
+
+def test_a_dimensionless_case_has_no_constants():
+    text = CASE.replace("hole_radius = 0.01\nclearance = 1e-5", "load_parameter = 0.1")
+    with pytest.raises(CaseFileError, match=r"fatigue: has no meaning with load_parameter"):
+        parse_case(text.format(plate=TABLE))
+    assert parse_case(text.format(plate="").replace('"steel"', '"2024-T3"')).problem.pair.pin.fatigue is None
+
+
+def test_plans_replace_constants_with_their_material():
+    base = {"plate": {"E": 70e9, "nu": 0.33, "fatigue": CONSTANTS.given()}, "pin": {"material": "2024-T3"}}
+    assert with_values(base, {"plate.material": "steel"})["plate"] == {"material": "steel"}
+    assert with_values(base, {"plate.rigid": True})["plate"] == {"rigid": True}
+    assert with_values(base, {"plate.E": 60e9})["plate"] == {**base["plate"], "E": 60e9}
+    kept = fastpin.MATERIALS["2024-T3"].fatigue.given()
+    assert with_values(base, {"pin.nu": 0.3})["pin"] == {"E": 70e9, "nu": 0.3, "fatigue": kept}
 
 
 def test_constants_survive_a_file(tmp_path):
