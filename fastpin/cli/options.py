@@ -90,33 +90,7 @@ def add_run(commands: Any) -> None:
         "-o", "--output", metavar="FILE", type=Path, help="write each kept state to an HDF5 file when it is solved"
     )
     run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
-    run.add_argument(
-        "--keep",
-        metavar="WHICH",
-        help='states to keep: all, corners, cycles (end of each cycle) or "every N" corners (default all)',
-    )
-    run.add_argument("--nodes", metavar="N", help="number of nodes, 5 to 20000")
-    run.add_argument("--method", help="path or increment")
-    run.add_argument("--increments", metavar="N", help="increments a step (only with --method increment)")
-    run.add_argument(
-        "--arc", metavar="A,B", help="first and last angle of the nodes, rad, such as -3.0,-0.2; the bottom is -1.5708"
-    )
-    run.add_argument(
-        "--between", metavar="N", help="states inside every step: a number, or fractions of the step such as 0.25,0.5"
-    )
-    run.add_argument(
-        "--no-shortcut",
-        dest="shortcut",
-        action="store_false",
-        default=None,
-        help="also solve cycles whose result is known; slower, same result",
-    )
-    run.add_argument(
-        "--error-bars",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="solve a second time on a grid with half the intervals, for error bars (not with -o or --start)",
-    )
+    _add_solver_options(run)
     run.add_argument("--start", metavar="FILE", type=Path, help="continue from the end of this result, with new loads")
     run.add_argument(
         "--after",
@@ -240,6 +214,43 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
     command.add_argument("-v", "--verbose", action="count", default=0, help="log each step; -vv: more")
+
+
+def _add_solver_options(run: argparse.ArgumentParser) -> None:
+    """Add the options of the solver."""
+    run.add_argument(
+        "--keep",
+        metavar="WHICH",
+        help='states to keep: all, corners, cycles (end of each cycle) or "every N" corners (default all)',
+    )
+    run.add_argument("--nodes", metavar="N", help="number of nodes, 5 to 20000")
+    run.add_argument("--method", help="path or increment")
+    run.add_argument("--increments", metavar="N", help="increments a step (only with --method increment)")
+    run.add_argument(
+        "--arc", metavar="A,B", help="first and last angle of the nodes, rad, such as -3.0,-0.2; the bottom is -1.5708"
+    )
+    run.add_argument(
+        "--between", metavar="N", help="states inside every step: a number, or fractions of the step such as 0.25,0.5"
+    )
+    run.add_argument(
+        "--no-shortcut",
+        dest="shortcut",
+        action="store_false",
+        default=None,
+        help="also solve cycles whose result is known; slower, same result",
+    )
+    run.add_argument(
+        "--error-bars",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="solve a second time on a grid with half the intervals, for error bars (not with -o or --start)",
+    )
+    run.add_argument(
+        "--slip-sums",
+        action=argparse.BooleanOptionalAction,
+        default=None,
+        help="sum up slip distance and friction energy of each node, for --cycle and result.cycle()",
+    )
 
 
 def _add_json(command: argparse.ArgumentParser, text: str) -> None:

@@ -37,7 +37,7 @@ NOTES = {
 LARGE_STRAIN = 0.05
 """Contact strain above which linear elasticity fails; probably the units of the case are wrong."""
 
-SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars")
+SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars", "slip_sums")
 """Options of the solver that the command line can set."""
 
 LISTS = ("arc", "between")

@@ -92,9 +92,10 @@ class Tableau(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The contact that evolves along a step. All arrays have shape (n,), only ``motion`` has shape (3,).
+    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,) and ``slip_sums`` (2, n).
 
-    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module.
+    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module. ``slip_sums``
+    are the slip distance and the friction energy of each node. If it is empty, they are not counted.
     """
 
     pressure: np.ndarray
@@ -105,6 +106,7 @@ class Contact(NamedTuple):
     tie: np.ndarray
     touched: np.ndarray
     motion: np.ndarray
+    slip_sums: np.ndarray
 
 
 class LoadTerms(NamedTuple):
@@ -136,10 +138,7 @@ class LoadTerms(NamedTuple):
 
 
 class Queue(NamedTuple):
-    """Waiting changes of status, and the counters and sums of a step.
-
-    ``node`` and ``status``, shape (2n,), are the waiting changes. ``counts`` and ``sums`` have the slots above.
-    """
+    """Waiting changes of status, shape (2n,), and the counters and sums of a step, with the slots above."""
 
     node: np.ndarray
     status: np.ndarray
@@ -381,9 +380,8 @@ def _advance(contact, rates, friction, weights, step):
     Returns the energy that friction dissipates.
     """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
-    n = status.size
-    most_pressure, most_gap = 0.0, 0.0
-    dissipated = 0.0
+    n, sums = status.size, contact.slip_sums
+    most_pressure, most_gap, dissipated = 0.0, 0.0, 0.0
     for i in range(n):
         if status[i] == OPEN:
             gap[i] += step * rates[i]
@@ -400,6 +398,9 @@ def _advance(contact, rates, friction, weights, step):
                 slip[i] += slid
                 shear[i] = -status[i] * friction * pressure[i]
                 dissipated += weights[i] * friction * 0.5 * (old + pressure[i]) * abs(slid)
+                if sums.size > 0:
+                    sums[0, i] += abs(slid)
+                    sums[1, i] += friction * 0.5 * (old + pressure[i]) * abs(slid)
     for i in range(3):
         contact.motion[i] += step * rates[2 * n + i]
     for i in range(n):

@@ -91,6 +91,11 @@ class KeepRule:
         """Whether states inside steps are kept."""
         return self.which == "all"
 
+    @property
+    def every_corner(self) -> bool:
+        """Whether the state at every corner is kept."""
+        return self.which != "cycles" and self.every == 1
+
     def at_corner(self, corner: int, corners: int, ends_cycle: bool) -> bool:
         """Whether the state at a corner is kept. The corner counts from 0, out of `corners` in all."""
         if corner + 1 == corners:
@@ -124,6 +129,9 @@ class SolveOptions:
         solved states to the last bit.
     error_bars : bool
         Whether to follow the history also on a grid with half the intervals. Every state then has ``error_bars``.
+    slip_sums : bool
+        Whether to sum up the slip distance and the friction energy of each node. Every state then has
+        ``slip_distance`` and ``friction_energy``.
 
     Raises
     ------
@@ -139,6 +147,7 @@ class SolveOptions:
     keep: str | KeepRule = "all"
     shortcut: bool = True
     error_bars: bool = False
+    slip_sums: bool = False
 
     def __post_init__(self) -> None:
         checked: dict[str, Any] = {
@@ -150,6 +159,7 @@ class SolveOptions:
             "keep": str(KeepRule.read(self.keep)),
             "shortcut": true_or_false("shortcut", self.shortcut),
             "error_bars": true_or_false("error_bars", self.error_bars),
+            "slip_sums": true_or_false("slip_sums", self.slip_sums),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -193,6 +203,7 @@ class OptionValues(TypedDict, total=False):
     keep: str | KeepRule
     shortcut: bool
     error_bars: bool
+    slip_sums: bool
 
 
 def _checked_increments(value: object, method: str) -> int | None:

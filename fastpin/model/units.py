@@ -18,6 +18,7 @@ _SI = {
     "stiffness": "N/rad",
     "energy": "J/m",
     "ratio": "",
+    "energy density": "J/m^2",
 }
 
 _DIMENSIONLESS = {
@@ -30,6 +31,7 @@ _DIMENSIONLESS = {
     "stiffness": "R^2/beta*",
     "energy": "F^2 beta*",
     "ratio": "",
+    "energy density": "F^2 beta*/R",
 }
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}

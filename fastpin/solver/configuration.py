@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -48,6 +48,9 @@ class Configuration:
         Slip that the remote stress had caused when the pin came to rest. It is subtracted before users see the slip.
     dissipation, work : float
         Energy dissipated by friction, and work of the loads.
+    slip_sums : ndarray, shape (2, n)
+        Slip distance int |ds| and friction energy int -T ds of each node while closed, counted as ``dissipation``.
+        Empty if they are not counted.
     """
 
     pressure: np.ndarray
@@ -63,6 +66,7 @@ class Configuration:
     rest_slip: np.ndarray
     dissipation: float = 0.0
     work: float = 0.0
+    slip_sums: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one."""
@@ -73,7 +77,8 @@ class Configuration:
 
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
-        return replace(self.copy(), **{name: getattr(self, name)[nodes] for name in NODAL})
+        sums = self.slip_sums.take(nodes, axis=1) if self.slip_sums.size else self.slip_sums
+        return replace(self.copy(), slip_sums=sums, **{name: getattr(self, name)[nodes] for name in NODAL})
 
     @property
     def closed(self) -> np.ndarray:
@@ -180,6 +185,17 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
     """Energy dissipated between two configurations, computed with the mean shear (dimensionless)."""
     slid = np.where(after.closed, after.slip - before.slip, 0.0)
     return -0.5 * float((system.weights * slid) @ (before.shear + after.shear))
+
+
+def slip_sums_between(before: Configuration, after: Configuration) -> np.ndarray:
+    """The sums of `before` plus the slip between two configurations at the nodes that are closed in the second.
+
+    The mean shear gives the friction energy, as in :func:`dissipation_between`.
+    """
+    if not before.slip_sums.size:
+        return before.slip_sums
+    slid = np.where(after.closed, after.slip - before.slip, 0.0)
+    return before.slip_sums + np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
 
 
 def elastic_energy(system: System, configuration: Configuration) -> float:

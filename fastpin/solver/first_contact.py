@@ -21,6 +21,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     reaches_end,
     resting_status,
+    slip_sums_between,
     solve_statuses,
     worst_residual,
 )
@@ -349,7 +350,9 @@ def _first_patch(
     if reaches_end(system, found):
         raise ArcError(CUT_OFF)
     dissipated = dissipation_between(system, resting, found)
-    if not rough and system.friction > 0.0:
+    if rough:
+        found.slip_sums = slip_sums_between(resting, found)
+    elif system.friction > 0.0:
         found = _with_grown_slip(system, found, before + begins * (after - before)) or found
     found.dissipation += dissipated
     found.work += elastic_energy(system, found) + dissipated

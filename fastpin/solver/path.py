@@ -153,6 +153,7 @@ class PathStep:
             now.status.copy(),
             np.zeros(n, dtype=bool),
             now.motion,
+            now.slip_sums,
         )
         self._load = load_terms(system, self.before, self.rate)
         self._queue = exchange.Queue(
@@ -372,7 +373,7 @@ class PathStep:
 
     def _take(self, better: Configuration) -> None:
         """Continue from better values of the present configuration."""
-        for name in ("pressure", "shear", "gap", "slip", "motion"):
+        for name in ("pressure", "shear", "gap", "slip", "motion", "slip_sums"):
             getattr(self.now, name)[:] = getattr(better, name)
 
     def _correct(self) -> Solution:

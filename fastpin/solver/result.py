@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -47,6 +47,8 @@ class Restart:
         The latest end of each cycle.
     statistics : dict of str to float
         Statistics of the run up to the corner.
+    slip_sums : ndarray, shape (2, n)
+        Slip sums of each node from the latest kept state to the corner (dimensionless). Empty if they are not counted.
     """
 
     corner: int
@@ -58,13 +60,14 @@ class Restart:
     repeats: Repeats
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
+    slip_sums: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __repr__(self) -> str:
         return f"<Restart: corner {self.corner}>"
 
     def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
-        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={})
+        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_sums=np.zeros((0, 0)))
 
 
 @dataclass(eq=False, repr=False)

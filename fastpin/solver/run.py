@@ -27,7 +27,7 @@ from fastpin.solver.result import Restart
 from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
-from fastpin.states.state import State
+from fastpin.states.state import SlipFields, State
 from fastpin.states.zones import runs
 
 log = logging.getLogger(__name__)
@@ -60,7 +60,7 @@ class Recorder(Protocol):
     def add_cycle(self, cycle: Cycle) -> None:
         """Keep the changes of one cycle."""
 
-    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray, slip: SlipFields) -> None:
         """Keep the latest states once more, as states of other steps with other energies.
 
         Parameters
@@ -69,6 +69,9 @@ class Recorder(Protocol):
             Index of the corner of each new state.
         dissipation, work : ndarray, shape (states,)
             Energies of each new state, J/m.
+        slip : SlipFields
+            Slip distance and friction energy of the first new state. Empty if they are
+            the same as before, or not counted.
         """
 
     def corner_reached(self) -> None:
@@ -106,6 +109,8 @@ class Run:
         The configuration at the last corner.
     dissipation, work : float
         Energies from the start to the last corner (dimensionless).
+    slip_sums : ndarray, shape (2, n)
+        Slip sums of each node from the latest kept state to the last corner (dimensionless). Empty if not counted.
     complete : bool
         Whether the whole history was followed.
     statistics : dict of str to float
@@ -137,8 +142,11 @@ class Run:
         self.dissipation, self.work = start.dissipation, start.work
         self.repeats, self.corner_log = start.repeats, CornerLog(history, start.marks)
         self.corner = start.corner
-        self.last_corner = start.configuration
-        self.position = Position(start.configuration, start.configuration.closed.copy())
+        self._no_slip = np.zeros((2, system.grid.size) if options.slip_sums and recorder is not None else (0, 0))
+        self.slip_sums = start.slip_sums if start.slip_sums.shape == self._no_slip.shape else self._no_slip
+        self._counted = self._no_slip  # the slip sums of the present step up to the latest kept state
+        self.last_corner = replace(start.configuration, slip_sums=self._no_slip)
+        self.position = Position(self.last_corner, start.configuration.closed.copy())
         self.complete = False
         self.statistics = {**dict.fromkeys(COUNTED, 0.0), **start.statistics}
         self.stepper = _stepper(system, options, self.statistics, strict)
@@ -183,6 +191,7 @@ class Run:
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
             self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
+            self.slip_sums,
         )  # fmt: skip
 
     def _step(self, load: np.ndarray, ends_cycle: bool) -> KnownConfiguration | None:
@@ -200,8 +209,8 @@ class Run:
             self._check_resolution()
             known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
-                dissipation, work = self.now.dissipation, self.now.work
-                position.now = replace(known.configuration, dissipation=dissipation, work=work)
+                sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_sums")}
+                position.now = replace(known.configuration, **sums)
             if self.recorder is not None and self.keep.at_corner(step, corners, ends_cycle):
                 self._keep(step, 1.0)
         except SolveError as error:
@@ -275,12 +284,24 @@ class Run:
             raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
 
     def _close_step(self, load: np.ndarray) -> None:
-        """Log the energies of the step that has reached its corner, under `load` (SI)."""
-        self.corner_log.close_step(self.now.dissipation, self.now.work)
-        self.dissipation += self.now.dissipation
-        self.work += self.now.work
-        self.position.now = self.last_corner = replace(self.now, dissipation=0.0, work=0.0)
+        """Log the energies and slip sums of the step that has reached its corner, under `load` (SI)."""
+        now = self.now
+        self.corner_log.close_step(now.dissipation, now.work, self._no_slip if self._keeps_all else now.slip_sums)
+        self.dissipation += now.dissipation
+        self.work += now.work
+        self.slip_sums, self._counted = self._slip_since_kept(), self._no_slip
+        self.position.now = self.last_corner = replace(now, dissipation=0.0, work=0.0, slip_sums=self._no_slip)
         self.load = load
+
+    @property
+    def _keeps_all(self) -> bool:
+        """Whether all slip sums begin at a corner or later: every corner is kept, or nothing is counted."""
+        return self.keep.every_corner or not self._no_slip.size
+
+    def _slip_since_kept(self) -> np.ndarray:
+        """Slip sums (2, n) of each node since the latest kept state, dimensionless."""
+        found: np.ndarray = self.slip_sums + (self.now.slip_sums - self._counted)
+        return found
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
@@ -321,7 +342,7 @@ class Run:
 
     def _book_again(self, entries: list[CornerEntry]) -> None:
         """Add the energies, states and cycles of the next corners, which are known."""
-        energy, rows = self.system.scales.energy, []
+        energy, rows, first = self.system.scales.energy, [], self._count_slip_again(entries)
         for step, entry in enumerate(entries, start=self.corner):
             for dissipation, work in entry.kept:
                 rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
@@ -330,7 +351,32 @@ class Run:
             self._record_cycles(entry, solved=False)
         if self.recorder is not None and rows:
             steps, dissipations, works = zip(*rows, strict=True)
-            self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works))
+            slip = SlipFields() if first is None else self._slip_fields(first)
+            self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
+
+    def _count_slip_again(self, entries: list[CornerEntry]) -> np.ndarray | None:
+        """Add the slip sums of the next corners, which are known.
+
+        Returns the slip sums of their first kept state; None if they are the same as a period before.
+        """
+        first = None
+        for entry in () if self._keeps_all else entries:
+            self.slip_sums = self.slip_sums + entry.slip_sums
+            if entry.kept:
+                first = self.slip_sums if first is None else first
+                self.slip_sums = self._no_slip
+        return first
+
+    def _slip_fields(self, slip_sums: np.ndarray) -> SlipFields:
+        """The fields of a state that its slip sums (2, n) give, SI; none if they are not counted."""
+        if not slip_sums.size:
+            return {}
+        scales = self.system.scales
+        distance = slip_sums[0] * scales.displacement
+        energy = slip_sums[1] * (scales.traction * scales.displacement)
+        for array in (distance, energy):
+            array.setflags(write=False)
+        return {"slip_distance": distance, "friction_energy": energy}
 
     def _record_cycles(self, entry: CornerEntry, solved: bool = True) -> None:
         if self.recorder is not None:
@@ -348,6 +394,7 @@ class Run:
         self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
         assert self.recorder is not None
         self.recorder.add(self._state(step, fraction, residuals))
+        self.slip_sums, self._counted = self._no_slip, self.now.slip_sums
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
         """The present configuration as a state, SI. Its arrays can't be written to: steps that repeat share them."""
@@ -378,6 +425,7 @@ class Run:
             residuals=residuals,
             problem=system.problem,
             grid=system.grid,
+            **self._slip_fields(self._slip_since_kept()),
         )
         for array in (state.pressure, state.shear, state.gap, state.slip, state.status):
             array.setflags(write=False)

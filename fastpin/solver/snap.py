@@ -18,6 +18,7 @@ from fastpin.solver.configuration import (
     Configuration,
     dissipation_between,
     reaches_end,
+    slip_sums_between,
     work_between,
     worst_residual,
 )
@@ -97,6 +98,7 @@ def _step(system: System, start: Configuration, load: np.ndarray) -> Configurati
             if reaches_end(system, found):
                 raise ArcError(CUT_OFF)
             found.dissipation = start.dissipation + dissipation_between(system, start, found)
+            found.slip_sums = slip_sums_between(start, found)
             return found
     return None
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import LEAST_COARSE
-from fastpin.states.state import State
+from fastpin.states.state import SlipFields, State
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
@@ -41,6 +42,7 @@ def solve(
     keep: str | KeepRule = DEFAULTS.keep,
     shortcut: bool = DEFAULTS.shortcut,
     error_bars: bool = DEFAULTS.error_bars,
+    slip_sums: bool = DEFAULTS.slip_sums,
     grid: Grid | None = None,
     start: Result | None = None,
     progress: Progress | None = None,
@@ -68,6 +70,8 @@ def solve(
         Take the states of a periodic contact from the period before. They have the same bits.
     error_bars : bool
         Also solve on a grid with half the intervals. Every state then has error bars.
+    slip_sums : bool
+        Sum up the slip distance and the friction energy of each node since the state before, see :class:`State`.
     grid : Grid, optional
         A ready grid, for example a graded one. `nodes` is then not used, and `arc` is not allowed.
     start : Result, optional
@@ -100,7 +104,7 @@ def solve(
     """
     options = SolveOptions(
         nodes=nodes, method=method, increments=increments, arc=arc, between=between, keep=keep, shortcut=shortcut,
-        error_bars=error_bars,
+        error_bars=error_bars, slip_sums=slip_sums,
     )  # fmt: skip
     check_options(options, grid, start)
     if start is not None:
@@ -150,7 +154,7 @@ def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
         assert start.coarse is not None
         grid, begin = start.coarse.grid, start.coarse
     try:
-        coarse = _follow_task(replace(task, options=task.options.changed(arc=None), grid=grid), begin)
+        coarse = _follow_task(replace(task, options=task.options.changed(arc=None, slip_sums=False), grid=grid), begin)
     except (SolveError, Interrupted) as ended:
         ended.result = result
         if isinstance(ended, SolveError):
@@ -187,12 +191,15 @@ class MemoryRecorder:
         """Keep the changes of one cycle."""
         self.cycles.append(cycle)
 
-    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
-        """Keep the latest states once more, as states of other steps with other energies (J/m), shape (states,)."""
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray, slip: SlipFields) -> None:
+        """Keep the latest states once more, as states of other steps; see :meth:`fastpin.solver.run.Recorder`."""
         latest = self.states[len(self.states) - len(steps) :]
         for state, step, lost, done in zip(latest, steps.tolist(), dissipation.tolist(), work.tolist(), strict=True):
             load, residuals = dict(state.load), dict(state.residuals)
             self.states.append(replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals))
+        given: dict[str, Any] = {**slip}
+        if any(not np.array_equal(getattr(latest[0], name), values) for name, values in given.items()):
+            self.states[-len(steps)] = replace(self.states[-len(steps)], **slip)
 
     def corner_reached(self) -> None:
         """Do nothing: the run itself remembers its last corner."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +24,13 @@ from fastpin.states.zones import Interval, runs
 if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
     from fastpin.states.stress import HoopPeak, Stress
+
+
+class SlipFields(TypedDict, total=False):
+    """The fields of a :class:`State` that its slip sums give; empty without them."""
+
+    slip_distance: np.ndarray
+    friction_energy: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,6 +85,10 @@ class State:
     error_bars : Mapping of str to float, or None
         Largest likely error of each quantity and of each end of a zone, by name, see
         :func:`fastpin.states.error_bars.bars`. None unless ``solve(..., error_bars=True)``.
+    slip_distance, friction_energy : ndarray, shape (n,), or None
+        Distance int |ds| of the slip, m, and friction energy int -T ds, J/m^2, at each node while it was closed. They
+        count since the state before in the result, and since the beginning of the history for the first state. None
+        unless ``solve(..., slip_sums=True)``.
     """
 
     step: int
@@ -99,11 +110,14 @@ class State:
     problem: Problem
     grid: Grid
     error_bars: Mapping[str, float] | None = None
+    slip_distance: np.ndarray | None = None
+    friction_energy: np.ndarray | None = None
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        for array in (self.theta, self.pressure, self.shear, self.gap, self.slip, self.status):
-            array.setflags(write=False)  # a copy through pickle could be written to
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)  # a copy through pickle could be written to
 
     def __repr__(self) -> str:
         unit = units(self.problem)["traction"]

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
 from fastpin.errors import FastpinError, InputError
+from fastpin.model.checks import number
 
 
 @contextmanager
@@ -57,6 +59,19 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     if shape is not None and (dataset.ndim != len(shape) + 1 or dataset.shape[1:] != shape):
         raise ValueError(f"{label} has shape {dataset.shape}, not (rows, {', '.join(map(str, shape))})")
     return dataset
+
+
+def as_python(value: Any) -> Any:
+    """Return a NumPy scalar as a Python number. Any other value of an attribute stays as it is."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def numbers_of(group: h5py.Group) -> dict[str, float]:
+    """Return the attributes of a group. :class:`InputError` is raised if one of them is no number."""
+    values = {str(name): as_python(value) for name, value in group.attrs.items()}
+    for name, value in values.items():
+        number(name, value)
+    return values
 
 
 def check_finite(label: str, array: np.ndarray) -> None:

@@ -13,16 +13,17 @@ from fastpin.model.loads import LOADS
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.storage.damage import as_python
 from fastpin.storage.layout import (
     FIELD_KINDS,
     NODE_FIELDS,
     RESIDUALS,
-    STATE_ROWS,
-    as_python,
+    SLIP_FIELDS,
     check_states,
     load_units,
     read_grid,
     rows_of,
+    state_rows,
 )
 from fastpin.storage.store import open_result
 
@@ -77,7 +78,7 @@ def _of_file(path: Path) -> tuple[Variables, dict[str, Any]]:
     with open_result(path) as file:
         group = file["states"]
         check_states(file, read_grid(file).size)
-        for name in (*SCALES, *STATE_ROWS):
+        for name in (*SCALES, *state_rows(group)):
             dataset = group[name]
             values = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
             unit = dataset.attrs.get("unit", "")
@@ -94,7 +95,11 @@ def _dimensions(name: str) -> list[str]:
     """The dimensions of a variable."""
     if name in SCALES:
         return [name]
-    second = "theta" if name in NODE_FIELDS else {"loads": "load_name", "residuals": "residual_name"}.get(name)
+    second = (
+        "theta"
+        if name in (*NODE_FIELDS, *SLIP_FIELDS)
+        else {"loads": "load_name", "residuals": "residual_name"}.get(name)
+    )
     return ["state"] if second is None else ["state", second]
 
 

@@ -44,7 +44,7 @@ from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
-from fastpin.storage.damage import check_between, check_finite, dataset_of
+from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -62,6 +62,9 @@ NODE_FIELDS = {
 }
 """Kind of quantity of each field of a state with one value for each node, shape (n,)."""
 
+SLIP_FIELDS = {"slip_distance": "displacement", "friction_energy": "energy density"}
+"""Kind of quantity of each field, shape (n,), that a state has with the option ``slip_sums`` only."""
+
 NUMBER_FIELDS = {
     "step": "",
     "fraction": "",
@@ -77,11 +80,8 @@ NUMBER_FIELDS = {
 OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars")
 """Fields of a state that are stored in another form, or not at all."""
 
-FIELD_KINDS = {**NODE_FIELDS, **NUMBER_FIELDS}
+FIELD_KINDS = {**NODE_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
 """Kind of quantity of each array of node values or numbers in ``/states``."""
-
-STATE_ROWS = (*NODE_FIELDS, *NUMBER_FIELDS, "loads", "residuals")
-"""Arrays of ``/states`` with one row for each state."""
 
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
 """Names of the residuals of a state, in the order of a row."""
@@ -126,6 +126,16 @@ Rows = dict[str, np.ndarray]
 """Arrays of some states or cycles, by quantity. The first dimension counts the states or cycles."""
 
 
+def node_fields(group: h5py.Group) -> dict[str, str]:
+    """Return the kind of quantity of each field with node values that ``/states`` holds, ``group``."""
+    return NODE_FIELDS | (SLIP_FIELDS if "slip_distance" in group else {})
+
+
+def state_rows(group: h5py.Group) -> tuple[str, ...]:
+    """Return the names of the arrays of ``/states``, ``group``, with one row for each state."""
+    return (*node_fields(group), *NUMBER_FIELDS, "loads", "residuals")
+
+
 # -- parts of fixed size: problem, history, grid, options, statistics ---------------------------------------
 
 
@@ -149,7 +159,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     solver = file.create_group("solver")
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
-    _make_states(file, problem, grid)
+    _make_states(file, problem, grid, NODE_FIELDS | (SLIP_FIELDS if options.get("slip_sums") else {}))
     cycles, unit = file.create_group("cycles"), units(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
@@ -222,7 +232,7 @@ def option_attributes(options: SolveOptions) -> dict[str, Any]:
     """Return the options of a run as attributes of ``/solver``."""
     attributes = options.keywords()
     del attributes["between"], attributes["error_bars"]
-    return {**attributes, "fractions": options.fractions}
+    return {**attributes, "fractions": options.fractions, "slip_sums": options.slip_sums or None}
 
 
 def read_options(file: h5py.File) -> SolveOptions:
@@ -237,7 +247,7 @@ def read_options(file: h5py.File) -> SolveOptions:
         start, stop = stored["arc"].tolist()
         # Earlier versions took an arc longer than 2 pi as a circle.
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
-    options |= {name: stored[name] for name in ("keep", "shortcut") if name in stored}
+    options |= {name: stored[name] for name in ("keep", "shortcut", "slip_sums") if name in stored}
     return SolveOptions(**options)
 
 
@@ -248,7 +258,7 @@ def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:
 
 def read_statistics(file: h5py.File) -> dict[str, float]:
     """Read the statistics of the solver, by name."""
-    return _read_numbers(file["solver/statistics"])
+    return numbers_of(file["solver/statistics"])
 
 
 # -- growing arrays: states, cycles -------------------------------------------------------------------------
@@ -265,7 +275,7 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
 
     Each row of node values is a chunk, compressed, and never written again.
     """
-    nodes = name in NODE_FIELDS
+    nodes = name in NODE_FIELDS or name in SLIP_FIELDS
     chunks = (1 if nodes else _ROWS, *shape)
     dataset = group.create_dataset(
         name, (0, *shape), maxshape=(None, *shape), chunks=chunks, dtype=dtype, **(_PACKED if nodes else {})
@@ -274,7 +284,8 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
     return dataset
 
 
-def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
+def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[str, str]) -> None:
+    """Create the arrays of ``/states`` without rows. `fields` are the fields with node values, with their kinds."""
     group, unit = file.create_group("states"), units(problem)
     scales = {
         "state": _growing(group, "state", (), np.int64, ""),
@@ -286,7 +297,7 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid) -> None:
     file["grid/theta"] = scales["theta"]
     for name, scale in scales.items():
         scale.make_scale(name)
-    arrays = [(name, kind, "theta", grid.size) for name, kind in NODE_FIELDS.items()]
+    arrays = [(name, kind, "theta", grid.size) for name, kind in fields.items()]
     arrays += [(name, kind, "", 0) for name, kind in NUMBER_FIELDS.items()]
     for name, kind, dimension, size in arrays:
         dataset = _growing(group, name, (size,) if dimension else (), _dtype(name), unit.get(kind, ""))
@@ -319,9 +330,14 @@ def all_loads(vectors: np.ndarray, missing: float) -> np.ndarray:
     return np.pad(vectors, [(0, 0)] * (vectors.ndim - 1) + [(0, lacking)], constant_values=missing)
 
 
+def has_slip_sums(states: Sequence[State]) -> bool:
+    """Whether there are states, and all of them have slip sums."""
+    return len(states) > 0 and all(state.slip_distance is not None for state in states)
+
+
 def rows_of(states: Sequence[State]) -> Rows:
     """Return the rows of some states. The residuals of a state may be missing: NaN stands for them."""
-    names = [*NODE_FIELDS, *NUMBER_FIELDS]
+    names = [*NODE_FIELDS, *(SLIP_FIELDS if has_slip_sums(states) else {}), *NUMBER_FIELDS]
     rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
     rows["loads"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
     rows["residuals"] = np.array(
@@ -386,7 +402,7 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
 def check_states(file: h5py.File, nodes: int) -> None:
     """Raise :class:`ValueError` if an array of states is missing, or its rows don't fit the nodes."""
     group = file["states"]
-    for name in NODE_FIELDS:
+    for name in node_fields(group):
         dataset_of(group, name, _dtype(name), (nodes,))
     for name in NUMBER_FIELDS:
         dataset_of(group, name, _dtype(name), ())
@@ -398,7 +414,12 @@ def check_states(file: h5py.File, nodes: int) -> None:
 def check_growing(file: h5py.File, nodes: int) -> None:
     """Raise :class:`ValueError` if a run can't append to the arrays of states and cycles."""
     check_states(file, nodes)
-    names = {"states": ("state", *STATE_ROWS), "cycles": tuple(CYCLE_FIELDS) if len(file["cycles"]) else ()}
+    if read_options(file).slip_sums != ("slip_distance" in file["states"]):
+        raise ValueError("states/slip_distance and the option slip_sums don't fit")
+    names = {
+        "states": ("state", *state_rows(file["states"])),
+        "cycles": tuple(CYCLE_FIELDS) if len(file["cycles"]) else (),
+    }
     for part, arrays in names.items():
         group = file[part]
         for name in arrays:
@@ -423,8 +444,8 @@ def read_states(
     """
     group = file["states"]
     check_states(file, grid.size)
-    rows = read_rows(group, STATE_ROWS, picked)
-    for name in (*FIELD_KINDS, "loads"):
+    rows = read_rows(group, state_rows(group), picked)
+    for name in (*node_fields(group), *NUMBER_FIELDS, "loads"):
         check_finite(f"states/{name}", rows[name])
     check_between("states/status", rows["status"], *STATUS_LIMITS)
     check_between("states/step", rows["step"], 0, corners - 1)
@@ -432,7 +453,7 @@ def read_states(
     loads = all_loads(rows["loads"], 0.0)
     states = []
     for k in range(len(rows["step"])):
-        per_node = {name: rows[name][k] for name in NODE_FIELDS}
+        per_node = {name: rows[name][k] for name in node_fields(group)}
         for array in per_node.values():
             array.setflags(write=False)
         residuals = zip(RESIDUALS, rows["residuals"][k].tolist(), strict=True)
@@ -467,12 +488,8 @@ def check_format(file: h5py.File, path: str) -> None:
         raise InputError(path, f"was written by fastpin {made_by} in a format that this version can't read")
 
 
-def as_python(value: Any) -> Any:
-    """Return a NumPy scalar as a Python number. Any other value of an attribute stays as it is."""
-    return value.item() if isinstance(value, np.generic) else value
-
-
-_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in ("dissipation", "work")]
+_SUMS = ("dissipation", "work", "slip_sums")  # they are 0 at a corner
+_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _SUMS]
 
 
 def write_restart(group: h5py.Group, restart: Restart) -> None:
@@ -494,6 +511,8 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
     group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
     group.attrs["configuration"] = index_of(restart.configuration)
     group["load"] = restart.load
+    if restart.slip_sums.any():
+        group["slip_sums"] = restart.slip_sums
     group["met"] = np.array(
         [(index_of(item.configuration), item.ends_cycle, item.last, item.period, item.since) for item in known],
         dtype=np.int64,
@@ -548,8 +567,20 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
                 marks.tolist(), dissipations.tolist(), strict=True
             )
         },
-        statistics=_read_numbers(group["statistics"]),
+        statistics=numbers_of(group["statistics"]),
+        slip_sums=_read_slip_sums(group, nodes),
     )
+
+
+def _read_slip_sums(group: h5py.Group, nodes: int) -> np.ndarray:
+    """Read the slip sums of a restart, shape (2, n). Without any they are empty."""
+    if "slip_sums" not in group:
+        return np.zeros((0, 0))
+    sums: np.ndarray = dataset_of(group, "slip_sums", float, (nodes,))[()]
+    if len(sums) != 2:
+        raise ValueError(f"slip_sums has the shape {sums.shape}")
+    check_finite("slip_sums", sums)
+    return sums
 
 
 def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
@@ -568,11 +599,3 @@ def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray
     elif name != "origin":  # The origin is NaN before the pin has come to rest.
         check_finite(label, array)
     return array
-
-
-def _read_numbers(group: h5py.Group) -> dict[str, float]:
-    """Read the attributes of a group, which must be numbers."""
-    values = {str(name): as_python(value) for name, value in group.attrs.items()}
-    for name, value in values.items():
-        number(name, value)
-    return values

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from fastpin.model.checks import as_toml, file_path, instance, is_whole, items, 
 from fastpin.model.history import LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
+from fastpin.states.state import State
 from fastpin.storage.damage import reading
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import check_free, consistent_view, open_h5
@@ -28,6 +30,7 @@ from fastpin.storage.layout import (
     check_format,
     count,
     cycle_rows,
+    has_slip_sums,
     read_cycles,
     read_grid,
     read_history,
@@ -77,7 +80,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
-        write_head(file, result.problem, result.history, result.grid, {"method": result.method})
+        options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
+        write_head(file, result.problem, result.history, result.grid, options)
         file.attrs["complete"] = result.complete
         if error is not None:
             file.attrs["error"] = error
@@ -96,6 +100,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     path : path
     states : slice or sequence of int
         States to read, by their place in the file from 0; negative places count from the end. All states by default.
+        Slip sums count since the state before in the file. A state that does not follow on the one before loses them.
     after : int, optional
         Read the result only up to this corner, counted from 1. ``solve(..., start=result)`` then continues from the
         corner. If the corner has no restart in the file, the steps from the last restart before it are solved again.
@@ -133,9 +138,11 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             raise InputError("states", f"must be places from 0 to {found - 1}, not {as_toml(states)}")
         else:
             states = [state % found for state in states]
+        found_states = read_states(file, problem, grid, states, len(history))
+        places = range(*states.indices(found)) if isinstance(states, slice) else states
         cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
         result = Result(
-            states=read_states(file, problem, grid, states, len(history)),
+            states=_without_gaps(found_states, places),
             problem=problem,
             history=history,
             grid=grid,
@@ -148,6 +155,15 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     if task is not None and restart is not None and restart.corner < len(task.history):
         result.restart = task.reach(restart, grid)  # The file is closed by now: this may take long.
     return result
+
+
+def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
+    """The states of some places in a file. States that don't follow on the one before lose their slip sums."""
+    follow = [True, *(before + 1 == place for before, place in pairwise(places))]
+    return [
+        state if follows else replace(state, slip_distance=None, friction_energy=None)
+        for state, follows in zip(states, follow, strict=False)
+    ]
 
 
 def is_unfinished(path: Path) -> bool:

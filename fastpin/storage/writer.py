@@ -23,12 +23,11 @@ from fastpin.solver.result import Restart
 from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task
 from fastpin.states.cycles import Cycle
-from fastpin.states.state import State
+from fastpin.states.state import SlipFields, State
 from fastpin.storage.damage import reading
 from fastpin.storage.files import replacing
 from fastpin.storage.journal import JournaledFile
 from fastpin.storage.layout import (
-    STATE_ROWS,
     Rows,
     append,
     check_format,
@@ -40,6 +39,7 @@ from fastpin.storage.layout import (
     read_rows,
     read_statistics,
     rows_of,
+    state_rows,
     write_head,
     write_restart,
     write_statistics,
@@ -201,18 +201,21 @@ class FileRecorder:
         if self._at[1] > self._stored[1]:
             self._cycles.append(cycle)
 
-    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray) -> None:
-        """Take the latest states once more, with other steps and energies, shape (states,)."""
+    def add_again(self, steps: np.ndarray, dissipation: np.ndarray, work: np.ndarray, slip: SlipFields) -> None:
+        """Take the latest states once more, with other steps and energies; see :meth:`fastpin.solver.run.Recorder`."""
         size = len(steps)
         if self._copied is None or len(self._copied["step"]) != size:
             self._commit()
             begin = self._at[0] - size
             for first in range(0, size, PIECE):
                 last = min(first + PIECE, size)
-                rows = read_rows(self._h5["states"], STATE_ROWS, slice(begin + first, begin + last))
+                group = self._h5["states"]
+                rows = read_rows(group, state_rows(group), slice(begin + first, begin + last))
+                rows = rows if first else _with_first(rows, slip)
                 self._put_again(rows, steps[first:last], dissipation[first:last], work[first:last])
                 self._copied = rows if size <= PIECE else None
         else:
+            self._copied = _with_first(self._copied, slip)
             self._put_again(self._copied, steps, dissipation, work)
 
     def corner_reached(self) -> None:
@@ -332,6 +335,11 @@ class FileRecorder:
 
     def _all_seconds(self) -> float:
         return self._seconds + time.monotonic() - self._began
+
+
+def _with_first(rows: Rows, values: SlipFields) -> Rows:
+    """Rows of states with other node values of the first state, by quantity."""
+    return {**rows, **{name: np.concatenate([[first], rows[name][1:]]) for name, first in values.items()}}
 
 
 def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart]:

@@ -101,4 +101,6 @@ def _options(options: SolveOptions) -> dict[str, Any]:
     del keywords["shortcut"], keywords["error_bars"]  # They change no state.
     if options.method == "path":
         del keywords["increments"]
+    if not options.slip_sums:
+        del keywords["slip_sums"]  # It came later; older ids stay.
     return keywords

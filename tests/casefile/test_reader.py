@@ -146,6 +146,7 @@ def test_solver_options() -> None:
         "keep": "every 3",
         "shortcut": False,
         "error_bars": False,
+        "slip_sums": False,
     }
 
 

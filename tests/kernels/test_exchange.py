@@ -128,7 +128,9 @@ def at_rest_on(system, status):
     """A contact with given statuses; its values do not matter."""
     n = status.size
     zeros = [np.zeros(n) for _ in range(4)]
-    return Contact(*zeros, status.copy(), np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool), np.zeros(3))
+    return Contact(
+        *zeros, status.copy(), np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool), np.zeros(3), np.zeros((2, n))
+    )
 
 
 def whole(columns):

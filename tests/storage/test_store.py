@@ -19,7 +19,7 @@ from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
-from fastpin.storage.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS
+from fastpin.storage.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS, SLIP_FIELDS
 from fastpin.storage.store import load, save, state_count
 from tests.support.samples import PAIR, sample_result
 
@@ -47,7 +47,7 @@ def assert_same(first: Result, second: Result) -> None:
 
 
 def test_every_field_of_a_state_is_stored() -> None:
-    known = {*NODE_FIELDS, *NUMBER_FIELDS, *OTHER_FIELDS}
+    known = {*NODE_FIELDS, *SLIP_FIELDS, *NUMBER_FIELDS, *OTHER_FIELDS}
     assert known == {field.name for field in dataclasses.fields(State)}
     assert set(CYCLE_FIELDS) == set(Cycle._fields)
 

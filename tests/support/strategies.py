@@ -112,7 +112,7 @@ def options(draw: st.DrawFn, closed: bool = False) -> SolveOptions:
     fractions = st.lists(between(0.01, 0.99), min_size=1, max_size=4, unique=True).map(sorted).map(tuple)
     given["between"] = draw(st.integers(0, MOST_BETWEEN) | fractions)
     given["keep"] = draw(st.sampled_from(["all", "corners", "every 10", "every 2"]))
-    given |= {name: draw(st.booleans()) for name in ("shortcut", "error_bars")}
+    given |= {name: draw(st.booleans()) for name in ("shortcut", "error_bars", "slip_sums")}
     return SolveOptions(**given)
 
 
