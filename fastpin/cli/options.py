@@ -213,6 +213,9 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
         help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
     )
     command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
+    command.add_argument(
+        "--cycle-csv", metavar="FILE", type=Path, help="write slip, tractions and friction energy in the last cycle"
+    )
     command.add_argument("-v", "--verbose", action="count", default=0, help="log each step; -vv: more")
 
 
@@ -249,7 +252,7 @@ def _add_solver_options(run: argparse.ArgumentParser) -> None:
         "--slip-sums",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="sum up slip distance and friction energy of each node, for --cycle and result.cycle()",
+        help="sum up slip distance and friction energy of each node, also in the last cycle",
     )
 
 

@@ -27,6 +27,7 @@ from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.report.states import cycle_lines, state_table
 from fastpin.report.table import visible_rows
+from fastpin.states.load_cycle import LoadCycle
 
 NOTES = {
     "jumps": "note: the pin snapped {count} times; work does not balance there",
@@ -143,7 +144,7 @@ def _as_options(options: argparse.Namespace) -> Iterator[None]:
         yield
     except InputError as error:
         if error.field in SOLVE_OPTIONS and getattr(options, error.field) is not None:
-            raise InputError(f"--{error.field.replace('_', '-')}", error.reason) from None
+            raise InputError(_flag(error.field), error.reason) from None
         raise
 
 
@@ -151,7 +152,7 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     """Refuse options that would have no effect, and figures that can't be drawn."""
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
-            raise InputError(f"--{name.replace('_', '-')}", "needs --output FILE")
+            raise InputError(_flag(name), "needs --output FILE")
     for name in ("output", "start"):
         if options.error_bars and getattr(options, name) is not None:
             raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
@@ -162,8 +163,14 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
 
 
 def _check_cycles(case: Case, options: argparse.Namespace) -> None:
-    if options.cycles is not None and not case.history.longest_cycle:
-        raise InputError("--cycles", "the history has no cycles: none of its blocks is repeated")
+    for name in ("cycles", "cycle_csv"):
+        if getattr(options, name) is not None and not case.history.longest_cycle:
+            raise InputError(_flag(name), "the history has no cycles: none of its blocks is repeated")
+
+
+def _flag(name: str) -> str:
+    """Return an option as it is written on the command line."""
+    return f"--{name.replace('_', '-')}"
 
 
 def _corners(corners: int, text: str | None) -> list[int]:
@@ -199,8 +206,8 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
 
 def _check_outputs(options: argparse.Namespace) -> None:
     """Check before the work that all output files can be written."""
-    names = {"--json": options.json, "--plot": options.plot, "--cycles": options.cycles, "--output": options.output}
-    check_outputs(names, getattr(options, "case", None))
+    names = ("json", "plot", "cycles", "cycle_csv", "output")
+    check_outputs({_flag(name): getattr(options, name) for name in names}, getattr(options, "case", None))
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
@@ -228,6 +235,37 @@ def _write_result(
 
     `ended` is the error that ended the run early. `hidden` states in the middle were left out of `result`.
     """
+    code, error = _report_end(case, options, result, ended)
+    cycle = _known_cycle(case, options, result, hidden)
+    writers: list[tuple[Any, Callable[[Path], object]]] = []
+    if options.json is not None:
+        text = json.dumps(report.summary.document(case, result, error, cycle), indent=2, allow_nan=False) + "\n"
+        if options.json != "-":
+            writers.append((options.json, lambda path: write_text(path, text)))
+    if result is not None and len(result):
+        states = result
+        writers.append((options.plot, lambda path: figures.plot_tractions(states, path, title=case.title)))
+    if result is not None and result.cycles:
+        with_cycles = result
+        writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
+    elif options.cycles is not None:
+        code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
+    writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(_last_cycle(options, result, hidden), path)))
+    code = write_files(writers) or code
+    if options.json == "-":  # last: the reader of the output may close it early
+        sys.stdout.write(text)
+    else:
+        _print_states(case, result, cycle, hidden)
+    return code
+
+
+def _report_end(
+    case: Case,
+    options: argparse.Namespace,
+    result: solver.Result | None,
+    ended: solver.SolveError | solver.Interrupted | None,
+) -> tuple[int, str | None]:
+    """Print why a run ended early, and return the exit code and the reason."""
     code, error = EXIT_OK, None
     if isinstance(ended, solver.SolveError):
         error = str(ended)
@@ -245,26 +283,27 @@ def _write_result(
             else ""
         )
         code = fail(f"interrupted {where}{more}", EXIT_INTERRUPTED)
+    return code, error
 
-    writers: list[tuple[Any, Callable[[Path], object]]] = []
-    if options.json is not None:
-        text = json.dumps(report.summary.document(case, result, error), indent=2, allow_nan=False) + "\n"
-        if options.json != "-":
-            writers.append((options.json, lambda path: write_text(path, text)))
-    if result is not None and len(result):
-        states = result
-        writers.append((options.plot, lambda path: figures.plot_tractions(states, path, title=case.title)))
-    if result is not None and result.cycles:
-        with_cycles = result
-        writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
-    elif options.cycles is not None:
-        code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-    code = write_files(writers) or code
-    if options.json == "-":  # last: the reader of the output may close it early
-        sys.stdout.write(text)
-    else:
-        _print_states(case, result, hidden)
-    return code
+
+def _last_cycle(options: argparse.Namespace, result: solver.Result | None, hidden: int) -> LoadCycle:
+    """Return the last cycle of a result. :class:`InputError` says why there is none."""
+    if result is None:
+        raise InputError("cycle", "no state was reached")
+    if hidden and result.cycles:  # its states are in the file, but not in `result`
+        end, length = result.cycles[-1].corner + 1, result.cycles[-1].length
+        places = storage.places_between(options.output, end - length, end)
+        result = storage.load(options.output, states=places)
+    return result.cycle()
+
+
+def _known_cycle(
+    case: Case, options: argparse.Namespace, result: solver.Result | None, hidden: int
+) -> LoadCycle | None:
+    """Return the last cycle if its slip sums are counted, for the summary; None if there is none."""
+    with contextlib.suppress(InputError):
+        return _last_cycle(options, result, hidden) if case.options.slip_sums else None
+    return None
 
 
 def _reached(result: solver.Result) -> int:
@@ -272,7 +311,7 @@ def _reached(result: solver.Result) -> int:
     return 0 if result.restart is None else result.restart.corner
 
 
-def _print_states(case: Case, result: solver.Result | None, hidden: int) -> None:
+def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, hidden: int) -> None:
     if case.title:
         print(case.title)
     if result is None or not len(result):
@@ -284,6 +323,8 @@ def _print_states(case: Case, result: solver.Result | None, hidden: int) -> None
         print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
     for line in cycle_lines(case.problem, result.cycles):
         print(line)
+    if cycle is not None:
+        print(report.cycle.cycle_line(cycle))
     statistics = result.statistics
     for name, note in NOTES.items():
         if statistics.get(name):

@@ -111,21 +111,12 @@ class System:
         n, theta = grid.size, grid.theta
         weights = grid.weights
         ratio = pair.alpha_star / pair.beta_star
-        uniform_part = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
+        uniform_part = _uniform_part(problem)
         operator = cls._filled_operator(grid, ratio, uniform_part)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
-        cos_double, sin_double = np.cos(2 * theta), np.sin(2 * theta)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
-        share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
-        point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
-        plate = 0.5 * (1.0 - uniform_part)  # R kappa'/(2 G) per beta*, Eq. (42)
-        loads = np.zeros((2 * n, len(LOADS)))
-        loads[:, P] = point * np.r_[sin, cos]
-        loads[:, Q] = point * np.r_[-cos, sin]
-        loads[:, SXX] = plate * np.r_[0.5 + cos_double, sin_double]
-        loads[:, SYY] = plate * np.r_[0.5 - cos_double, -sin_double]
-        loads[:, SXY] = 2.0 * plate * np.r_[sin_double, -cos_double]
+        plate, loads = load_columns(problem, theta)
 
         cos_moment, sin_moment = grid.trig_moments()
         equilibrium = np.zeros((3, 2 * n))
@@ -235,3 +226,29 @@ class System:
         result = elastic + self.motion @ motion + self.load_displacement(load)
         result[: self.grid.size] += rest_gap
         return result
+
+
+def _uniform_part(problem: Problem) -> float:
+    """The part of the operator that a uniform pressure has in the pin, per beta*."""
+    pair = problem.pair
+    return (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
+
+
+def load_columns(problem: Problem, theta: np.ndarray) -> tuple[float, np.ndarray]:
+    """The size R kappa'/(2 G) of the hole's displacement per remote stress, and the columns of all loads.
+
+    The columns, shape (2n, loads), map forces and remote stresses to gap and slip at the angles `theta` (n,),
+    dimensionless. Those of the other loads are 0.
+    """
+    pair = problem.pair
+    cos, sin, cos_double, sin_double = np.cos(theta), np.sin(theta), np.cos(2 * theta), np.sin(2 * theta)
+    share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
+    point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
+    plate = 0.5 * (1.0 - _uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
+    loads = np.zeros((2 * theta.size, len(LOADS)))
+    loads[:, P] = point * np.r_[sin, cos]
+    loads[:, Q] = point * np.r_[-cos, sin]
+    loads[:, SXX] = plate * np.r_[0.5 + cos_double, sin_double]
+    loads[:, SYY] = plate * np.r_[0.5 - cos_double, -sin_double]
+    loads[:, SXY] = 2.0 * plate * np.r_[sin_double, -cos_double]
+    return plate, loads

@@ -1,5 +1,6 @@
 from . import checks as checks
 from . import convergence as convergence
+from . import cycle as cycle
 from . import summary as summary
 from . import sweep as sweep
 from .case import describe as describe

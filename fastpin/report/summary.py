@@ -14,7 +14,9 @@ from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
 from fastpin.model.units import units
+from fastpin.report import cycle as cycle_report
 from fastpin.solver.result import Result
+from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point
 from fastpin.states.state import State
 from fastpin.version import __version__
@@ -24,6 +26,7 @@ def document(
     case: Case,
     result: Result | None,
     error: str | None = None,
+    cycle: LoadCycle | None = None,
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -37,6 +40,8 @@ def document(
         None if the run did not reach its first state.
     error : str, optional
         The reason why `result` is incomplete.
+    cycle : LoadCycle, optional
+        The cycle of the entry ``cycle``.
     """
     problem, pair = case.problem, case.problem.pair
     alpha, beta = pair.dundurs()
@@ -68,6 +73,7 @@ def document(
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
+        "cycle": None if cycle is None else cycle_report.document(cycle),
     }
     return json_ready(found)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from fastpin.errors import InputError
 from fastpin.model.checks import items, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
@@ -18,6 +19,8 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import ErrorBars
+from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 if TYPE_CHECKING:
@@ -116,6 +119,51 @@ class Result(Sequence[State]):
             assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
             states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
         return replace(self, states=states, coarse=coarse)
+
+    def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
+        """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
+
+        Parameters
+        ----------
+        place : int
+            Place of the cycle in ``cycles``; the last one unless given. A negative place counts from the end.
+        first, last : int, optional
+            In place of `place`: the corners, counted from 1, between which any part of the history lies. The loads at
+            both may differ.
+
+        Raises
+        ------
+        InputError
+            If there is no such cycle, if the state at one of its ends was not kept, or if the loads at its ends differ.
+        """
+        if (first is None) != (last is None):
+            raise InputError("first", "and last go together: give both corners, or none")
+        if first is not None and last is not None:
+            begin = whole_number("first", first, 1, max(len(self.history) - 1, 1))
+            return LoadCycle(self._between(begin, whole_number("last", last, begin + 1, len(self.history))))
+        if not self.cycles:
+            raise InputError("cycle", "the history has no cycle that has ended; give the corners first and last")
+        cycle = self.cycles[whole_number("place", place, -len(self.cycles), len(self.cycles) - 1)]
+        begin, end = cycle.corner + 1 - cycle.length, cycle.corner + 1
+        if begin < 1:
+            raise InputError("cycle", f"the cycle to corner {end} begins without load: choose a later one")
+        found = LoadCycle(self._between(begin, end))
+        if not found.is_closed:
+            raise InputError(
+                "cycle",
+                f"the cycle to corner {end} is not closed: {found.differing_loads[0]} differs at its ends; "
+                f"first={begin}, last={end} gives this part of the history all the same",
+            )
+        return found
+
+    def _between(self, first: int, last: int) -> tuple[State, ...]:
+        """The kept states from one corner to another, which count from 1."""
+        states = sorted((state for state in self.states if first <= load_point(state) <= last), key=load_point)
+        points = [load_point(state) for state in states]
+        for corner, place in ((first, 0), (last, -1)):
+            if not points or points[place] != corner:
+                raise InputError("cycle", f"the state at corner {corner} was not kept, or not loaded")
+        return tuple(states)
 
     def plot(self, path: str | Path | None = None, states: slice | Sequence[int] = slice(None), **options: Any) -> Any:
         """Draw the tractions, and return the matplotlib figure.

@@ -1,4 +1,7 @@
 from .hoop import hoop_peak as hoop_peak
+from .load_cycle import LoadCycle as LoadCycle
+from .load_cycle import Loop as Loop
+from .load_cycle import NodeBehaviour as NodeBehaviour
 from .quantities import QUANTITIES as QUANTITIES
 from .refined import refined_tractions as refined_tractions
 from .state import State as State

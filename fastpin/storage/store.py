@@ -187,6 +187,19 @@ def state_count(path: str | Path) -> int:
         return count(file["states"])
 
 
+def places_between(path: str | Path, first: int, last: int) -> slice:
+    """Return the places of the states in a file from corner `first` to corner `last`, counted from 1.
+
+    Raises
+    ------
+    InputError
+        See :func:`load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        points = file["states/step"][()] + file["states/fraction"][()]
+        return slice(*np.searchsorted(points, [first, np.nextafter(last, np.inf)]).tolist())
+
+
 @contextmanager
 def open_result(path: Path) -> Iterator[Any]:
     """Open a result for reading, as its last transaction left it.

@@ -1,0 +1,82 @@
+"""A load cycle as text, JSON and CSV. Angles are in degrees from the bottom of the hole."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.angles import from_bottom
+from fastpin.model.units import units, with_unit
+from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.storage.files import replacing
+
+WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
+"""Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
+
+
+def cycle_line(cycle: LoadCycle) -> str:
+    """Return a line of text: the largest slip range, slip distance and friction energy of a node, with their places."""
+    unit = units(cycle.states[0].problem)
+    parts = [_in_words(cycle, "slip range", unit["displacement"])]
+    bound = cycle.slip_range_bound
+    if bound is not None and np.isfinite(bound).all():
+        most = float((cycle.slip_range + bound).max())
+        parts[0] += f" (at most {with_unit(most, unit['displacement'], 4)})"
+    if cycle.friction_energy is not None:
+        parts.append(_in_words(cycle, "slip distance", unit["displacement"]))
+        parts.append(_in_words(cycle, "friction energy", unit["energy density"]))
+    return f"from corner {cycle.first:,} to {cycle.last:,}: {', '.join(parts)}"
+
+
+def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:
+    """Return the largest value of a quantity with its place. `label` is its name in words."""
+    largest, angle = _largest(cycle, label.replace(" ", "_"))
+    place = "" if angle is None else f" at {angle:z.2f} deg"
+    return f"{label} up to {with_unit(largest or 0.0, unit, 4)}{place}"
+
+
+def document(cycle: LoadCycle) -> dict[str, Any]:
+    """Return the largest values of a cycle with their places, and its energies, as a dict.
+
+    A value that is not known is None. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load.
+    """
+    found: dict[str, Any] = {"first": cycle.first, "last": cycle.last, "closed": cycle.is_closed}
+    for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
+        found[f"largest_{name}"], found[f"largest_{name}_angle"] = _largest(cycle, name)
+    bound = cycle.slip_range_bound
+    found["largest_slip_range_bound"] = None if bound is None else float(bound.max())
+    found["dissipation"] = cycle.dissipation
+    found["nodes"] = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
+    found["work"] = {name: loop.work for name, loop in cycle.loops.items()}
+    return found
+
+
+def write_csv(cycle: LoadCycle, path: Path) -> None:
+    """Write the values of all nodes as CSV, a line for each node. The header names the units.
+
+    Raises
+    ------
+    InputError
+        If the file can't be written.
+    """
+    columns = {name: column for name, column in cycle.columns().items() if name != "theta"}
+    header = [f"{name} [{unit}]" if unit else name for name, (_, unit) in columns.items()]
+    cells: dict[str, list[Any]] = {name: values.tolist() for name, (values, _) in columns.items()}
+    cells["behaviour"] = [WORDS[NodeBehaviour(value)] for value in cells["behaviour"]]
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["angle [deg]", *header])
+        for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
+            writer.writerow([from_bottom(angle), *values])
+
+
+def _largest(cycle: LoadCycle, name: str) -> tuple[float | None, float | None]:
+    """Return the largest value of a node and its angle; None for what is not known."""
+    values: np.ndarray | None = getattr(cycle, name)
+    if values is None:
+        return None, None
+    angle = cycle.angle_of_largest(values)
+    return float(values.max()), None if np.isnan(angle) else from_bottom(angle)

@@ -1,0 +1,304 @@
+"""Quantities over a load cycle: ranges, slip, friction energy, sticking, and the loops of the loads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fastpin.elasticity.system import load_columns
+from fastpin.errors import InputError
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.angles import near_bottom
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.units import units
+from fastpin.states.state import State
+
+if TYPE_CHECKING:
+    import pandas
+
+NEGLIGIBLE = 1e-12
+"""Slip distance that is rounding, in parts of the largest."""
+
+
+class NodeBehaviour(IntEnum):
+    """What a node does over a cycle."""
+
+    NO_CONTACT = 0
+    """Never closed."""
+
+    STICKS = 1
+    """Closed all the time, without slip."""
+
+    SLIPS = 2
+    """Closed all the time, and slips at some time."""
+
+    OPENS = 3
+    """Closed at some time and open at another."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A load against the displacement on which it does work, at the states of a cycle.
+
+    Attributes
+    ----------
+    load : ndarray, shape (states,)
+        P and Q in N/m, M in N, remote stresses in Pa.
+    displacement : ndarray, shape (states,)
+        For Q, along +x, and for P, downwards: displacement of the pin where its force acts, over the hole, m. For M:
+        the rotation, rad. For a remote stress: the integral of the tractions times the displacement of the hole per
+        unit of the stress, m^2. Terms that depend on the loads alone are left out, see docs/theory.md, section 6.
+    """
+
+    load: np.ndarray
+    displacement: np.ndarray
+
+    @property
+    def work(self) -> float:
+        """Work of the load, J/m; over a closed cycle it is the area of the loop.
+
+        The loop is a polygon through the states. It is exact if statuses change at states only. Otherwise the error
+        falls with the square of the number of states.
+        """
+        return float(np.sum(0.5 * (self.load[1:] + self.load[:-1]) * np.diff(self.displacement)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LoadCycle:
+    """The part of a load history between two corners, and its quantities.
+
+    Numbers are in SI units, or in the units of a dimensionless problem. Ranges and extremes are over the states, so
+    states inside steps (``between``) make them finer. Slip distance and friction energy are exact for any states.
+
+    Attributes
+    ----------
+    states : tuple of State
+        The kept states from the first corner to the last one, both included; at least two.
+    """
+
+    states: tuple[State, ...]
+
+    def __repr__(self) -> str:
+        kind = "closed" if self.is_closed else "open"
+        return f"<LoadCycle: corners {self.first} to {self.last}, {kind}, {len(self.states)} states>"
+
+    @property
+    def first(self) -> int:
+        """The corner at which the cycle begins, counted from 1."""
+        return self.states[0].step + 1
+
+    @property
+    def last(self) -> int:
+        """The corner at which the cycle ends, counted from 1."""
+        return self.states[-1].step + 1
+
+    @property
+    def theta(self) -> np.ndarray:
+        """Node angles, rad, shape (n,); -pi/2 is the bottom of the hole."""
+        return self.states[0].theta
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the loads at both ends are equal. Reactions are no loads here."""
+        return not self.differing_loads
+
+    @property
+    def differing_loads(self) -> list[str]:
+        """Names of the loads that differ between the two ends."""
+        problem, begin, end = self.states[0].problem, self.states[0].load, self.states[-1].load
+        reactions = [name for name, driven in zip(("Q", "P"), problem.driven, strict=True) if driven]
+        return [name for name in LOADS if name not in reactions and begin[name] != end[name]]
+
+    @cached_property
+    def status(self) -> np.ndarray:
+        """Statuses of the nodes at each state, int8, shape (states, n); see :class:`fastpin.Status`."""
+        return np.array([state.status for state in self.states])
+
+    @cached_property
+    def behaviour(self) -> np.ndarray:
+        """What each node does over the cycle: values of :class:`NodeBehaviour`, int8, shape (n,).
+
+        Slip between two states counts if slip distances are known. A node that closes or opens between two states, and
+        is back at both, is not seen.
+        """
+        closed = self.status != OPEN
+        slips = np.any(np.isin(self.status[1:], (SLIP_NEGATIVE, SLIP_POSITIVE)), axis=0)
+        distance = self.slip_distance
+        if distance is not None:
+            slips |= distance > NEGLIGIBLE * float(distance.max())
+        behaviours = NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.STICKS
+        found = np.select([~closed.any(axis=0) & ~slips, closed.all(axis=0) & slips, closed.all(axis=0)], behaviours, 3)
+        return found.astype(np.int8)
+
+    # -- slip ----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def slip_range(self) -> np.ndarray:
+        """Range of the slip at the states in which the node is closed, m, shape (n,); 0 where it never is."""
+        closed = self.status != OPEN
+        slip = np.array([state.slip for state in self.states])
+        highest = np.where(closed, slip, -np.inf).max(axis=0)
+        lowest = np.where(closed, slip, np.inf).min(axis=0)
+        return np.where(closed.any(axis=0), highest - lowest, 0.0)
+
+    @cached_property
+    def slip_range_bound(self) -> np.ndarray | None:
+        """By how much the true range of slip may exceed :attr:`slip_range`, m, shape (n,).
+
+        Between two states the slip goes at most half of its distance, less its change, beyond its values at both. The
+        bound holds for nodes that are closed from one state to the next, or at one of both. It is infinite for a node
+        that slips between two states in which it is open. None if slip distances are not known.
+        """
+        if self.slip_distance is None:
+            return None
+        beyond = []
+        for before, after in zip(self.states, self.states[1:], strict=False):
+            assert after.slip_distance is not None
+            distance, closed = after.slip_distance, np.array([before.status, after.status]) != OPEN
+            half = 0.5 * np.maximum(distance - np.abs(after.slip - before.slip), 0.0)
+            unknown = np.where(distance > 0.0, np.inf, 0.0)
+            beyond.append(np.select([closed.all(axis=0), closed.any(axis=0)], [half, distance], unknown))
+        largest: np.ndarray = np.sort(beyond, axis=0)[-2:].sum(axis=0)  # the highest and the lowest slip
+        return largest
+
+    @property
+    def largest_slip_range(self) -> float:
+        """Largest slip range of a node, m."""
+        return float(self.slip_range.max())
+
+    @property
+    def largest_slip_range_angle(self) -> float:
+        """Angle of the node with the largest slip range, rad; NaN without slip."""
+        return self.angle_of_largest(self.slip_range)
+
+    @cached_property
+    def slip_distance(self) -> np.ndarray | None:
+        """Distance int |ds| of the slip of each node while closed, m, shape (n,).
+
+        None without the option ``slip_sums``, or if states between were left out when the result was loaded.
+        """
+        parts = [state.slip_distance for state in self.states[1:]]
+        return _total(parts)
+
+    @cached_property
+    def friction_energy(self) -> np.ndarray | None:
+        """Energy int -T ds that friction dissipates at each node, J/m^2, shape (n,). None as :attr:`slip_distance`.
+
+        Its integral over the hole is :attr:`dissipation`, to rounding.
+        """
+        return _total([state.friction_energy for state in self.states[1:]])
+
+    @property
+    def dissipation(self) -> float:
+        """Energy that friction dissipates in the cycle, J/m."""
+        return self.states[-1].dissipation - self.states[0].dissipation
+
+    # -- tractions -----------------------------------------------------------------------------------------------
+
+    @cached_property
+    def pressure_extremes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Smallest and largest pressure of each node, Pa, shape (n,) each."""
+        return _extremes([state.pressure for state in self.states])
+
+    @cached_property
+    def shear_extremes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Smallest and largest shear traction of each node, with their signs, Pa, shape (n,) each."""
+        return _extremes([state.shear for state in self.states])
+
+    @property
+    def pressure_range(self) -> np.ndarray:
+        """Range of the pressure of each node, Pa, shape (n,)."""
+        lowest, highest = self.pressure_extremes
+        return highest - lowest
+
+    @property
+    def shear_range(self) -> np.ndarray:
+        """Range of the shear traction of each node, Pa, shape (n,)."""
+        lowest, highest = self.shear_extremes
+        return highest - lowest
+
+    # -- loads ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def loops(self) -> dict[str, Loop]:
+        """The loop of each load, by name: "P", "Q", "M", and the remote stresses that act.
+
+        Over a closed cycle of a settled contact, the sum of their works is the dissipation, up to the discretisation.
+        """
+        states, problem = self.states, self.states[0].problem
+        _, columns = load_columns(problem, self.theta)
+        weights = np.r_[states[0].grid.weights, states[0].grid.weights]
+        tractions = np.array([np.r_[state.pressure, state.shear] for state in states])
+        moved = problem.pair.beta_star * problem.hole_radius * (tractions @ (weights[:, None] * columns))
+        motion = {
+            "P": np.array([-state.dy for state in states]),
+            "Q": np.array([state.dx for state in states]),
+            "M": np.array([state.rotation for state in states]),
+        }
+        moments = np.array([state.resultants["M"] for state in states])
+        found = {}
+        for place, (name, kind) in enumerate(LOAD_KIND.items()):
+            load = moments if name == "M" else np.array([state.load[name] for state in states])
+            if name in motion:
+                found[name] = Loop(load, motion[name] + moved[:, place])
+            elif kind == "traction" and load.any():
+                found[name] = Loop(load, problem.hole_radius * moved[:, place])
+        return found
+
+    # -- output --------------------------------------------------------------------------------------------------
+
+    def angle_of_largest(self, values: np.ndarray) -> float:
+        """Angle of the node with the largest of `values`, shape (n,), rad; NaN if none is above 0."""
+        return near_bottom(float(self.theta[np.argmax(values)])) if values.max() > 0.0 else math.nan
+
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """The values of all nodes, shape (n,), and their unit, by name. Quantities that are not known are left out."""
+        unit = units(self.states[0].problem)
+        pressures, shears = self.pressure_extremes, self.shear_extremes
+        found = {
+            "theta": (self.theta, "rad"),
+            "behaviour": (self.behaviour, ""),
+            "slip_range": (self.slip_range, unit["displacement"]),
+            "slip_range_bound": (self.slip_range_bound, unit["displacement"]),
+            "slip_distance": (self.slip_distance, unit["displacement"]),
+            "friction_energy": (self.friction_energy, unit["energy density"]),
+            "pressure_min": (pressures[0], unit["traction"]),
+            "pressure_max": (pressures[1], unit["traction"]),
+            "shear_min": (shears[0], unit["traction"]),
+            "shear_max": (shears[1], unit["traction"]),
+        }
+        return {name: (values, label) for name, (values, label) in found.items() if values is not None}
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The values of :meth:`columns` with a row for each node; ``frame.attrs["units"]`` names the units.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
+        columns = self.columns()
+        frame = pandas.DataFrame({name: values for name, (values, _) in columns.items()})
+        frame.attrs["units"] = {name: unit for name, (_, unit) in columns.items()}
+        return frame
+
+
+def _total(parts: Sequence[np.ndarray | None]) -> np.ndarray | None:
+    """The sum of arrays; None if one of them is None."""
+    known = [part for part in parts if part is not None]
+    return np.sum(known, axis=0) if len(known) == len(parts) else None
+
+
+def _extremes(values: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """The smallest and the largest value of each node, shape (n,) each."""
+    return np.min(values, axis=0), np.max(values, axis=0)
