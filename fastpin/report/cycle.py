@@ -22,9 +22,8 @@ def cycle_line(cycle: LoadCycle) -> str:
     unit = units(cycle.states[0].problem)
     parts = [_in_words(cycle, "slip range", unit["displacement"])]
     bound = cycle.slip_range_bound
-    if bound is not None and np.isfinite(bound).all():
-        most = float((cycle.slip_range + bound).max())
-        parts[0] += f" (at most {with_unit(most, unit['displacement'], 4)})"
+    most = np.inf if bound is None else float((cycle.slip_range + bound).max())
+    parts[0] += f" (at most {with_unit(most, unit['displacement'], 4)})" if np.isfinite(most) else " at the kept states"
     if cycle.friction_energy is not None:
         parts.append(_in_words(cycle, "slip distance", unit["displacement"]))
         parts.append(_in_words(cycle, "friction energy", unit["energy density"]))

@@ -6,6 +6,7 @@ import functools
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numba
 import numpy as np
@@ -302,8 +303,11 @@ def naive_path(system, start, after):
                 inside = stick & (room > 1e-13) & (shrink > 1e-10)
                 steps.append(np.where(inside, room / shrink, np.inf))
         step = min(np.min(steps), 1.0 - time)
+        old = now.shear.copy()
         for name in ("pressure", "shear", "gap", "slip"):
             setattr(now, name, getattr(now, name) + step * getattr(r, name))
+        slid = np.where(closed & ~stick, step * r.slip, 0.0)
+        now.slip_sums = now.slip_sums + np.array([np.abs(slid), -0.5 * (old + now.shear) * slid])
         now.gap[closed | (now.gap < 1e-15)] = 0.0
         now.pressure[~closed | (now.pressure < 1e-15)] = 0.0
         now.shear[now.pressure == 0.0] = 0.0
@@ -315,7 +319,7 @@ def naive_path(system, start, after):
 
 def test_path_agrees_with_the_naive_solver(system):
     first, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
-    fast = naive = first
+    fast = naive = replace(first, slip_sums=np.zeros((2, 41)))
     for target in (loads(P=1.0), loads(P=1.0, Q=0.35), loads(P=1.0, Q=-0.35)):
         step = PathStep(system, fast, target)
         naive = naive_path(system, naive, target)
@@ -325,6 +329,9 @@ def test_path_agrees_with_the_naive_solver(system):
         assert np.array_equal(fast.status, naive.status)
         for name in ("pressure", "shear", "gap", "slip"):
             assert np.abs(getattr(fast, name) - getattr(naive, name)).max() < 1e-9
+        assert np.abs(fast.slip_sums - naive.slip_sums).max() < 1e-9 * naive.slip_sums.max()
+    assert np.all(naive.slip_sums.max(axis=1) > 0.005)
+    assert system.weights @ fast.slip_sums[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
 
 
 PLAIN = """
@@ -332,9 +339,10 @@ import numpy as np
 from fastpin import MATERIALS, MaterialPair, Problem, solve
 pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 problem = Problem.from_load_parameter(pair, 0.1, 0.4, "body")
-result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=31, arc=(-3.2, 0.1))
+result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=31, arc=(-3.2, 0.1), slip_sums=True)
 for state in result:
-    print(*[f"{value:.12e}" for value in (*state.pressure, *state.shear, state.rotation, state.dissipation)])
+    values = *state.pressure, *state.shear, *state.slip_distance, *state.friction_energy
+    print(*[f"{value:.12e}" for value in (*values, state.rotation, state.dissipation)])
 """
 
 
@@ -347,7 +355,7 @@ def test_compiled_and_plain_python_give_the_same_states():
         return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 
     compiled, plain = run("0"), run("1")
-    assert compiled.shape == (3, 64)
+    assert compiled.shape == (3, 126)
     assert np.abs(compiled - plain).max() < 1e-10
 
 

@@ -9,6 +9,7 @@ from fastpin.solver.result import Result
 
 CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
 FIELDS = ("pressure", "shear", "gap", "slip", "status")
+SLIP = ("slip_distance", "friction_energy")  # None without the option slip_sums
 NUMBERS = ("step", "fraction", "load", "dx", "dy", "rotation", "dissipation", "work", "energy", "residuals")
 
 
@@ -38,7 +39,7 @@ def assert_same(one: Result, other: Result) -> None:
     """Two results have the same states, to the last bit."""
     assert len(one) == len(other)
     for first, second in zip(one, other, strict=True):
-        for name in FIELDS:
+        for name in (*FIELDS, *SLIP):
             assert np.array_equal(getattr(first, name), getattr(second, name)), (name, first.step)
         for name in NUMBERS:
             assert getattr(first, name) == getattr(second, name), (name, first.step)

@@ -1,0 +1,255 @@
+"""Slip sums: the slip distance and the friction energy of each node, exact along every piece of a history."""
+
+from __future__ import annotations
+
+import itertools
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity import large
+from fastpin.model.grid import Grid
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.storage.recording import record
+from fastpin.storage.store import load, save
+from scripts.histories import random_case
+from tests.support.programs import FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, known, q
+from tests.support.snap_cases import GRIPPED, TURNED
+
+LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
+UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+FRETTING = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.2}]
+CIRCLE = {"grid": Grid.circle(160, 0.3)}
+DRIVEN = [{"P": 1.0}, {"ux": 0.2}, {"ux": -0.2}, {"ux": 0.1}]
+
+
+def unitless(pair: MaterialPair, load_parameter: float, friction: float, *kind: str, **more: Any) -> Problem:
+    return Problem.from_load_parameter(pair, load_parameter, friction, *kind, **more)
+
+
+CASES: dict[str, tuple[Problem, Any, dict[str, Any]]] = {
+    "unlike bodies": (unitless(UNLIKE, 0.1, 0.4, "body"), FRETTING, {"nodes": 101}),
+    "in SI units": (Problem(UNLIKE, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"Q": 5e5}, {"Q": -5e5}], {"nodes": 81}),
+    "normal unloading": (unitless(UNLIKE, 0.1, 0.3), [{"P": 1.0}, {"P": 0.1}, {"P": 0.6}], {"nodes": 101}),
+    "separation": (unitless(LIKE, 0.5, 0.5), [{"P": 1.0, "Q": 0.3}, {"P": 0.0, "Q": 0.0}, {"P": -1.0}], CIRCLE),
+    "neat fit": (unitless(UNLIKE, 0.0, 0.4), [{"P": 1.0, "Q": 0.2}, {"Q": -0.2}], {"nodes": 101}),
+    "interference": (unitless(UNLIKE, -0.01, 0.3), FRETTING, CIRCLE),
+    "moment": (unitless(LIKE, 0.2, 0.5), [{"P": 1.0, "M": 0.1}, {"M": -0.1}], {"nodes": 101}),
+    "remote stress": (
+        unitless(UNLIKE, 0.2, 0.5, "centre", "fixed"),
+        [{"P": 1.0}, {"Q": 0.1, "sxx": 0.2, "sxy": -0.1}, {"Q": -0.1, "sxx": -0.2, "sxy": 0.1}],
+        CIRCLE,
+    ),
+    "driven": (unitless(UNLIKE, 0.2, 0.5, "centre", "fixed", drive="ux"), DRIVEN, {"nodes": 101}),
+    "snap": (*GRIPPED, {"nodes": 101}),
+    "snap under a moment": (*TURNED, {"nodes": 101}),
+    "much friction": (unitless(LIKE, 0.3, 2.0, "centre", "fixed"), FRETTING, {"nodes": 101}),
+}
+METHODS: dict[str, dict[str, Any]] = {"path": {}, "increment": {"method": "increment", "increments": 12}}
+
+
+def energies(result: Result) -> np.ndarray:
+    """The integral of the friction energy over the hole, of each state."""
+    radius = result.problem.hole_radius
+    return np.array([radius * float(result.grid.weights @ state.friction_energy) for state in result])
+
+
+def assert_balance(result: Result) -> None:
+    """The friction energy of all nodes is the growth of the dissipation; no node slips without contact."""
+    dissipation = np.array([state.dissipation for state in result])
+    scale = max(float(np.abs(dissipation).max()), 1e-300)
+    assert np.abs(energies(result) - np.diff(dissipation, prepend=0.0)).max() <= 1e-12 * scale
+    for before, after in itertools.pairwise(result):
+        stuck = (before.status == 0) & (after.slip_distance == 0.0) & (after.status == 0)
+        assert np.abs(after.slip - before.slip)[stuck].max(initial=0.0) <= 1e-12 * np.abs(after.slip).max()
+        assert np.all(after.slip_distance >= 0.0)
+
+
+@pytest.mark.parametrize("method", list(METHODS))
+@pytest.mark.parametrize("name", list(CASES))
+def test_the_friction_energy_of_all_nodes_is_the_dissipation(name: str, method: str) -> None:
+    problem, history, options = CASES[name]
+    if method == "increment" and "snap" in name:
+        pytest.skip("increments end at a snap")
+    options = {**options, **METHODS[method], "between": 2}
+    found = solve(problem, history, slip_sums=True, **options)
+    assert_balance(found)
+    assert found[-1].dissipation > 0.0
+    assert sum(float(state.slip_distance.max()) for state in found) > 0.0
+
+
+@pytest.mark.parametrize("name", list(CASES))
+def test_nothing_else_changes(name: str) -> None:
+    problem, history, options = CASES[name]
+    plain, summed = (solve(problem, history, slip_sums=sums, **options) for sums in (False, True))
+    for one, two in zip(plain, summed, strict=True):
+        assert one.slip_distance is one.friction_energy is None
+        assert all(np.array_equal(getattr(one, field), getattr(two, field)) for field in FIELDS)
+        assert all(getattr(one, field) == getattr(two, field) for field in NUMBERS)
+    assert {**plain.statistics, "seconds": 0.0} == {**summed.statistics, "seconds": 0.0}
+
+
+@pytest.mark.parametrize("seed", range(100, 130))
+def test_random_histories_balance(seed: int) -> None:
+    problem, history = random_case(seed)
+    assert_balance(solve(problem, history, nodes=81, slip_sums=True))
+
+
+def naive(result: Result) -> np.ndarray:
+    """Slip distance and friction energy summed from state to state, shape (2, n)."""
+    sums = np.zeros((2, result.grid.size))
+    for before, after in itertools.pairwise(result):
+        both = (before.status != 2) & (after.status != 2)
+        slid = np.where(both, after.slip - before.slip, 0.0)
+        sums += [np.abs(slid), -0.5 * slid * (before.shear + after.shear)]
+    return sums
+
+
+@pytest.mark.parametrize("name", ["unlike bodies", "remote stress", "much friction", "driven"])
+def test_sums_from_state_to_state_converge_to_the_exact_sums(name: str) -> None:
+    problem, history, options = CASES[name]
+    errors = []
+    for between in (15, 127, 1023):
+        found = solve(problem, history, slip_sums=True, between=between, **options)
+        exact = np.array([np.sum([getattr(state, field) for state in found[1:]], axis=0) for field in SLIP])
+        errors.append(np.abs(naive(found) - exact).max(axis=1) / exact.max(axis=1))
+    assert np.all(errors[1] < 0.4 * errors[0])
+    assert np.all(errors[2] < 0.4 * errors[1])
+    assert np.all(errors[2] < 5e-3)
+
+
+def test_the_sums_do_not_depend_on_the_states_that_are_kept() -> None:
+    problem, history, options = CASES["unlike bodies"]
+    whole = solve(problem, history, slip_sums=True, **options)
+    for between in (1, [0.1, 0.35, 0.7]):
+        parts = solve(problem, history, slip_sums=True, between=between, **options)
+        size = len(parts) // len(whole)
+        for place, state in enumerate(whole):
+            mine = parts[place * size : (place + 1) * size]
+            for field in SLIP:
+                total, expected = np.sum([getattr(part, field) for part in mine], axis=0), getattr(state, field)
+                assert np.abs(total - expected).max() <= 1e-12 * expected.max()
+
+
+def test_without_friction_slip_has_a_distance_and_no_energy() -> None:
+    found = solve(unitless(UNLIKE, 0.1, 0.0, "centre", "fixed"), [{"P": 1.0}, {"P": 0.5}], nodes=101, slip_sums=True)
+    assert all(not state.friction_energy.any() for state in found)
+    first, second = found
+    both = (first.status != 2) & (second.status != 2)
+    # The contact shrinks in proportion: slip has one sense, so its distance is its change.
+    change = np.abs(second.slip - first.slip)
+    assert second.slip_distance[both] == pytest.approx(change[both], rel=1e-9, abs=1e-12 * change.max())
+
+
+# -- the same bits in every way ----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def held() -> Problem:
+    return unitless(LIKE, 0.5, 0.55, "centre", "fixed")
+
+
+@pytest.mark.parametrize("keep", ["all", "corners", "cycles", "every 3", "every 5"])
+@pytest.mark.parametrize("program", list(PROGRAMS))
+def test_what_repeats_has_the_bits_of_what_is_solved_again(held: Problem, program: str, keep: str, tmp_path) -> None:
+    history = PROGRAMS[program]
+    keep = keep if history.longest_cycle or keep != "cycles" else "every 7"
+    options: dict[str, Any] = {"nodes": 61, "keep": keep, "between": 1 if keep == "all" else 0, "slip_sums": True}
+    short = solve(held, history, **options)
+    whole = solve(held, history, shortcut=False, **options)
+    assert_same(short, whole)
+    assert known(short) == known(whole)
+    assert_balance(short)
+    record(held, history, tmp_path / "a.h5", **options)
+    assert_same(load(tmp_path / "a.h5"), whole)
+
+
+def test_repeated_states_share_their_sums(held: Problem) -> None:
+    for keep in ("corners", "cycles"):
+        found = solve(held, PROGRAMS["cycles"], nodes=61, keep=keep, slip_sums=True)
+        last, before = (found[-1], found[-2]) if keep == "cycles" else (found[-1], found[-3])
+        assert last.friction_energy is before.friction_energy
+        assert last.slip_distance is before.slip_distance
+        with pytest.raises(ValueError, match="read-only"):
+            last.slip_distance[0] = 1.0
+
+
+@pytest.mark.parametrize("program", list(PROGRAMS))
+def test_a_split_history_has_the_sums_of_the_whole(held: Problem, program: str) -> None:
+    history = PROGRAMS[program]
+    whole = solve(held, history, nodes=61, slip_sums=True)
+    for cut in (3, 8, len(history) - 2):
+        first = solve(held, history[:cut], grid=whole.grid, slip_sums=True)
+        second = solve(held, history[cut:], start=first, slip_sums=True)
+        for parts, states in ((first, whole[:cut]), (second, whole[cut:])):
+            for one, two in zip(parts, states, strict=True):
+                assert all(np.array_equal(getattr(one, name), getattr(two, name)) for name in SLIP)
+
+
+def test_a_branch_may_begin_to_sum_up(held: Problem) -> None:
+    history = P + q(0.2, -0.2, 0.1)
+    whole = solve(held, history, nodes=61, slip_sums=True)
+    first = solve(held, history[:2], grid=whole.grid)
+    second = solve(held, history[2:], start=first, slip_sums=True)
+    assert np.array_equal(second[0].friction_energy, whole[2].friction_energy)
+    bare = solve(held, history[2:], start=solve(held, history[:2], grid=whole.grid, slip_sums=True))
+    assert bare[0].friction_energy is None
+
+
+def test_corners_that_are_not_kept_count(held: Problem) -> None:
+    history = P + q(*RANDOM)
+    every = solve(held, history, nodes=61, slip_sums=True)
+    some = solve(held, history, nodes=61, keep="every 7", slip_sums=True)
+    before = -1
+    for state in some:
+        between = every[before + 1 : state.step + 1]
+        for name in SLIP:
+            total = np.sum([getattr(one, name) for one in between], axis=0)
+            assert np.abs(total - getattr(state, name)).max() <= 1e-13 * total.max()
+        before = state.step
+
+
+def test_states_keep_their_sums_through_pickle_and_files(held: Problem, tmp_path) -> None:
+    found = solve(held, P + q(0.2, -0.2), nodes=61, slip_sums=True)
+    copy = pickle.loads(pickle.dumps(found))
+    assert_same(copy, found)
+    assert not copy[1].slip_distance.flags.writeable
+    save(found, tmp_path / "a.h5")
+    assert_same(load(tmp_path / "a.h5"), found)
+
+
+def test_windows_give_the_sums_of_the_whole_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = unitless(UNLIKE, 20.0, 0.4, "centre", "fixed")
+    history = [{"P": 1.0}, {"P": 0.8, "Q": 0.7}, {"P": 0.8, "Q": -0.7}, {"P": 0.02, "Q": 0.01}]
+    grid = Grid.graded([(-0.5 * np.pi, 0.3), (-1.0, 0.3), (-2.1, 0.3)], 260, -0.5 * np.pi)
+    whole = solve(problem, history, grid=grid, slip_sums=True)
+    monkeypatch.setattr(large, "MOST_DENSE", 100)
+    on_windows = solve(problem, history, grid=grid, slip_sums=True)
+    assert_balance(on_windows)
+    for one, two in zip(on_windows, whole, strict=True):
+        for name in SLIP:
+            assert np.abs(getattr(one, name) - getattr(two, name)).max() <= 1e-7 * getattr(two, name).max()
+
+
+def test_error_bars_go_with_sums(held: Problem) -> None:
+    found = solve(held, P + q(0.2, -0.2), nodes=101, slip_sums=True, error_bars=True)
+    assert found[-1].error_bars is not None
+    assert found[-1].slip_distance.max() > 0.0
+    again = solve(held, q(0.2), start=found, slip_sums=True, error_bars=True)
+    assert again[0].friction_energy.any()
+
+
+def test_a_long_transient_is_summed_where_it_was_not_kept(held: Problem) -> None:
+    """The contact settles shortly before the corners that repeat: their first kept state counts the transient too."""
+    history = LoadHistory([{"P": 1.0}]) + q(0.3, -0.3).repeated(40)
+    for keep in ("every 9", "every 16"):
+        short = solve(held, history, nodes=61, keep=keep, slip_sums=True)
+        assert short.statistics["repeated"] > 0
+        assert_same(short, solve(held, history, nodes=61, keep=keep, slip_sums=True, shortcut=False))
+        assert_balance(short)
