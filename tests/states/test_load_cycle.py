@@ -1,0 +1,275 @@
+"""Quantities over a load cycle, against states, sums and energies."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.storage.recording import record
+from fastpin.storage.store import load, places_between
+
+UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
+JOINT = Problem(UNLIKE, 0.01, 2e-5, 0.4, "centre", "fixed")
+HELD = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed")
+FRETTING = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.3}, {"Q": -0.3}]).repeated(6)
+STRESSED = LoadHistory([{"P": 1.0}]) + LoadHistory(
+    [{"Q": 0.3, "sxx": 0.2}, {"Q": -0.1, "sxy": 0.1}, {"Q": -0.3, "P": 0.9, "sxx": 0.0}, {"P": 1.0, "sxy": -0.1}]
+).repeated(6)
+DRIVEN = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed", drive="ux")
+PUSHED = LoadHistory([{"P": 1.0}]) + LoadHistory([{"ux": 0.3}, {"ux": -0.3}]).repeated(6)
+SPRUNG = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "spring", hub_stiffness=0.5)
+TURNED = LoadHistory([{"P": 1.0}]) + LoadHistory([{"rotation": 0.5}, {"rotation": -0.5, "Q": 0.1}]).repeated(6)
+CYCLES = {
+    "forces": (HELD, FRETTING),
+    "remote stress": (HELD, STRESSED),
+    "displacements": (DRIVEN, PUSHED),
+    "rotations": (SPRUNG, TURNED),
+    "body": (Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), FRETTING),
+}
+
+
+def solved(name: str = "forces", **options: Any) -> Result:
+    problem, history = CYCLES[name]
+    return solve(problem, history, **{"nodes": 81, "slip_sums": True, **options})
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    return solved(between=3)
+
+
+# -- which part ----------------------------------------------------------------------------------------------
+
+
+def test_the_last_cycle_is_the_default(result: Result) -> None:
+    cycle = result.cycle()
+    assert (cycle.first, cycle.last, len(cycle.states), cycle.is_closed) == (11, 13, 9, True)
+    assert repr(cycle) == "<LoadCycle: corners 11 to 13, closed, 9 states>"
+    assert cycle.states[-1] is result[-1]
+    assert (result.cycle(1).first, result.cycle(-2).first, result.cycle(-2).last) == (3, 9, 11)
+    assert result.cycle(first=11, last=13).states == cycle.states
+
+
+def test_what_is_no_closed_cycle_is_refused_unless_its_corners_are_given(result: Result) -> None:
+    with pytest.raises(InputError, match=r"^cycle: the cycle to corner 3 is not closed: Q differs .* first=1, last=3"):
+        result.cycle(0)
+    part = result.cycle(first=1, last=3)
+    assert not part.is_closed
+    assert part.differing_loads == ["Q"]
+    assert part.friction_energy is not None
+    assert part.slip_range.max() > 0.0
+
+
+def test_an_end_that_was_not_kept_is_named() -> None:
+    with pytest.raises(InputError, match=r"the state at corner 9 was not kept"):
+        solved(keep="every 4").cycle(first=9, last=12)
+    with pytest.raises(InputError, match=r"the state at corner 11 was not kept"):
+        solved(keep="every 4").cycle()
+    assert len(solved(keep="cycles").cycle().states) == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"place": 6}, "place: must be a whole number from -6 to 5"),
+        ({"first": 3}, "first: and last go together"),
+        ({"first": 0, "last": 2}, "first: must be a whole number from 1 to 12"),
+        ({"first": 3, "last": 3}, "last: must be a whole number from 4 to 13"),
+        ({"first": 3, "last": 14}, "last: must be a whole number from 4 to 13"),
+    ],
+)
+def test_wrong_arguments_are_named(result: Result, arguments: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        result.cycle(**arguments)
+
+
+def test_histories_without_an_ended_cycle() -> None:
+    plain = solve(HELD, [{"P": 1.0}, {"Q": 0.1}], nodes=41)
+    with pytest.raises(InputError, match="no cycle that has ended"):
+        plain.cycle()
+    first = solve(HELD, LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2), nodes=41)
+    with pytest.raises(InputError, match="the cycle to corner 2 begins without load"):
+        first.cycle(0)
+
+
+# -- energies and loops --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", list(CYCLES))
+@pytest.mark.parametrize("options", [{"between": 3}, {"keep": "cycles"}], ids=["all", "cycles"])
+def test_the_friction_energy_is_the_dissipation(name: str, options: dict[str, Any]) -> None:
+    cycle = solved(name, **options).cycle()
+    assert cycle.friction_energy is not None
+    energy = float(cycle.states[0].grid.weights @ cycle.friction_energy)
+    assert energy == pytest.approx(cycle.dissipation, rel=1e-12, abs=1e-12 * cycle.states[-1].dissipation)
+
+
+@pytest.mark.parametrize("name", list(CYCLES))
+def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
+    """The polygon through the states converges to the work of the solver, with the square of their number."""
+    errors, size = [], 0.0
+    for between in (7, 63, 511):
+        found = solved(name, between=between)
+        cycle = found.cycle(first=1, last=3 if name != "remote stress" else 5)
+        work = sum(loop.work for loop in cycle.loops.values())
+        exact = cycle.states[-1].work - cycle.states[0].work
+        size = sum(abs(loop.work) for loop in cycle.loops.values())
+        errors.append(abs(work - exact) / size)
+    assert errors[2] < 1e-5
+    assert errors[2] < 0.02 * errors[0] or errors[0] < 1e-6
+
+
+def test_a_loop_is_exact_where_no_status_changes() -> None:
+    """Friction is so large that all nodes stick, and the contact is the whole circle."""
+    problem = Problem.from_load_parameter(UNLIKE, -0.2, 2.0, "centre", "fixed")
+    found = solve(problem, [{"P": 0.5}, {"Q": 0.2, "sxx": 0.05}, {"Q": -0.1}], nodes=80)
+    assert all(np.all(state.status == STICK) for state in found)
+    cycle = found.cycle(first=1, last=3)
+    work = sum(loop.work for loop in cycle.loops.values())
+    assert work == pytest.approx(found[2].work - found[0].work, rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ["forces", "remote stress", "displacements"])
+def test_closed_loops_enclose_the_dissipation_up_to_the_discretisation(name: str) -> None:
+    """The contact under remote stress has not settled quite: its elastic energy still changes."""
+    errors = []
+    for nodes in (81, 161):
+        cycle = solved(name, nodes=nodes).cycle()
+        before, after = cycle.states[0], cycle.states[-1]
+        stored = after.energy - before.energy
+        errors.append(abs((after.work - before.work - stored) / cycle.dissipation - 1.0))
+    assert errors[1] < 0.3 * errors[0]
+    fine = solved(name, between=255).cycle()
+    assert sum(loop.work for loop in fine.loops.values()) == pytest.approx(fine.dissipation, rel=2e-3)
+
+
+def test_the_displacement_of_a_small_hub_does_the_work_of_the_force() -> None:
+    """Betti's theorem: the hub's displacement of (T29) is the one of the loop, but for terms of the loads alone."""
+    problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed", hub_radius=1e-3)
+    cycle = solve(problem, FRETTING, nodes=161, between=3).cycle()
+    for name, component, sense in (("Q", "ux", 1.0), ("P", "uy", -1.0)):
+        loop = cycle.loops[name]
+        own = problem.drive_compliances[0] * problem.pair.beta_star
+        hub = np.array([sense * state.displacement[component] for state in cycle.states]) - own * loop.load
+        assert np.diff(hub) == pytest.approx(np.diff(loop.displacement), abs=2e-4 * np.ptp(hub))
+
+
+# -- slip and statuses ---------------------------------------------------------------------------------------
+
+
+def test_ranges_are_over_the_states_in_contact(result: Result) -> None:
+    cycle = result.cycle()
+    for node in range(0, 81, 5):
+        slips = [state.slip[node] for state in cycle.states if state.status[node] != OPEN]
+        assert cycle.slip_range[node] == (max(slips) - min(slips) if slips else 0.0)
+    assert np.array_equal(cycle.pressure_range, np.ptp([state.pressure for state in cycle.states], axis=0))
+    assert np.array_equal(cycle.shear_range, np.ptp([state.shear for state in cycle.states], axis=0))
+    place = int(np.argmax(cycle.slip_range))
+    assert cycle.largest_slip_range == cycle.slip_range[place]
+    assert cycle.largest_slip_range_angle == cycle.theta[place]
+
+
+def thinned(cycle: LoadCycle, size: int) -> LoadCycle:
+    """The cycle with every `size`-th state only; the distances between are added up."""
+    states = [cycle.states[0]]
+    for last in range(size, len(cycle.states), size):
+        distance = np.sum([state.slip_distance for state in cycle.states[last - size + 1 : last + 1]], axis=0)
+        states.append(replace(cycle.states[last], slip_distance=distance))
+    return LoadCycle(tuple(states))
+
+
+def test_the_bound_holds_for_what_the_states_miss() -> None:
+    """Few states with their bound against many states, at nodes that stay closed."""
+    fine = solved(between=499).cycle()
+    closed = np.all(fine.status != OPEN, axis=0)
+    for size in (10, 50, 100, 250, 500, 1000):
+        few = thinned(fine, size)
+        bound = few.slip_range_bound
+        assert bound is not None
+        missed = (fine.slip_range - few.slip_range)[closed]
+        assert np.all(missed <= bound[closed] + 1e-13 * fine.largest_slip_range)
+        assert missed.max() > 0.1 * bound[closed].max() or size < 500
+    assert fine.slip_range_bound is not None
+    assert fine.slip_range_bound[closed].max() < 0.02 * fine.largest_slip_range
+
+
+def test_behaviours(result: Result) -> None:
+    cycle = result.cycle()
+    assert cycle.status.shape == (9, 81)
+    for node, behaviour in enumerate(cycle.behaviour):
+        closed = cycle.status[:, node] != OPEN
+        assert (behaviour == NodeBehaviour.NO_CONTACT) == (not closed.any())
+        assert (behaviour == NodeBehaviour.OPENS) == (closed.any() and not closed.all())
+        if behaviour == NodeBehaviour.STICKS:
+            assert np.all(cycle.status[1:, node] == STICK)
+            assert cycle.slip_distance[node] <= 1e-12 * cycle.slip_distance.max()
+            assert cycle.slip_range[node] <= 1e-12 * cycle.largest_slip_range
+    assert set(cycle.behaviour) == set(NodeBehaviour)
+
+
+def test_contact_between_the_states_is_seen() -> None:
+    """A node that is open at the ends of the cycle slips between them: only its slip distance shows this."""
+    bare, summed = (solved(keep="cycles", slip_sums=sums).cycle() for sums in (False, True))
+    assert np.sum(bare.behaviour == NodeBehaviour.OPENS) < np.sum(summed.behaviour == NodeBehaviour.OPENS)
+    assert np.sum(bare.behaviour == NodeBehaviour.STICKS) >= np.sum(summed.behaviour == NodeBehaviour.STICKS)
+
+
+def test_without_slip_sums_the_rest_is_there() -> None:
+    cycle = solved(slip_sums=False).cycle()
+    assert cycle.slip_distance is cycle.friction_energy is cycle.slip_range_bound is None
+    assert cycle.largest_slip_range > 0.0
+    assert "friction_energy" not in cycle.columns()
+
+
+def test_frictionless_cycles() -> None:
+    problem = Problem.from_load_parameter(LIKE, 0.2, 0.0, "centre", "fixed")
+    history = LoadHistory([{"P": 1.0}]) + LoadHistory([{"P": 0.5}, {"P": 1.0}]).repeated(2)
+    cycle = solve(problem, history, nodes=81, slip_sums=True).cycle()
+    assert not cycle.friction_energy.any()
+    assert set(cycle.behaviour) <= {NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.OPENS}
+    assert np.all(cycle.status[cycle.status != OPEN] == SLIP_POSITIVE)
+
+
+def test_contacts_without_slip_have_no_angle() -> None:
+    problem = Problem.from_load_parameter(UNLIKE, -0.2, 2.0, "centre", "fixed")
+    cycle = solve(problem, [{"P": 0.5}, {"P": 0.6}], nodes=80, slip_sums=True).cycle(first=1, last=2)
+    assert cycle.slip_range.max() == 0.0
+    assert math.isnan(cycle.largest_slip_range_angle)
+
+
+# -- files and tables ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("keep", ["all", "cycles"])
+def test_a_loaded_result_has_the_same_cycle(tmp_path, keep: str) -> None:
+    expected = solved(keep=keep).cycle()
+    record(*CYCLES["forces"], tmp_path / "a.h5", nodes=81, keep=keep, slip_sums=True)
+    whole = load(tmp_path / "a.h5")
+    part = load(tmp_path / "a.h5", states=places_between(tmp_path / "a.h5", 11, 13))
+    for found in (whole.cycle(), part.cycle()):
+        for name, (values, unit) in expected.columns().items():
+            assert np.array_equal(found.columns()[name][0], values), name
+            assert found.columns()[name][1] == unit
+    gaps = LoadCycle(tuple(load(tmp_path / "a.h5", states=[0, -1])))
+    assert gaps.slip_distance is None
+
+
+def test_a_data_frame_has_a_row_for_each_node() -> None:
+    result = solve(JOINT, LoadHistory([{"P": 2e6}]) + LoadHistory([{"Q": 5e5}, {"Q": -5e5}]).repeated(2), nodes=61)
+    frame = result.cycle().to_dataframe()
+    assert len(frame) == 61
+    assert frame["slip_range"].max() == result.cycle().largest_slip_range
+    assert frame.attrs["units"]["pressure_max"] == "Pa"

@@ -1,0 +1,133 @@
+"""Slip sums in files: resumed runs, restarts, states that are read in part, and files without them."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import Interrupted
+from fastpin.solver.solving import solve
+from fastpin.storage import writer
+from fastpin.storage.export import to_xarray
+from fastpin.storage.layout import SLIP_FIELDS
+from fastpin.storage.recording import record, resume
+from fastpin.storage.store import load, places_between
+from tests.support.programs import PROGRAMS, P, assert_same, known, q
+
+RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
+
+
+@pytest.fixture(scope="module")
+def problem(similar) -> Problem:
+    return Problem.from_load_parameter(similar, 0.5, 0.55, "centre", "fixed")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "a.h5"
+
+
+class StopAt:
+    """Progress that asks to stop where a history has come to a corner, as Ctrl-C would."""
+
+    def __init__(self, corner: float) -> None:
+        self.corner = corner
+
+    def __call__(self, done: float, total: int) -> None:
+        if total > 1 and done >= self.corner:
+            self.corner = np.inf
+            os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.parametrize("keep", ["all", "every 7", "cycles"])
+@pytest.mark.parametrize("program", ["spectrum", "two levels", "pressed again and again"])
+def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
+    history, corner = PROGRAMS[program][:60], 3.0
+    options: dict[str, Any] = {"nodes": 61, "arc": (-3.0, -0.1), "keep": keep, "slip_sums": True}
+    with pytest.raises(Interrupted):
+        record(problem, history, path, progress=StopAt(corner), **options)
+    while True:
+        corner += 5.0
+        try:
+            resume(path, StopAt(corner))
+            break
+        except Interrupted:
+            continue
+    found, expected = load(path), solve(problem, history, **options)
+    assert_same(found, expected)
+    assert known(found) == known(expected)
+
+
+def test_a_restart_holds_the_sums_since_the_latest_kept_state(problem: Problem, path: Path) -> None:
+    options: dict[str, Any] = {"nodes": 61, "keep": "every 9", "slip_sums": True}
+    record(problem, RANDOM, path, save_after=[9, 13], **options)
+    with h5py.File(path) as file:
+        assert "slip_sums" not in file["restart/9"]
+        assert file["restart/13/slip_sums"].shape == (2, 61)
+        assert "slip_distance" not in "".join(file["restart/13/configurations"])
+    branch = solve(problem, RANDOM[13:], start=load(path, after=13), slip_sums=True)
+    straight = solve(problem, RANDOM, nodes=61, slip_sums=True)
+    for one, two in zip(branch, straight[13:], strict=True):  # they count from the branch on
+        assert np.array_equal(one.slip_distance, two.slip_distance)
+        assert np.array_equal(one.friction_energy, two.friction_energy)
+
+
+def test_many_states_are_copied_piece_by_piece(problem: Problem, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(writer, "PIECE", 7)
+    for keep in ("all", "every 3"):
+        record(problem, PROGRAMS["spectrum"], path, nodes=61, keep=keep, slip_sums=True, overwrite=True)
+        assert_same(load(path), solve(problem, PROGRAMS["spectrum"], nodes=61, keep=keep, slip_sums=True))
+
+
+def test_files_without_the_option_have_nothing_new(problem: Problem, path: Path) -> None:
+    record(problem, RANDOM, path, nodes=61, keep="every 9", save_after=[13])
+    with h5py.File(path) as file:
+        assert not set(SLIP_FIELDS) & set(file["states"])
+        assert "slip_sums" not in file["restart/13"]
+        assert "slip_sums" not in file["solver"].attrs
+    assert load(path)[-1].slip_distance is None
+
+
+def test_states_that_do_not_follow_on_one_another_lose_their_sums(problem: Problem, path: Path) -> None:
+    record(problem, RANDOM, path, nodes=61, slip_sums=True)
+    for picked in (slice(5, 9), [5, 6, 7]):
+        assert all(state.friction_energy is not None for state in load(path, states=picked))
+    known_sums = [state.slip_distance is not None for state in load(path, states=[3, 4, 7, 8, 2])]
+    assert known_sums == [True, True, False, True, False]
+    assert [state.slip_distance is None for state in load(path, states=slice(None, None, 3))][1:] == [True] * 13
+    assert places_between(path, 3, 5) == slice(2, 5)
+    assert [state.step for state in load(path, states=places_between(path, 3, 5))] == [2, 3, 4]
+
+
+def test_datasets_have_the_sums_with_units(problem: Problem, path: Path) -> None:
+    record(problem, RANDOM, path, nodes=61, slip_sums=True)
+    from_file, from_memory = to_xarray(path), to_xarray(load(path))
+    for name, unit in (("slip_distance", "F beta*"), ("friction_energy", "F^2 beta*/R")):
+        assert from_file[name].dims == ("state", "theta")
+        assert from_file[name].attrs["units"] == unit
+        assert np.array_equal(from_file[name], from_memory[name])
+
+
+@pytest.mark.parametrize("damage", ["missing", "shape", "restart"])
+def test_damaged_sums_are_told(problem: Problem, path: Path, damage: str) -> None:
+    with pytest.raises(Interrupted):
+        record(problem, RANDOM, path, nodes=61, keep="every 9", slip_sums=True, arc=(-3.0, -0.1), progress=StopAt(13.0))
+    with h5py.File(path, "a") as file:
+        if damage == "missing":
+            del file["states/friction_energy"]
+        elif damage == "shape":
+            del file["states/slip_distance"]
+            file["states/slip_distance"] = np.zeros((1, 7))
+        else:
+            del file["restart/latest/slip_sums"]
+            file["restart/latest/slip_sums"] = np.zeros((3, 61))
+    with pytest.raises(InputError, match="damaged"):
+        resume(path)
