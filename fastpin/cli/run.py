@@ -9,7 +9,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastpin import casefile, figures, report, solver, storage
 from fastpin.cli.options import literal
@@ -27,7 +27,9 @@ from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.report.states import cycle_lines, state_table
 from fastpin.report.table import visible_rows
-from fastpin.states.load_cycle import LoadCycle
+
+if TYPE_CHECKING:  # it imports compiled code
+    from fastpin.states.load_cycle import LoadCycle
 
 NOTES = {
     "jumps": "note: the pin snapped {count} times; work does not balance there",

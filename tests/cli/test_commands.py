@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
@@ -192,7 +193,7 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
     first, second = solved[:2]
     assert first == {
         "nodes": 99, "method": "increment", "increments": 7, "arc": None, "between": (0.25, 0.5), "keep": "corners",
-        "shortcut": False, "error_bars": False,
+        "shortcut": False, "error_bars": False, "slip_sums": False,
     }  # fmt: skip
     assert second["between"] == 3
     for arc in (["--arc", "-2.5,-0.6"], ["--arc=-2.5,-0.6"]):
@@ -503,6 +504,41 @@ def test_cycles_are_told_stored_and_drawn(cyclic: Path, tmp_path: Path, capsys: 
     assert again["cycles"] == document["cycles"]
 
 
+def test_the_last_cycle_is_told_and_written(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stored, table = str(tmp_path / "a.h5"), tmp_path / "c.csv"
+    held = CYCLES.replace('pin_load = "body"', 'pin_load = "centre"').replace('rotation = "free"', 'rotation = "fixed"')
+    cyclic.write_text(held.replace("repeat = 12  ", "repeat = 40  "))
+    assert main(["run", str(cyclic), "-o", stored, "--slip-sums", "--between", "1", "--cycle-csv", str(table)]) == 0
+    out = capsys.readouterr().out
+    line = next(line for line in out.splitlines() if line.startswith("from corner 118 to 121: slip range up to "))
+    assert re.search(r"slip distance up to [\d.]+ um at .* deg, friction energy up to [\d.]+ m?J/m\^2 at ", line)
+    assert "more ..." in out  # the states of the cycle are read although the table hides some states
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert len(rows) == 61
+    assert {row["behaviour"] for row in rows} <= {"no contact", "sticks", "slips", "opens"}
+    assert main(["show", stored, "--json"]) == 0
+    cycle = json.loads(capsys.readouterr().out)["cycle"]
+    result = fastpin.load(stored).cycle()
+    assert cycle["largest_friction_energy"] == result.friction_energy.max()
+    assert max(float(row["friction_energy [J/m^2]"]) for row in rows) == result.friction_energy.max()
+    assert sum(cycle["nodes"].values()) == 61
+    assert cycle["dissipation"] == result.dissipation
+    assert f"at {cycle['largest_friction_energy_angle']:z.2f} deg" in line
+
+
+def test_a_cycle_whose_ends_were_not_kept_is_told(
+    cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "c.csv"
+    assert main(["run", str(cyclic), "--keep", "every 4", "--slip-sums", "--cycle-csv", str(table)]) == 1
+    captured = capsys.readouterr()
+    assert "the state at corner 34 was not kept" in captured.err
+    assert "from corner" not in captured.out
+    assert not table.exists()
+    assert main(["run", str(cyclic), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["cycle"] is None
+
+
 def test_long_histories_are_told_in_short(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cyclic.write_text(CYCLES.replace("repeat = 12  ", "repeat = 100  "))
     assert main(["check", str(cyclic)]) == 0
@@ -551,6 +587,7 @@ def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pyte
         (["run", "CASE", "--save-after", "5", "-o", "a.h5"], "--save-after: must be corners from 1 to 4"),
         (["run", "CASE", "--save-after", "x", "-o", "a.h5"], "--save-after: must be corners from 1 to 4"),
         (["run", "CASE", "--cycles", "c.png"], "--cycles: the history has no cycles"),
+        (["run", "CASE", "--cycle-csv", "c.csv"], "--cycle-csv: the history has no cycles"),
         (["run", "CASE", "--keep", "cycles"], "--keep: the history has no cycles"),
         (["run", "CASE", "-o", "CASE"], "won't overwrite the case file"),
         (["run", "CASE", "--start", "CASE"], "not a whole HDF5 file"),

@@ -191,17 +191,18 @@ def thinned(cycle: LoadCycle, size: int) -> LoadCycle:
     return LoadCycle(tuple(states))
 
 
-def test_the_bound_holds_for_what_the_states_miss() -> None:
+@pytest.mark.parametrize("name", ["forces", "remote stress"])
+def test_the_bound_holds_for_what_the_states_miss(name: str) -> None:
     """Few states with their bound against many states, at nodes that stay closed."""
-    fine = solved(between=499).cycle()
-    closed = np.all(fine.status != OPEN, axis=0)
-    for size in (10, 50, 100, 250, 500, 1000):
+    fine = solved(name, between=499).cycle()
+    closed, whole = np.all(fine.status != OPEN, axis=0), len(fine.states) - 1
+    missed = np.zeros(0)
+    for size in (8, 40, 200, 500, whole):
         few = thinned(fine, size)
-        bound = few.slip_range_bound
-        assert bound is not None
-        missed = (fine.slip_range - few.slip_range)[closed]
-        assert np.all(missed <= bound[closed] + 1e-13 * fine.largest_slip_range)
-        assert missed.max() > 0.1 * bound[closed].max() or size < 500
+        assert few.slip_range_bound is not None
+        bound, missed = few.slip_range_bound[closed], (fine.slip_range - few.slip_range)[closed]
+        assert np.all(missed <= bound + 1e-13 * fine.largest_slip_range)
+    assert missed.max() > 0.9 * bound.max() > 0.0  # both ends of the cycle alone: there and back again
     assert fine.slip_range_bound is not None
     assert fine.slip_range_bound[closed].max() < 0.02 * fine.largest_slip_range
 
