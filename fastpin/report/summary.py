@@ -72,7 +72,7 @@ def document(
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
-        "cycles": [] if result is None else [cycle._asdict() for cycle in result.cycles],
+        "cycles": [] if result is None else [row._asdict() for row in result.cycles],
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
     return json_ready(found)
