@@ -132,9 +132,9 @@ class LoadCycle:
         distance = self.slip_distance
         if distance is not None:
             slips |= distance > NEGLIGIBLE * float(distance.max())
+        ever, always = closed.any(axis=0) | slips, closed.all(axis=0)
         behaviours = NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.STICKS
-        found = np.select([~closed.any(axis=0) & ~slips, closed.all(axis=0) & slips, closed.all(axis=0)], behaviours, 3)
-        return found.astype(np.int8)
+        return np.select([~ever, always & slips, always], behaviours, NodeBehaviour.OPENS).astype(np.int8)
 
     # -- slip ----------------------------------------------------------------------------------------------------
 
