@@ -70,8 +70,8 @@ class Recorder(Protocol):
         dissipation, work : ndarray, shape (states,)
             Energies of each new state, J/m.
         slip : SlipFields
-            Slip distance and friction energy of the first new state. Empty if they are
-            the same as before, or not counted.
+            Slip distance and friction energy of the first new state. Empty if they are the same as before, or not
+            counted.
         """
 
     def corner_reached(self) -> None:
