@@ -20,8 +20,8 @@ from fastpin.model.units import units
 from fastpin.report.table import table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
-from fastpin.studies.outcome import KEY_FIGURES
 from fastpin.studies.plan import Plan
+from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.version import __version__
 
 Row = dict[str, Any]

@@ -16,8 +16,8 @@ from typing import Any, get_args
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, number, string, whole_number
-from fastpin.studies.outcome import KEY_FIGURES, Outcome
 from fastpin.studies.plan import Plan, Point, Spacing
+from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS, RunEnd
 from fastpin.version import __version__
 
 FILE = "index.sqlite"
@@ -32,20 +32,7 @@ FORMAT_VERSION = 1
 WAITING, DONE, FAILED = "waiting", "done", "failed"
 """Statuses of a run."""
 
-_RUN_COLUMNS = {
-    "id": "TEXT PRIMARY KEY",
-    "status": "TEXT NOT NULL",
-    "reason": "TEXT",
-    "dimensionless": "INTEGER NOT NULL",
-    **{name: "INTEGER" if name in ("states", "nodes") else "REAL" for name in KEY_FIGURES},
-    "seconds": "REAL",
-    "started": "TEXT",
-    "host": "TEXT",
-    "versions": "TEXT",
-    "input": "TEXT NOT NULL",
-}
-
-_OUTCOME_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
+_END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
 _BUSY_SECONDS = 60.0
 
 
@@ -94,7 +81,7 @@ class Index:
     def _check(self, create: bool) -> None:
         """Check that the file is an index. Create the tables if it is empty."""
         if create and not self._one("SELECT count(*) FROM sqlite_master"):
-            columns = ", ".join(f'"{name}" {kind}' for name, kind in _RUN_COLUMNS.items())
+            columns = ", ".join(f'"{name}" {kind}' for name, kind in RUN_COLUMNS.items())
             with self._transaction():
                 self._database.execute(f"PRAGMA application_id = {APPLICATION}")
                 self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
@@ -112,7 +99,7 @@ class Index:
     # -- writing --------------------------------------------------------------------------------------------------
 
     def expect(self, plan: Plan, points: Iterable[Point]) -> None:
-        """Add the new points as waiting runs, and write the values of all points. Known outcomes stay."""
+        """Add the new points as waiting runs, and write the values of all points. Runs that ended stay so."""
         fields = list(plan.fields)
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
@@ -135,22 +122,22 @@ class Index:
                 ),
             )
 
-    def record(self, outcome: Outcome) -> None:
-        """Write the outcome of a run into its row."""
+    def record(self, end: RunEnd) -> None:
+        """Write the end of a run into its row."""
         cells: dict[str, Any] = {
-            "status": DONE if outcome.reason is None else FAILED,
-            "reason": outcome.reason,
+            "status": DONE if end.reason is None else FAILED,
+            "reason": end.reason,
             **dict.fromkeys(KEY_FIGURES),
-            **outcome.figures,
-            "seconds": outcome.seconds,
-            "started": outcome.started,
-            "host": outcome.host,
-            "versions": json.dumps(outcome.versions),
+            **end.figures,
+            "seconds": end.seconds,
+            "started": end.started,
+            "host": end.host,
+            "versions": json.dumps(end.versions),
         }
-        assignments = ", ".join(f'"{name}" = ?' for name in _OUTCOME_COLUMNS)
+        assignments = ", ".join(f'"{name}" = ?' for name in _END_COLUMNS)
         with self._as_input_error():
-            values = [cells[name] for name in _OUTCOME_COLUMNS]
-            self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, outcome.id])
+            values = [cells[name] for name in _END_COLUMNS]
+            self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
 
     # -- reading --------------------------------------------------------------------------------------------------
 
@@ -201,8 +188,8 @@ class Index:
             self._write_notes(
                 **{name: other.read_note(name) for name in ("version", "plan", "title", "text", "fields")}
             )
-            columns = _quoted([*_RUN_COLUMNS, *names])
-            placeholders = ", ".join("?" * (len(_RUN_COLUMNS) + len(names)))
+            columns = _quoted([*RUN_COLUMNS, *names])
+            placeholders = ", ".join("?" * (len(RUN_COLUMNS) + len(names)))
             for run in ids:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
                 self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)

@@ -26,8 +26,8 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.storage.files import replacing
 from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
-from fastpin.studies.outcome import Outcome
 from fastpin.studies.plan import Plan, Point
+from fastpin.studies.run_end import RunEnd
 from fastpin.studies.workers import DIED, BrokenError, cores, run_tasks, solve_run
 from fastpin.version import __version__
 
@@ -141,9 +141,9 @@ def run(
             began = time.perf_counter()
             report = progress or (lambda ended, all_runs: None)
             report(0, len(todo))
-            with closing(_outcomes(plan, points, todo, results, executor, workers)) as outcomes:
-                for ended, outcome in enumerate(outcomes, start=1):
-                    index.record(outcome)
+            with closing(_ends(plan, points, todo, results, executor, workers)) as ends:
+                for ended, end in enumerate(ends, start=1):
+                    index.record(end)
                     report(ended, len(todo))
             return _summary(index, points, results, len(todo), time.perf_counter() - began)
 
@@ -172,7 +172,7 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
     -------
     list of dict
         Keys are "id", "status" ("waiting", "done", "failed"), "reason" (of a failure), "dimensionless" (1 for units of
-        the paper, 0 for SI), the key figures (:data:`fastpin.studies.outcome.KEY_FIGURES`), "seconds", "started" (UTC),
+        the paper, 0 for SI), the key figures (:data:`fastpin.studies.run_end.KEY_FIGURES`), "seconds", "started" (UTC),
         "host", "versions" and "input" (dicts), and the varied fields, such as "contact.friction". None stands for an
         unknown value.
 
@@ -230,12 +230,12 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
 # -- running and status --------------------------------------------------------------------------------------
 
 
-def _outcomes(
+def _ends(
     plan: Plan, points: dict[str, Point], todo: list[str], results: Path, executor: Executor | None, workers: int
-) -> Generator[Outcome, None, None]:
-    """Solve the runs, and yield the outcome of each run when it ends."""
+) -> Generator[RunEnd, None, None]:
+    """Solve the runs, and yield the end of each run when it ends."""
 
-    def submit(executor: Executor, run: str) -> Future[Outcome]:
+    def submit(executor: Executor, run: str) -> Future[RunEnd]:
         path = str(results / f"{run}.h5")
         return executor.submit(solve_run, run, plan.case(points[run]), path, os.getpid(), __version__)
 
@@ -245,20 +245,20 @@ def _outcomes(
     # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
     with threadpool_limits(limits=1, user_api="blas"), closing(tasks):
         try:
-            for run, outcome in tasks:
-                yield _check_outcome(run, outcome, results)
+            for run, end in tasks:
+                yield _check_end(run, end, results)
         except BrokenError:
             raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
 
-def _check_outcome(run: str, outcome: Outcome | BaseException, results: Path) -> Outcome:
-    """Return the outcome of a run. An exception of the worker, or a missing result, becomes a failure."""
-    if isinstance(outcome, BaseException):
-        died = type(outcome).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
-        return Outcome(run, DIED if died else f"{type(outcome).__name__}: {outcome}")
-    if outcome.reason is None and not (results / f"{run}.h5").exists():
-        return Outcome(run, f"the result did not arrive: {outcome.host} must see {results} under the same path")
-    return outcome
+def _check_end(run: str, end: RunEnd | BaseException, results: Path) -> RunEnd:
+    """Return the end of a run. An exception of the worker, or a missing result, becomes a failure."""
+    if isinstance(end, BaseException):
+        died = type(end).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
+        return RunEnd(run, DIED if died else f"{type(end).__name__}: {end}")
+    if end.reason is None and not (results / f"{run}.h5").exists():
+        return RunEnd(run, f"the result did not arrive: {end.host} must see {results} under the same path")
+    return end
 
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:

@@ -29,7 +29,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.storage import store
 from fastpin.storage.layout import versions
-from fastpin.studies.outcome import Outcome, key_figures
+from fastpin.studies.run_end import RunEnd, key_figures
 from fastpin.version import __version__
 
 K = TypeVar("K")
@@ -219,7 +219,7 @@ def one_thread() -> None:
     threadpool_limits(limits=1)
 
 
-def solve_run(run: str, case: Case, path: str, main_process: int, version: str) -> Outcome:
+def solve_run(run: str, case: Case, path: str, main_process: int, version: str) -> RunEnd:
     """Solve one case and save its result.
 
     Parameters
@@ -236,11 +236,11 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
 
     Returns
     -------
-    Outcome
+    RunEnd
         Key figures and times. Every exception of the run becomes the reason of a failure.
     """
     if version != __version__:
-        return Outcome(run, f"the worker has fastpin {__version__}, the sweep {version}")
+        return RunEnd(run, f"the worker has fastpin {__version__}, the sweep {version}")
     if os.getpid() != main_process:
         one_thread()
     started = datetime.now(UTC).isoformat(timespec="milliseconds")
@@ -261,7 +261,7 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return Outcome(run, reason, figures, seconds, started, socket.gethostname(), versions())
+    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions())
 
 
 def _end_with_parent() -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from fastpin.paper import catalog
-from fastpin.studies.outcome import KEY_FIGURES
 from fastpin.studies.plan import parse_plan
+from fastpin.studies.run_end import KEY_FIGURES
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))

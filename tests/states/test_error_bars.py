@@ -25,7 +25,7 @@ from fastpin.solver.solving import solve
 from fastpin.states.error_bars import LEAST_COARSE, bars
 from fastpin.states.quantities import QUANTITIES, matching_values, quantity, size, values
 from fastpin.storage.store import load, save
-from fastpin.studies.outcome import KEY_FIGURES, key_figures
+from fastpin.studies.run_end import KEY_FIGURES, key_figures
 from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi

@@ -12,8 +12,8 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.studies.index import FILE, Index, lock_directory
-from fastpin.studies.outcome import KEY_FIGURES, Outcome
 from fastpin.studies.plan import Plan, Point, parse_plan
+from fastpin.studies.run_end import KEY_FIGURES, RunEnd
 
 TEXT = """
 title = "Loads"
@@ -39,8 +39,8 @@ def directory(plan: Plan, tmp_path: Path) -> Path:
         index.expect(plan, plan.points)
         first, second = (point.id for point in plan.points[:2])
         figures = dict.fromkeys(KEY_FIGURES) | {"states": 3, "peak_pressure": 0.1 + 0.2, "nodes": 41}
-        index.record(Outcome(first, None, figures, 0.5, "2026-01-01T00:00:00.000+00:00", "here", {"fastpin": "1"}))
-        index.record(Outcome(second, "lost; it's gone", {"states": 1, "nodes": 41}, 0.25, "x", "there"))
+        index.record(RunEnd(first, None, figures, 0.5, "2026-01-01T00:00:00.000+00:00", "here", {"fastpin": "1"}))
+        index.record(RunEnd(second, "lost; it's gone", {"states": 1, "nodes": 41}, 0.25, "x", "there"))
     return tmp_path
 
 
@@ -158,7 +158,7 @@ def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) 
         index._database.execute("PRAGMA query_only = ON")  # what SQLite says of a file that may only be read
         for write in (
             lambda: index.expect(plan, plan.points),
-            lambda: index.record(Outcome(plan.points[0].id, "lost")),
+            lambda: index.record(RunEnd(plan.points[0].id, "lost")),
         ):
             with pytest.raises(InputError, match=r"index.sqlite: can't be used: attempt to write a readonly database"):
                 write()

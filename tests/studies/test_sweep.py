@@ -20,11 +20,11 @@ from fastpin.kernels import products
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import interval_from_bottom
 from fastpin.storage import store
-from fastpin.studies import outcome, sweep, workers
+from fastpin.studies import run_end, sweep, workers
 from fastpin.studies.identity import run_id
 from fastpin.studies.index import FILE, lock_directory
-from fastpin.studies.outcome import KEY_FIGURES, key_figures
 from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.run_end import KEY_FIGURES, key_figures
 from fastpin.studies.sweep import Summary
 from scripts.inline import Inline
 from tests.support.plans import FRICTION, MOMENT
@@ -370,7 +370,7 @@ def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, t
     other = tmp_path / "other"
     shutil.copytree(copy, other)
     with sweep.Index(other) as index:
-        index.record(outcome.Outcome(plan.points[0].id, "lost"))
+        index.record(run_end.RunEnd(plan.points[0].id, "lost"))
         index._database.execute("UPDATE runs SET status = 'waiting' WHERE id = ?", [plan.points[1].id])
     for name, order in (("a", (copy, other)), ("b", (other, copy))):
         sweep.merge(order, tmp_path / name)

@@ -11,8 +11,8 @@ import numpy as np
 import fastpin
 from fastpin.states.state import State
 from fastpin.storage import store
-from fastpin.studies.outcome import KEY_FIGURES
 from fastpin.studies.plan import Plan
+from fastpin.studies.run_end import KEY_FIGURES
 
 FRICTION = """
 title = "Friction"

@@ -1,4 +1,4 @@
-"""The outcome of a run and its key figures, for the index of a sweep.
+"""The end of a run and its key figures, for the index of a sweep.
 
 Key figures are a few numbers of the last state, and the extremes of all states.
 """
@@ -47,6 +47,20 @@ A kind is a key of :func:`fastpin.model.units.units`, "angle" (deg) or "" for a 
 * ``residual``: the largest residual of all states.
 """
 
+RUN_COLUMNS: dict[str, str] = {
+    "id": "TEXT PRIMARY KEY",
+    "status": "TEXT NOT NULL",
+    "reason": "TEXT",
+    "dimensionless": "INTEGER NOT NULL",
+    **{name: "INTEGER" if name in ("states", "nodes") else "REAL" for name in KEY_FIGURES},
+    "seconds": "REAL",
+    "started": "TEXT",
+    "host": "TEXT",
+    "versions": "TEXT",
+    "input": "TEXT NOT NULL",
+}
+"""Columns of the index of a sweep, besides the varied fields, and their SQL types."""
+
 
 def key_figures(result: Result) -> dict[str, Any]:
     """Return the key figures of a result with at least one state, by name.
@@ -86,7 +100,7 @@ def _widest(intervals: list[Interval]) -> tuple[float | None, float | None]:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class RunEnd:
     """The end of one run: key figures, or the reason of a failure.
 
     Attributes
