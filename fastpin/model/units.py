@@ -21,6 +21,9 @@ _SI = {
     "energy density": "J/m^2",
 }
 
+WITH_PREFIX = frozenset({*_SI.values(), "s"})
+"""Units that may get an SI prefix."""
+
 _DIMENSIONLESS = {
     "force": "F",
     "moment": "F R",

@@ -55,28 +55,29 @@ _SHOWN = {
     "max_pressure": "max N",
     "max_shear": "max |T|",
 }
-"""Key figures of the text table and their headings. The CSV file has all key figures."""
+"""Key figures of the text table and their headings, unless the plan has outcomes. The CSV file has all key figures."""
 
 
 def text(plan: Plan, rows: Sequence[Row]) -> str:
-    """Return a text table: varied fields, the most important key figures of the last state, status.
+    """Return a text table: varied fields, outcomes of the plan, status.
 
-    `rows` come from :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
+    A plan without outcomes has the most important key figures in their place. `rows` come from :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
     """
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
         columns.append(_column(name, [row[name] for row in rows], unit.get(_KIND.get(_key(name), ""), "")))
-    for name, heading in _SHOWN.items():
-        columns.append(_column(heading, [row.get(name) for row in rows], _unit(name, unit)))
+    shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
+    for name, heading in shown.items():
+        columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
     columns.append(("status", "", [row["status"] for row in rows]))
     return table(columns)
 
 
 def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
-    """Write all varied fields and key figures as CSV, with a comment line that names the units.
+    """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
-    Units are SI, or the paper's for dimensionless problems.
+    Units are SI, or the paper's for dimensionless problems. A function of the user has its own unit.
 
     Raises
     ------
@@ -85,8 +86,8 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     """
     check_writable(path)
     unit = _units(plan, rows)
-    named = [(name, _unit(name, unit)) for name in KEY_FIGURES]
-    names = ["id", *plan.fields, *KEY_FIGURES, "seconds", "started", "host", "status", "reason"]
+    named = [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
+    names = ["id", *plan.fields, *plan.outcomes, *KEY_FIGURES, "seconds", "started", "host", "status", "reason"]
     out = io.StringIO()
     out.write(f"# fastpin {__version__}{f', {plan.title}' if plan.title else ''}\n")
     out.write(f"# units: {', '.join(f'{name} {label}' for name, label in named if label)}, seconds s\n")
@@ -127,7 +128,7 @@ class Chart:
     title : str
         Title of the figure.
     label : str
-        Name of the key figure, with its unit.
+        Name of the outcome or key figure, with its unit.
     x : Axis
     y : Axis or None
         None for curves.
@@ -155,12 +156,13 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     Raises
     ------
     InputError
-        The field is "value", "x", "y" or "plot". The key figure or a field is unknown, an axis has values that are no
+        The field is "value", "x", "y" or "plot". The outcome, key figure or a field is unknown, an axis has values that are no
         numbers, both axes have the same field, no field is left for the x axis, or there are too many maps or curves.
     """
-    if value not in (*KEY_FIGURES, "seconds"):
-        hint = closest(value, tuple(KEY_FIGURES)) or f"; there are {', '.join(KEY_FIGURES)}, seconds"
-        raise InputError("value", f"there is no key figure {value!r}{hint}")
+    known = (*plan.outcomes, *KEY_FIGURES, "seconds")
+    if value not in known:
+        hint = closest(value, known) or f"; there are {', '.join(known)}"
+        raise InputError("value", f"there is no outcome or key figure {value!r}{hint}")
     values = {name: _different([point.values.get(name) for point in plan.points]) for name in plan.fields}
     numeric = [name for name, found in values.items() if all(_is_number(item) for item in found)]
     for option, name in (("x", x), ("y", y)):
@@ -186,7 +188,7 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
 
 
 def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: str | None = None) -> Chart:
-    """Return the numbers of a figure of one key figure over one or two fields.
+    """Return the numbers of a figure of one outcome or key figure over one or two fields.
 
     Other fields that vary make several maps or curves.
 
@@ -196,7 +198,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     rows : sequence of dict
         From :func:`fastpin.studies.sweep.rows`.
     value : str
-        A key figure, or "seconds".
+        An outcome of the plan, a key figure, or "seconds".
     x, y : str, optional
         Fields of the axes, see :func:`check_axes`. `x` alone gives curves.
 
@@ -208,7 +210,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     x, y, others = check_axes(plan, value, x, y)
     unit = _units(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
-    factor, label = _scaled([number for number in found if number is not None], _unit(value, unit))
+    factor, label = _scaled([number for number in found if number is not None], _unit(plan, value, unit))
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
@@ -255,11 +257,13 @@ def _units(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
 
 
 def _scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
-    """Return a factor and a unit with an SI prefix. Numbers without a unit and degrees keep the factor 1."""
-    return with_prefix(values, unit) if unit not in ("", "deg") else (1.0, unit)
+    """Return a factor and a unit with an SI prefix. Other units, such as degrees or MPa, keep the factor 1."""
+    return with_prefix(values, unit) if unit in WITH_PREFIX else (1.0, unit)
 
 
-def _unit(value: str, unit: dict[str, str]) -> str:
+def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
+    if value in plan.outcomes:
+        return plan.outcomes[value].unit_in(unit)
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
 
 

@@ -16,6 +16,7 @@ from typing import Any, get_args
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, number, string, whole_number
+from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Spacing
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS, RunEnd
 from fastpin.version import __version__
@@ -33,6 +34,10 @@ WAITING, DONE, FAILED = "waiting", "done", "failed"
 """Statuses of a run."""
 
 _END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", "versions")
+_OUTCOMES_TABLE = (
+    "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, value REAL, "
+    "reason TEXT, PRIMARY KEY (run, name))"
+)
 _BUSY_SECONDS = 60.0
 
 
@@ -99,10 +104,18 @@ class Index:
     # -- writing --------------------------------------------------------------------------------------------------
 
     def expect(self, plan: Plan, points: Iterable[Point]) -> None:
-        """Add the new points as waiting runs, and write the values of all points. Runs that ended stay so."""
+        """Add the new points as waiting runs, and write the values of all points. Runs that ended stay so.
+
+        Values of outcomes with another definition are removed.
+        """
         fields = list(plan.fields)
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
+            self._database.execute(_OUTCOMES_TABLE)
+            self._database.executemany(
+                "DELETE FROM outcomes WHERE name = ? AND definition <> ?",
+                [(name, outcome.definition) for name, outcome in plan.outcomes.items()],
+            )
             self._write_notes(version=__version__, plan=plan.digest, title=plan.title, text=plan.text)
             self._write_notes(fields=json.dumps(self.fields | plan.fields))
             columns = ["id", "status", "dimensionless", "input", *fields]
@@ -123,7 +136,7 @@ class Index:
             )
 
     def record(self, end: RunEnd) -> None:
-        """Write the end of a run into its row."""
+        """Write the end of a run into its row, and the values of its outcomes."""
         cells: dict[str, Any] = {
             "status": DONE if end.reason is None else FAILED,
             "reason": end.reason,
@@ -135,9 +148,15 @@ class Index:
             "versions": json.dumps(end.versions),
         }
         assignments = ", ".join(f'"{name}" = ?' for name in _END_COLUMNS)
-        with self._as_input_error():
+        with self._as_input_error(), self._transaction():
             values = [cells[name] for name in _END_COLUMNS]
             self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
+            self._write_outcomes(end.id, end.outcomes)
+
+    def record_outcomes(self, run: str, values: dict[str, OutcomeValue]) -> None:
+        """Write the values of outcomes of a finished run."""
+        with self._as_input_error(), self._transaction():
+            self._write_outcomes(run, values)
 
     # -- reading --------------------------------------------------------------------------------------------------
 
@@ -162,10 +181,22 @@ class Index:
             cursor = self._database.execute("SELECT id, status, reason FROM runs")
             return {str(run): (_status(status), _text("reason", reason)) for run, status, reason in cursor}
 
+    def outcomes(self) -> dict[str, dict[str, OutcomeValue]]:
+        """Read the values of all outcomes, by run and name. Only finished runs have some."""
+        if not self._one("SELECT count(*) FROM sqlite_master WHERE name = 'outcomes'"):
+            return {}
+        found: dict[str, dict[str, OutcomeValue]] = {}
+        with self._as_input_error():
+            cursor = self._database.execute("SELECT run, name, definition, value, reason FROM outcomes")
+            for run, name, definition, value, reason in cursor:
+                checked = None if value is None else number(name, value)
+                found.setdefault(run, {})[name] = OutcomeValue(definition, checked, _text("reason", reason))
+        return found
+
     def rows(self) -> list[dict[str, Any]]:
         """Read all rows, in the order of their insertion. A row is a dict from column to value.
 
-        Lists (loads, the ends of an arc) are lists again. ``versions`` and ``input`` are dicts.
+        Lists (loads, the ends of an arc) are lists again. ``versions`` and ``input`` are dicts. Outcomes are left out.
         """
         with self._as_input_error():
             fields = self.fields
@@ -181,7 +212,7 @@ class Index:
             return rows
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
-        """Copy the rows of these ids, and the notes, from another index of the same plan."""
+        """Copy the rows and outcomes of these ids, and the notes, from another index of the same plan."""
         with self._as_input_error(), self._transaction():
             names = list(other.fields)
             self._add_columns(names)
@@ -193,6 +224,10 @@ class Index:
             for run in ids:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
                 self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)
+            self._database.execute(_OUTCOMES_TABLE)
+            for run, values in other.outcomes().items():
+                if run in ids:
+                    self._write_outcomes(run, values)
 
     # -- the database --------------------------------------------------------------------------------------------
 
@@ -201,6 +236,12 @@ class Index:
         for name in fields:
             if name not in known:
                 self._database.execute(f"ALTER TABLE runs ADD COLUMN {_quoted([name])}")
+
+    def _write_outcomes(self, run: str, values: dict[str, OutcomeValue]) -> None:
+        self._database.executemany(
+            "INSERT OR REPLACE INTO outcomes VALUES (?, ?, ?, ?, ?)",
+            [(run, name, *value) for name, value in values.items()],
+        )
 
     def _write_notes(self, **values: str | None) -> None:
         self._database.executemany("INSERT OR REPLACE INTO sweep VALUES (?, ?)", values.items())

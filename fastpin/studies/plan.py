@@ -1,7 +1,8 @@
 """Plans of sweeps: the varied fields of a case, and the runs of all their values.
 
 A plan is a TOML text with a base case, a ``[grid]`` and ``[[list]]`` tables. Every combination of the values in the
-grid is run. The fields of a list change together. All faults of a plan are reported at once, each with its line. Every
+grid is run. The fields of a list change together. The table ``[outcomes]`` names numbers that are read from every
+result. All faults of a plan are reported at once, each with its line. Every
 run is checked before the first run starts.
 """
 
@@ -11,8 +12,8 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -26,6 +27,7 @@ from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, choice, closest, file_path, instance, number, string, whole_number
 from fastpin.model.loads import LOADS
 from fastpin.studies.identity import canonical, canonical_json, run_id
+from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units
 
 MAX_RUNS = 100_000
@@ -43,7 +45,7 @@ Spacing = Literal["linear", "log", "list"]
 Row = dict[str, tuple[Place, Any]]
 """Fields of a [[list]] block, each with its place in the text and its value."""
 
-_ROOT_KEYS = ("title", "case", "grid", "list")
+_ROOT_KEYS = ("title", "case", "grid", "list", "outcomes")
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
 
@@ -79,12 +81,15 @@ class Plan:
         The varied fields, and the spacing of their values. "list": the values are listed one by one.
     points : list of Point
         All points in the order of the plan. The last field of the grid changes fastest, the [[list]] slowest.
+    outcomes : dict of str to Outcome
+        The numbers that are read from every result, by name. They change no run and no id.
     """
 
     title: str
     text: str
     fields: dict[str, Spacing]
     points: list[Point]
+    outcomes: Outcomes
     _base: BaseCase
 
     def __repr__(self) -> str:
@@ -103,6 +108,25 @@ class Plan:
         """SHA-256 of the fields and runs. Plans with the same fields and runs share it, in any spelling."""
         text = json.dumps([sorted(self.fields), sorted(self.runs)])
         return hashlib.sha256(text.encode()).hexdigest()
+
+    def with_outcomes(self, outcomes: Mapping[str, Any]) -> Plan:
+        """Return this plan with more outcomes.
+
+        Parameters
+        ----------
+        outcomes : mapping of str
+            Functions, tables or outcomes by name, see :func:`fastpin.studies.outcome_tables.outcomes_from`. A function
+            is called in worker processes, which import it by its name.
+
+        Raises
+        ------
+        InputError
+            With all faults. Also if the plan has an outcome of such a name.
+        """
+        found = outcomes_from(outcomes)
+        if twice := {name.lower() for name in found} & {name.lower() for name in self.outcomes}:
+            raise InputError("outcomes", f"{min(twice)}: is an outcome of the plan already; choose another name")
+        return replace(self, outcomes=self.outcomes | found)
 
     def case(self, point: Point) -> Case:
         """Return the case of one point, for :func:`fastpin.solve`.
@@ -177,7 +201,7 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
     for key in source.root.table:
         if key not in _ROOT_KEYS:
-            hint = closest(key, _ROOT_KEYS) or "; there are title, case, [grid] and [[list]]"
+            hint = closest(key, _ROOT_KEYS) or "; there are title, case, [grid], [[list]] and [outcomes]"
             source.report(f'unknown key "{key}"{hint}', key)
     title = source.root.checked("title", string) or ""
     base = _base(source, folder)
@@ -194,10 +218,11 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     count = max(len(rows), 1) * math.prod(len(values) for values in axes.values())
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
+    outcomes = outcomes_in_text(source, folder)
     if base is None or source.faults:
         return None
     points = _points(source, base, places, rows or [{}], axes)
-    return Plan(title, text, {name: spacings[name] for name in places}, points, base)
+    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, base)
 
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:

@@ -13,6 +13,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, in_degrees
 from fastpin.states.zones import Interval
+from fastpin.studies.outcomes import OutcomeValue
 
 _PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
 _OTHERS = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
@@ -119,6 +120,8 @@ class RunEnd:
         Name of the machine.
     versions : dict of str to str
         Versions of fastpin, Python and the libraries.
+    outcomes : dict of str to OutcomeValue
+        Values of the outcomes that the user chose. Empty after a failure.
     """
 
     id: str
@@ -128,3 +131,4 @@ class RunEnd:
     started: str | None = None
     host: str | None = None
     versions: dict[str, str] = field(default_factory=dict)
+    outcomes: dict[str, OutcomeValue] = field(default_factory=dict)

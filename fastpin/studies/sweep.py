@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +26,10 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.storage.files import replacing
 from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
+from fastpin.studies.outcomes import OutcomeValue, pickled
 from fastpin.studies.plan import Plan, Point
 from fastpin.studies.run_end import RunEnd
-from fastpin.studies.workers import DIED, BrokenError, cores, run_tasks, solve_run
+from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, cores, read_run, run_tasks, solve_run
 from fastpin.version import __version__
 
 RESULTS = "results"
@@ -63,7 +64,11 @@ class Summary:
     ended : int
         Number of runs that ended in this call, done or failed.
     seconds : float
-        Wall time of these runs with all workers, s.
+        Wall time of this call with all workers, s.
+    read : int
+        Number of finished runs whose outcomes were read from their results in this call.
+    unread : list of (Point, str, str)
+        Outcomes of finished runs that could not be read: the run, the name of the outcome and the reason.
     """
 
     done: int
@@ -71,6 +76,8 @@ class Summary:
     failed: list[tuple[Point, str]]
     ended: int = 0
     seconds: float = 0.0
+    read: int = 0
+    unread: list[tuple[Point, str, str]] = field(default_factory=list)
 
     @property
     def total(self) -> int:
@@ -87,11 +94,14 @@ def run(
     shard: tuple[int, int] | None = None,
     progress: Progress | None = None,
 ) -> Summary:
-    """Solve all unfinished runs of a plan.
+    """Solve all unfinished runs of a plan, and read the outcomes of all runs.
+
+    An outcome that is new in the plan is read from the stored results of finished runs, which are not solved again.
 
     Parameters
     ----------
     plan : Plan
+        A function of :meth:`Plan.with_outcomes` runs in the workers, which import it by its name.
     directory : path
         Folder of the index (``index.sqlite``), the results (``results/ID.h5``) and a copy of the plan. It is created if
         there is none. A changed plan may use the same directory: common runs are not solved again.
@@ -102,12 +112,13 @@ def run(
     workers : int, optional
         Number of these processes. By default the number of processors that this process may use.
     retry : bool
-        Also solve runs that failed before.
+        Also solve runs that failed before, and read outcomes that could not be read before.
     shard : (int, int), optional
         (i, n): solve only the i-th of n parts, i from 1 to n. Every part needs a separate directory; see
         :func:`merge`.
     progress : callable, optional
-        Called as ``progress(ended, all)`` with numbers of runs, at the beginning and when a run ends.
+        Called as ``progress(ended, all)`` with numbers of runs, at the beginning and when a run has ended or its
+        outcomes have been read.
 
     Returns
     -------
@@ -127,6 +138,7 @@ def run(
         raise InputError("executor", f"must be an executor of concurrent.futures, not {as_toml(executor)}")
     check_callable("progress", progress)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
+    content = _pickled_outcomes(plan)
     directory = ensure_directory(file_path("directory", directory))
     with lock_directory(directory):
         _check_plan_copy(directory, plan.text)
@@ -138,14 +150,21 @@ def run(
             statuses = _now(index, points, results)
             skipped = (DONE,) if retry else (DONE, FAILED)
             todo = [run for run, (state, _) in statuses.items() if state not in skipped]
+            done = [run for run, (state, _) in statuses.items() if state == DONE]
+            missing = _missing_outcomes(index, plan, done, retry)
             began = time.perf_counter()
             report = progress or (lambda ended, all_runs: None)
-            report(0, len(todo))
-            with closing(_ends(plan, points, todo, results, executor, workers)) as ends:
+            report(0, len(todo) + len(missing))
+            work = _Work(plan, results, content, missing)
+            with closing(work.ends(todo, executor, workers)) as ends:
                 for ended, end in enumerate(ends, start=1):
-                    index.record(end)
-                    report(ended, len(todo))
-            return _summary(index, points, results, len(todo), time.perf_counter() - began)
+                    if end.id in missing:
+                        index.record_outcomes(end.id, end.outcomes)
+                    else:
+                        index.record(end)
+                    report(ended, len(todo) + len(missing))
+            summary = _summary(index, plan, points, results)
+            return replace(summary, ended=len(todo), seconds=time.perf_counter() - began, read=len(missing))
 
 
 def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = None) -> Summary:
@@ -160,7 +179,7 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
     if not has_index(directory):
         return Summary(0, len(points), [])
     with Index(directory) as index:
-        return _summary(index, points, directory / RESULTS)
+        return _summary(index, plan, points, directory / RESULTS)
 
 
 def load(directory: str | Path) -> list[dict[str, Any]]:
@@ -173,8 +192,8 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
     list of dict
         Keys are "id", "status" ("waiting", "done", "failed"), "reason" (of a failure), "dimensionless" (1 for units of
         the paper, 0 for SI), the key figures (:data:`fastpin.studies.run_end.KEY_FIGURES`), "seconds", "started" (UTC),
-        "host", "versions" and "input" (dicts), and the varied fields, such as "contact.friction". None stands for an
-        unknown value.
+        "host", "versions" and "input" (dicts), the varied fields, such as "contact.friction", and the outcomes that are
+        known of the run. None stands for an unknown value.
 
     Raises
     ------
@@ -182,13 +201,17 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
         If the directory holds no index, or the index can't be used.
     """
     with Index(file_path("directory", directory)) as index:
-        return index.rows()
+        outcomes = index.outcomes()
+        return [
+            row | {name: value.value for name, value in outcomes.get(row["id"], {}).items()} for row in index.rows()
+        ]
 
 
 def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     """Return one row for each point of a plan, in the order of the plan, with the keys of :func:`load`.
 
-    The row of a point that is not in the index has only its status "waiting", reason, id and fields.
+    The outcomes are those of the plan; None stands for a value that is not known. The row of a point that is not in the
+    index has only its status "waiting", reason, id, fields and outcomes.
 
     Raises
     ------
@@ -196,13 +219,19 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
         If the index can't be used.
     """
     instance("plan", plan, Plan, "a Plan")
-    has_rows = has_index(file_path("directory", directory))
-    known_rows = {row["id"]: row for row in load(directory)} if has_rows else {}
-    waiting = {"status": WAITING, "reason": None}
-    return [
-        {**known_rows.get(point.id, waiting), "id": point.id, **dict.fromkeys(plan.fields), **point.values}
-        for point in plan.points
-    ]
+    known_rows: dict[str, dict[str, Any]] = {}
+    outcomes: dict[str, dict[str, OutcomeValue]] = {}
+    if has_index(file_path("directory", directory)):
+        with Index(file_path("directory", directory)) as index:
+            known_rows, outcomes = {row["id"]: row for row in index.rows()}, index.outcomes()
+    found = []
+    for point in plan.points:
+        row = known_rows.get(point.id, {"status": WAITING, "reason": None})
+        values = outcomes.get(point.id, {}) if row["status"] == DONE else {}
+        chosen = {name: value.value for name, value in values.items() if _is_of(plan, name, value)}
+        fields = dict.fromkeys(plan.fields) | point.values
+        found.append({**row, "id": point.id, **fields, **dict.fromkeys(plan.outcomes), **chosen})
+    return found
 
 
 def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
@@ -230,32 +259,82 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
 # -- running and status --------------------------------------------------------------------------------------
 
 
-def _ends(
-    plan: Plan, points: dict[str, Point], todo: list[str], results: Path, executor: Executor | None, workers: int
-) -> Generator[RunEnd, None, None]:
-    """Solve the runs, and yield the end of each run when it ends."""
-
-    def submit(executor: Executor, run: str) -> Future[RunEnd]:
-        path = str(results / f"{run}.h5")
-        return executor.submit(solve_run, run, plan.case(points[run]), path, os.getpid(), __version__)
-
-    if not todo:
-        return
-    tasks = run_tasks(executor, workers, todo, submit)
-    # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
-    with threadpool_limits(limits=1, user_api="blas"), closing(tasks):
+def _pickled_outcomes(plan: Plan) -> PickledOutcomes:
+    """Return the outcomes of a plan for workers."""
+    content = {}
+    for name, outcome in plan.outcomes.items():
         try:
-            for run, end in tasks:
-                yield _check_end(run, end, results)
-        except BrokenError:
-            raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
+            content[name] = outcome.definition, pickled(outcome)
+        except FastpinError as error:
+            raise InputError("outcomes", f"{name}: {error}") from None
+    return content
+
+
+def _missing_outcomes(index: Index, plan: Plan, done: Iterable[str], retry: bool) -> dict[str, list[str]]:
+    """Return the names of the outcomes that are to be read from the stored result of each finished run, by run."""
+    known = index.outcomes()
+    missing = {
+        run: [
+            name
+            for name in plan.outcomes
+            if name not in (values := known.get(run, {})) or (retry and values[name].reason is not None)
+        ]
+        for run in done
+    }
+    return {run: names for run, names in missing.items() if names}
+
+
+@dataclass(frozen=True)
+class _Work:
+    """The tasks of one call: runs that are solved, and finished runs whose outcomes are read."""
+
+    plan: Plan
+    results: Path
+    outcomes: PickledOutcomes
+    missing: dict[str, list[str]]
+
+    def ends(self, todo: list[str], executor: Executor | None, workers: int) -> Generator[RunEnd, None, None]:
+        """Yield the end of each run in `todo` when it ends, and the outcomes of finished runs when they are read."""
+        tasks = [*todo, *self.missing]
+        if not tasks:
+            return
+        ended = run_tasks(executor, workers, tasks, self._submit)
+        # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
+        with threadpool_limits(limits=1, user_api="blas"), closing(ended):
+            try:
+                for run, end in ended:
+                    yield self._read(run, end) if run in self.missing else _check_end(run, end, self.results)
+            except BrokenError:
+                raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
+
+    def _submit(self, executor: Executor, run: str) -> Future[RunEnd]:
+        path = str(self.results / f"{run}.h5")
+        if run in self.missing:
+            wanted = {name: self.outcomes[name] for name in self.missing[run]}
+            return executor.submit(read_run, run, path, wanted, os.getpid(), __version__)
+        case = self.plan.case(self.plan.runs[run])
+        return executor.submit(solve_run, run, case, path, self.outcomes, os.getpid(), __version__)
+
+    def _read(self, run: str, end: RunEnd | BaseException) -> RunEnd:
+        """Return the outcomes of a finished run. A failure to read its file is the reason of each missing value."""
+        end = _as_end(run, end)
+        if end.reason is None:
+            return end
+        values = {name: OutcomeValue(self.outcomes[name][0], None, end.reason) for name in self.missing[run]}
+        return RunEnd(run, None, outcomes=values)
+
+
+def _as_end(run: str, end: RunEnd | BaseException) -> RunEnd:
+    """Return the end of a run. An exception of the worker becomes a failure."""
+    if not isinstance(end, BaseException):
+        return end
+    died = type(end).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
+    return RunEnd(run, DIED if died else f"{type(end).__name__}: {end}")
 
 
 def _check_end(run: str, end: RunEnd | BaseException, results: Path) -> RunEnd:
     """Return the end of a run. An exception of the worker, or a missing result, becomes a failure."""
-    if isinstance(end, BaseException):
-        died = type(end).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
-        return RunEnd(run, DIED if died else f"{type(end).__name__}: {end}")
+    end = _as_end(run, end)
     if end.reason is None and not (results / f"{run}.h5").exists():
         return RunEnd(run, f"the result did not arrive: {end.host} must see {results} under the same path")
     return end
@@ -279,11 +358,23 @@ def _is_hdf5(path: Path) -> bool:
         return False
 
 
-def _summary(index: Index, points: dict[str, Point], results: Path, ended: int = 0, seconds: float = 0.0) -> Summary:
+def _summary(index: Index, plan: Plan, points: dict[str, Point], results: Path) -> Summary:
     statuses = _now(index, points, results)
     failed = [(points[run], reason or "") for run, (state, reason) in statuses.items() if state == FAILED]
     done, waiting = (sum(state == wanted for state, _ in statuses.values()) for wanted in (DONE, WAITING))
-    return Summary(done, waiting, failed, ended, seconds)
+    unread = [
+        (points[run], name, value.reason)
+        for run, values in index.outcomes().items()
+        if statuses.get(run, (WAITING, None))[0] == DONE
+        for name, value in values.items()
+        if value.reason is not None and _is_of(plan, name, value)
+    ]
+    return Summary(done, waiting, failed, unread=unread)
+
+
+def _is_of(plan: Plan, name: str, value: OutcomeValue) -> bool:
+    """Whether the value belongs to an outcome of the plan, with the same definition."""
+    return name in plan.outcomes and plan.outcomes[name].definition == value.definition
 
 
 def _check_plan_copy(directory: Path, text: str = "") -> None:

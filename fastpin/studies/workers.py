@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import UTC, datetime
 from multiprocessing import resource_tracker
 from queue import SimpleQueue
@@ -29,6 +30,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.storage import store
 from fastpin.storage.layout import versions
+from fastpin.studies.outcomes import OutcomeValue, values_in_worker
 from fastpin.studies.run_end import RunEnd, key_figures
 from fastpin.version import __version__
 
@@ -219,8 +221,12 @@ def one_thread() -> None:
     threadpool_limits(limits=1)
 
 
-def solve_run(run: str, case: Case, path: str, main_process: int, version: str) -> RunEnd:
-    """Solve one case and save its result.
+PickledOutcomes = dict[str, tuple[str, bytes]]
+"""Definition and pickled outcome by name, see :func:`fastpin.studies.outcomes.values_in_worker`."""
+
+
+def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, main_process: int, version: str) -> RunEnd:
+    """Solve one case, save its result, and read its outcomes.
 
     Parameters
     ----------
@@ -229,6 +235,8 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
     case : Case
     path : str
         HDF5 file of the result. It is written only if there is a state.
+    outcomes : dict of str to (str, bytes)
+        Definition and pickled outcome by name.
     main_process : int
         Process id of the sweep. The threads of this process are not limited here.
     version : str
@@ -237,16 +245,18 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
     Returns
     -------
     RunEnd
-        Key figures and times. Every exception of the run becomes the reason of a failure.
+        Key figures, times and outcomes. Every exception of the run becomes the reason of a failure. An exception of
+        an outcome becomes the reason of its missing value.
     """
     if version != __version__:
-        return RunEnd(run, f"the worker has fastpin {__version__}, the sweep {version}")
+        return RunEnd(run, _other_version(version))
     if os.getpid() != main_process:
         one_thread()
     started = datetime.now(UTC).isoformat(timespec="milliseconds")
     began = time.perf_counter()
     reason: str | None = None
     figures: dict[str, Any] = {}
+    values: dict[str, OutcomeValue] = {}
     try:
         try:
             with in_one_thread():
@@ -257,11 +267,38 @@ def solve_run(run: str, case: Case, path: str, main_process: int, version: str) 
         if result is not None and len(result):
             figures = key_figures(result)
             store.save(result, path, error=reason, restart=False)
+            if reason is None:  # Without its restart, the result is the same as in its file.
+                values = values_in_worker(outcomes, replace(result, restart=None))
     except MemoryError:
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions())
+    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values)
+
+
+def read_run(run: str, path: str, outcomes: PickledOutcomes, main_process: int, version: str) -> RunEnd:
+    """Read outcomes from the stored result of a finished run.
+
+    Parameters are those of :func:`solve_run`.
+
+    Returns
+    -------
+    RunEnd
+        The outcomes only. A reason: the file can't be read, or the worker has another version of fastpin.
+    """
+    if version != __version__:
+        return RunEnd(run, _other_version(version))
+    if os.getpid() != main_process:
+        one_thread()
+    try:
+        result = store.load(path)
+    except Exception as error:  # The other runs continue.
+        return RunEnd(run, f"the result can't be read: {error}")
+    return RunEnd(run, None, outcomes=values_in_worker(outcomes, result))
+
+
+def _other_version(version: str) -> str:
+    return f"the worker has fastpin {__version__}, the sweep {version}"
 
 
 def _end_with_parent() -> None:

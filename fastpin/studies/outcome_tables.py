@@ -1,0 +1,283 @@
+"""Outcomes from the table [outcomes] of a plan, from a file of functions, and from Python.
+
+All faults of a table are reported at once, each with its line.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import json
+import pickle
+import re
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from fastpin.casefile.reader import read_text
+from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.checks import as_toml, choice, closest, file_path, string
+from fastpin.states.quantities import QUANTITIES
+from fastpin.studies.outcomes import (
+    CYCLE_QUANTITIES,
+    SPANS,
+    TAKES,
+    Outcome,
+    call_in_file,
+    digest,
+    module_of,
+    of_last_cycle,
+    reason_of,
+    taken,
+)
+from fastpin.studies.run_end import RUN_COLUMNS
+
+Outcomes = dict[str, Outcome]
+"""Outcomes by the names that the user chose."""
+
+KEYS = {"quantity": ("quantity", "take", "over"), "cycle": ("cycle",), "function": ("function",)}
+"""The first key of an outcome says what is read. The others may stand beside it."""
+
+LONGEST_NAME = 64
+"""Most characters in the name of an outcome."""
+
+_EXAMPLE = '{ quantity = "peak_shear", take = "largest" }, { cycle = "dissipation" } or { function = "my.py:wear" }'
+
+
+def read_outcomes(path: str | Path) -> Outcomes:
+    """Read all outcomes of a file.
+
+    Parameters
+    ----------
+    path : path
+        A Python file (.py): all its public functions, each called with a result. Or a TOML file with a table
+        [outcomes], such as a plan; its other keys are not read.
+
+    Returns
+    -------
+    dict of str to Outcome
+
+    Raises
+    ------
+    CaseFileError
+        With all faults of the file.
+    InputError
+        If `path` is no path, or has another suffix.
+    """
+    path = file_path("outcomes", path)
+    if path.suffix not in (".py", ".toml"):
+        raise InputError("outcomes", f"the file's name must end in .py or .toml, not {as_toml(path.name)}")
+    text = read_text(path)
+    if path.suffix == ".toml":
+        source = CaseText(text)
+        if source.readable and "outcomes" not in source.root:
+            source.report("the section [outcomes] is missing")
+    else:
+        functions = _functions(path, text)
+        source = CaseText("").with_tables(
+            {"outcomes": {name: {"function": f"{path.name}:{name}"} for name in functions}}
+        )
+        if not functions:
+            source.report("defines no function whose name begins with a letter")
+    found = outcomes_in_text(source, path.parent)
+    if source.faults:
+        raise CaseFileError(str(path), source.faults)
+    return found
+
+
+def outcomes_from(given: Mapping[str, Any]) -> Outcomes:
+    """Check outcomes that are given in Python.
+
+    Parameters
+    ----------
+    given : mapping of str
+        By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
+        :class:`Outcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
+
+    Returns
+    -------
+    dict of str to Outcome
+
+    Raises
+    ------
+    CaseFileError
+        With all faults. It is an :class:`InputError` for the field "outcomes".
+    """
+    if not isinstance(given, Mapping):
+        raise InputError("outcomes", f"must be a dict of functions and tables by name, not {as_toml(given)}")
+    source = CaseText("").with_tables({"outcomes": dict(given)})
+    found = outcomes_in_text(source, Path())
+    if source.faults:
+        raise CaseFileError("outcomes", source.faults)
+    return found
+
+
+def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
+    """Read the table [outcomes] of a text, and report its faults.
+
+    Relative names of Python files start in `folder`. The outcomes have no meaning if the text has faults.
+    """
+    found: Outcomes = {}
+    section = source.section("outcomes")
+    for name in section.table:
+        value = section.value(name)
+        if fault := _name_fault(name) or _double_fault(name, found):
+            section.report(fault, str(name))
+            continue
+        try:
+            if isinstance(value, Outcome):
+                found[name] = value
+            elif isinstance(value, Mapping):
+                found |= _of_table(name, Section(source, ("outcomes", name), dict(value)), folder)
+            elif callable(value):
+                found[name] = _of_callable(value)
+            elif value is not None or section.table[name] is None:  # A value that can't be parsed is reported already.
+                section.report(f"{name}: must be a table such as {_EXAMPLE}, not {as_toml(value)}", name)
+        except InputError as error:
+            section.report(f"{name}: {error}", name)
+    return found
+
+
+def _name_fault(name: object) -> str:
+    """Return the fault of an outcome's name; empty if there is none."""
+    if not isinstance(name, str) or not re.fullmatch(rf"[A-Za-z][A-Za-z0-9_]{{,{LONGEST_NAME - 1}}}", name):
+        return (
+            f"{as_toml(name)}: the name of an outcome is a letter, then letters, digits and underscores, at most "
+            f"{LONGEST_NAME}"
+        )
+    if name.lower() in RUN_COLUMNS:
+        return f"{name}: is a column of every sweep; choose another name"
+    return ""
+
+
+def _double_fault(name: str, found: Outcomes) -> str:
+    """Return the fault of a name that differs from another name in its capital letters only; empty if there is none."""
+    other = next((other for other in found if other.lower() == name.lower()), None)
+    return f"{name}: there is {other} already; capital letters make no difference" if other else ""
+
+
+# -- single outcomes ---------------------------------------------------------------------------------------------
+
+
+def _of_table(name: str, section: Section, folder: Path) -> Outcomes:
+    """Read the table of one outcome, and report its faults. No outcome if a value is wrong."""
+    first = [key for key in KEYS if key in section]
+    if len(first) != 1:
+        section.report(f"{name}: must have one of the keys {', '.join(KEYS)}, such as {_EXAMPLE}")
+        return {}
+    allowed = KEYS[first[0]]
+    for key in section.table:
+        if key not in allowed:
+            hint = closest(str(key), allowed) or f"; beside {first[0]} there {_others(allowed)}"
+            section.report(f'{name}: unknown key "{key}"{hint}', str(key))
+    if first[0] == "function":
+        outcome = _of_function(name, section, folder)
+    else:
+        outcome = _of_cycle(name, section) if first[0] == "cycle" else _of_quantity(name, section)
+    return {} if outcome is None else {name: outcome}
+
+
+def _others(allowed: tuple[str, ...]) -> str:
+    return f"may be {' and '.join(allowed[1:])}" if len(allowed) > 1 else "is no other key"
+
+
+def _choice(name: str, section: Section, key: str, allowed: tuple[str, ...]) -> str | None:
+    """A word of a table; the first one allowed if its key is missing. None if the word is wrong (reported)."""
+    if key not in section:
+        return allowed[0]
+    return section.checked(key, lambda _, value: choice(f"{name}: {key}", value, allowed))
+
+
+def _of_quantity(name: str, section: Section) -> Outcome | None:
+    quantity = _choice(name, section, "quantity", tuple(QUANTITIES))
+    take, span = _choice(name, section, "take", TAKES), _choice(name, section, "over", SPANS)
+    if quantity is None or take is None or span is None:
+        return None
+    kind = QUANTITIES[quantity].kind
+    if take == "largest magnitude" and kind == "angle":
+        section.report(f'{name}: take: a place on the hole has no magnitude; take "largest" or "smallest"', "take")
+        return None
+    if take == "last" and span == "cycle":
+        section.report(f'{name}: over: the last state is that of the history, too; take "largest" or another', "over")
+        return None
+    kind = "width" if (kind, take) == ("angle", "range") else kind
+    definition = {"quantity": quantity, "take": take, "over": span}
+    return Outcome(kind, "", json.dumps(definition), partial(taken, quantity, take, span))
+
+
+def _of_cycle(name: str, section: Section) -> Outcome | None:
+    quantity = _choice(name, section, "cycle", tuple(CYCLE_QUANTITIES))
+    if quantity is None:
+        return None
+    kind = CYCLE_QUANTITIES[quantity].kind
+    return Outcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity))
+
+
+def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
+    """Read a function of a file, ``FILE.py:NAME``."""
+    value = section.value("function")
+    if value is None:
+        return None
+    file, colon, function = value.rpartition(":") if isinstance(value, str) else ("", "", "")
+    if not (colon and file.endswith(".py") and function):
+        section.report(
+            f'{name}: function: must be FILE.py:NAME, such as "my.py:wear", not {as_toml(value)}', "function"
+        )
+        return None
+    path = folder / file
+    try:
+        text = read_text(path)
+        functions = _functions(path, text)
+    except CaseFileError as error:
+        for line, message in error.problems:
+            section.report(f"{name}: {file}{f', line {line}' if line else ''}: {message}", "function")
+        return None
+    if function not in functions:
+        hint = closest(function, functions) or (f"; there are {', '.join(functions)}" if functions else "")
+        section.report(f'{name}: there is no function "{function}" in {file}{hint}', "function")
+        return None
+    return _of_file(path, text, function)
+
+
+def _of_file(path: Path, text: str, function: str) -> Outcome:
+    definition = json.dumps({"function": function, "file": digest(text)})
+    unit = _unit(getattr(module_of(str(path), text), function))
+    return Outcome("", unit, definition, partial(call_in_file, str(path), text, function))
+
+
+def _of_callable(function: Callable[..., Any]) -> Outcome:
+    """An outcome of a function in Python. Its definition changes with the text of its module, as far as it is known."""
+    module, content = "", b""
+    with contextlib.suppress(Exception):  # The function may be anything that can be called.
+        content = pickle.dumps(function)
+        module = inspect.getsource(inspect.getmodule(function))  # type: ignore[arg-type]
+    definition = json.dumps({"function": getattr(function, "__qualname__", ""), "file": digest(f"{content!r}{module}")})
+    return Outcome("", _unit(function), definition, function)
+
+
+def _unit(function: Callable[..., Any]) -> str:
+    """The attribute ``unit`` of a function; empty without one."""
+    return string("the attribute unit", getattr(function, "unit", ""))
+
+
+def _functions(path: Path, text: str) -> tuple[str, ...]:
+    """Names of the public functions that a Python file defines, in their order.
+
+    Raises
+    ------
+    CaseFileError
+        If the file can't be run.
+    """
+    try:
+        module = module_of(str(path), text)
+    except SyntaxError as error:
+        raise CaseFileError(str(path), [(error.lineno or 0, f"is not Python: {error.msg}")]) from None
+    except (Exception, SystemExit) as error:  # The file may do anything.
+        raise CaseFileError(str(path), [(0, f"can't be imported: {reason_of(error)}")]) from None
+    return tuple(
+        name
+        for name, value in vars(module).items()
+        if inspect.isfunction(value) and value.__module__ == module.__name__ and not name.startswith("_")
+    )

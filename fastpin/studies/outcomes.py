@@ -1,0 +1,273 @@
+"""Outcomes: numbers that the user chooses, each read from the result of a run.
+
+An outcome is a quantity of the states, a quantity of the last cycle, or the value of a function of the user. The tables
+of a plan, and files with functions, are read in :mod:`fastpin.studies.outcome_tables`.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+import pickle
+import sys
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.errors import FastpinError, printable
+from fastpin.model.angles import from_bottom
+from fastpin.model.checks import number
+from fastpin.solver.result import Result
+from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.states.state import State
+
+TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
+"""Ways to take one number from the values of a quantity, see :func:`taken`."""
+
+SPANS = ("history", "cycle")
+"""Kept states whose values count: those of the whole history, or of the last cycle."""
+
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+class CycleQuantity(NamedTuple):
+    """A number of the last cycle of a result.
+
+    Attributes
+    ----------
+    kind : str
+        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad) or "" for a plain
+        number.
+    of : callable
+        Gives its value for a result with cycles, in SI units or in the units of a dimensionless problem.
+    """
+
+    kind: str
+    of: Callable[[Result], float]
+
+
+CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
+    "dissipation": CycleQuantity("energy", lambda result: result.cycles[-1].dissipation),
+    "rotation_change": CycleQuantity("rotation", lambda result: result.cycles[-1].rotation_change),
+    "pressure_change": CycleQuantity("", lambda result: result.cycles[-1].pressure_change),
+    "shear_change": CycleQuantity("", lambda result: result.cycles[-1].shear_change),
+}
+"""The quantities of the last cycle, by name; see :class:`fastpin.states.cycles.Cycle`."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One number that is read from a complete result.
+
+    Attributes
+    ----------
+    kind : str
+        See :class:`CycleQuantity`; "" for a function of the user.
+    unit : str
+        Unit of a function of the user, as it is to be shown; empty for a plain number.
+    definition : str
+        A text that changes with the definition of the number.
+    read : callable
+        Gives the number for a result, with angles and widths in rad. NaN or None: the result has no such number.
+    """
+
+    kind: str
+    unit: str
+    definition: str
+    read: Callable[[Result], Any]
+
+    def reported(self, value: float) -> float:
+        """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""
+        if self.kind == "angle" and math.isfinite(value):
+            return from_bottom(value)
+        return self.reported_bar(value)
+
+    def reported_bar(self, bar: float) -> float:
+        """A difference of values in the units of reports: of angles and widths in degrees."""
+        return math.degrees(bar) if self.kind in ("angle", "width") else bar
+
+    def unit_in(self, units: Mapping[str, str]) -> str:
+        """The unit of reports. `units` is that of every kind, see :func:`fastpin.model.units.units`."""
+        return "deg" if self.kind in ("angle", "width") else units.get(self.kind, self.unit)
+
+
+class OutcomeValue(NamedTuple):
+    """What an outcome gave for one run.
+
+    Attributes
+    ----------
+    definition : str
+        See :class:`Outcome`.
+    value : float or None
+        In the units of reports. None: the result has no such number, or it could not be read.
+    reason : str or None
+        Why the number could not be read.
+    """
+
+    definition: str
+    value: float | None
+    reason: str | None = None
+
+
+def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
+    """Read an outcome. Whatever goes wrong becomes the reason of a missing value."""
+    try:
+        value = outcome.read(result)
+        if value is None or (isinstance(value, float | np.floating) and math.isnan(value)):
+            return OutcomeValue(outcome.definition, None)
+        return OutcomeValue(outcome.definition, outcome.reported(number("its value", value)))
+    except (Exception, SystemExit) as error:  # A function of the user may fail in any way.
+        return OutcomeValue(outcome.definition, None, reason_of(error))
+
+
+def pickled(outcome: Outcome) -> bytes:
+    """An outcome for a worker.
+
+    Raises
+    ------
+    FastpinError
+        If its function can't be sent to another process.
+    """
+    try:
+        return pickle.dumps(outcome)
+    except Exception as error:  # The class of the function may be anyone's.
+        raise FastpinError(
+            f"can't be sent to workers, which import it by its name; write a function of a module ({error})"
+        ) from None
+
+
+def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) -> dict[str, OutcomeValue]:
+    """Read outcomes, each a definition and the bytes of :func:`pickled`.
+
+    A function that this process does not find is a missing value, and not the end of the process.
+    """
+    values = {}
+    for name, (definition, content) in outcomes.items():
+        try:
+            outcome = pickle.loads(content)
+        except Exception as error:  # Unpickling imports modules of the user.
+            values[name] = OutcomeValue(definition, None, f"the worker does not find the function: {reason_of(error)}")
+        else:
+            values[name] = value_of(outcome, result)
+    return values
+
+
+# -- readers ---------------------------------------------------------------------------------------------------
+
+
+def taken(quantity: str, take: str, span: str, result: Result) -> float:
+    """Take one number from the values of a quantity at the kept states.
+
+    States without the value, such as the angle of a peak without contact, do not count.
+
+    Parameters
+    ----------
+    quantity : str
+        A name in :data:`fastpin.states.QUANTITIES`.
+    take : {"last", "largest", "smallest", "largest magnitude", "range"}
+        "last": at the last state. "largest", "smallest": with sign. "largest magnitude": without sign, and not for
+        places on the hole. "range": the largest minus the smallest value; for a place on the hole, the length of the
+        smallest arc that holds all its places.
+    span : {"history", "cycle"}
+    result : Result
+
+    Returns
+    -------
+    float
+        In SI units, or in the units of a dimensionless problem; angles and widths in rad. NaN if no state has a value.
+
+    Raises
+    ------
+    FastpinError
+        If there is no cycle, or not all corners of the last cycle are kept.
+    """
+    kind, of = QUANTITIES[quantity].kind, QUANTITIES[quantity].of
+    if take == "last":
+        return of(result[-1])
+    values = np.array([of(state) for state in (_states_of_cycle(result) if span == "cycle" else result)])
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return math.nan
+    if take == "range":
+        return _arc(values) if kind == "angle" else float(np.ptp(values))
+    if take == "largest magnitude":
+        values = np.abs(values)
+    return float(values.min() if take == "smallest" else values.max())
+
+
+def of_last_cycle(quantity: str, result: Result) -> float:
+    """The value of a name in :data:`CYCLE_QUANTITIES`.
+
+    Raises
+    ------
+    FastpinError
+        If the result has no cycle.
+    """
+    _check_cycles(result)
+    return CYCLE_QUANTITIES[quantity].of(result)
+
+
+def call_in_file(path: str, text: str, function: str, result: Result) -> Any:
+    """The value of a function in a Python file with this text. Workers need not see the file."""
+    return getattr(module_of(path, text), function)(result)
+
+
+@functools.cache
+def module_of(path: str, text: str) -> ModuleType:
+    """The module that a Python file with this text defines.
+
+    It raises whatever the text raises.
+    """
+    name = f"{Path(path).stem}_{digest(text)}"
+    module = ModuleType(name)
+    module.__file__ = path
+    sys.modules[name] = module  # Data classes look for their module there.
+    try:
+        exec(compile(text, path, "exec"), module.__dict__)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def digest(text: str) -> str:
+    """Some hexadecimal digits of the SHA-256 of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _check_cycles(result: Result) -> None:
+    if not result.cycles:
+        raise FastpinError("the history has no cycle")
+
+
+def _states_of_cycle(result: Result) -> list[State]:
+    """The kept states of the last cycle, from its beginning to its end."""
+    _check_cycles(result)
+    cycle = result.cycles[-1]
+    first, last = cycle.corner + 1 - cycle.length, cycle.corner + 1
+    states = [state for state in result if first <= load_point(state) <= last]
+    if sum(state.fraction == 1.0 and load_point(state) > first for state in states) < cycle.length:
+        raise FastpinError('not all corners of the last cycle are kept; keep = "corners" keeps them')
+    return states
+
+
+def _arc(angles: np.ndarray) -> float:
+    """Length of the smallest arc that holds all angles, rad."""
+    turned = np.sort(np.mod(angles, 2.0 * math.pi))
+    return 2.0 * math.pi - float(np.diff(turned, append=turned[0] + 2.0 * math.pi).max())
+
+
+def reason_of(error: BaseException) -> str:
+    """An error in one line, with the line of the user's code that raised it."""
+    frames = traceback.extract_tb(error.__traceback__)
+    of_user = [frame for frame in frames if not Path(frame.filename).is_relative_to(_PACKAGE)]
+    place = f" ({Path(of_user[0].filename).name}, line {of_user[0].lineno})" if of_user else ""
+    words = str(error) if isinstance(error, FastpinError) else f"{type(error).__name__}: {error}"
+    return printable(f"{words}{place}")
