@@ -19,7 +19,7 @@ EXIT_CODES = (
 )
 
 DEFAULT_KEY_FIGURE = "peak_pressure"
-"""The key figure in the figure of a sweep, unless another one is chosen."""
+"""The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -139,6 +139,7 @@ def add_converge(commands: Any) -> None:
         type=literal,
         help="corner to study (default: all corners if there are at most six, otherwise the last)",
     )
+    _add_outcomes(converge)
     converge.add_argument("--csv", metavar="FILE", type=Path, help="write all values, orders, limits and error bars")
     _add_json(converge, "write the study as JSON")
     converge.add_argument("--plot", metavar="FILE", type=Path, help="write a figure of the last corner (png, pdf, svg)")
@@ -160,15 +161,20 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument(
         "--shard", metavar="I/N", help="solve only the I-th of N parts; each part needs a directory of its own"
     )
+    _add_outcomes(sweep)
     sweep.add_argument(
         "--table",
         metavar="FILE",
         nargs="?",
         const="-",
-        help="print the table of fields and key figures, or write it to FILE as CSV",
+        help="print the table of fields and outcomes, or write it to FILE as CSV with all key figures",
     )
-    sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one key figure (png, pdf or svg)")
-    sweep.add_argument("--value", metavar="NAME", help=f"key figure to plot (default {DEFAULT_KEY_FIGURE})")
+    sweep.add_argument("--plot", metavar="FILE", type=Path, help="map or curves of one value (png, pdf or svg)")
+    sweep.add_argument(
+        "--value",
+        metavar="NAME",
+        help=f"outcome or key figure to plot (default: the first outcome, or else {DEFAULT_KEY_FIGURE})",
+    )
     sweep.add_argument("--x", metavar="FIELD", help="field along the figure's x axis")
     sweep.add_argument("--y", metavar="FIELD", help="field along the figure's y axis (for a map)")
 
@@ -253,6 +259,16 @@ def _add_solver_options(run: argparse.ArgumentParser) -> None:
         action=argparse.BooleanOptionalAction,
         default=None,
         help="sum up slip distance and friction energy of each node, also in the last cycle",
+    )
+
+
+def _add_outcomes(command: argparse.ArgumentParser) -> None:
+    """Add ``--outcomes FILE``."""
+    command.add_argument(
+        "--outcomes",
+        metavar="FILE",
+        type=Path,
+        help="also read these numbers from each result: the functions of a Python file, or [outcomes] of a TOML file",
     )
 
 

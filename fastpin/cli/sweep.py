@@ -30,6 +30,8 @@ def run(options: argparse.Namespace) -> int:
     shard = _shard(options.shard)
     _check_combination(options)
     plan = studies.read_plan(options.plan)
+    if options.outcomes is not None:
+        plan = plan.with_outcomes(studies.read_outcomes(options.outcomes))
     directory = Path(options.plan.stem) if options.output is None else options.output
     _check_outputs(options, plan)
     if options.status:
@@ -45,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     _print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
         print(report.sweep.text(plan, rows))
-    return EXIT_FAILED if summary.failed and not options.status else EXIT_OK
+    return EXIT_FAILED if (summary.failed or summary.unread) and not options.status else EXIT_OK
 
 
 def _run(
@@ -109,9 +111,14 @@ def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None
         check_figure("--plot", options.plot)
         check_writable(options.plot)
         try:
-            report.sweep.check_axes(plan, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
+            report.sweep.check_axes(plan, _value(options, plan), options.x, options.y)
         except InputError as error:
             raise InputError(f"--{error.field}", error.reason) from None
+
+
+def _value(options: argparse.Namespace, plan: studies.plan.Plan) -> str:
+    """Return the number that a figure shows: by default the first outcome of the plan, or else a key figure."""
+    return str(options.value or next(iter(plan.outcomes), DEFAULT_KEY_FIGURE))
 
 
 def _print_summary(
@@ -129,6 +136,13 @@ def _print_summary(
         print(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
     if len(summary.failed) > MOST_REASONS:
         print(f"... {len(summary.failed) - MOST_REASONS} more failed")
+    if summary.read:
+        print(f"outcomes of {summary.read} finished runs were read from their results")
+    for name in plan.outcomes:
+        unread = [(point, reason) for point, unread_name, reason in summary.unread if unread_name == name]
+        if unread:
+            point, reason = unread[0]
+            print(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
     if summary.failed and not retried:
         print("--retry runs what failed again")
 
@@ -141,7 +155,7 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
     if options.table not in (None, "-"):
         report.sweep.write_csv(plan, rows, Path(options.table))
     if options.plot is not None:
-        chart = report.sweep.chart(plan, rows, options.value or DEFAULT_KEY_FIGURE, options.x, options.y)
+        chart = report.sweep.chart(plan, rows, _value(options, plan), options.x, options.y)
         figures.plot_sweep(chart, options.plot)
         if chart.missing:
             print(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)

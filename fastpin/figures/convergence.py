@@ -116,7 +116,7 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
 def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], ReportedSeries]]) -> None:
     rows = [row for _, row in sequences.values()]
     largest = max(float(np.ptp(row.values)) for row in rows)
-    factor, unit = (1.0, "deg") if rows[0].unit == "deg" else scaled([largest], rows[0].unit)
+    factor, unit = scaled([largest], rows[0].unit)
     panel.set_title(f"{rows[0].label}  [{unit}]".replace("beta*", "β*"), fontsize=8.5)
     panel.set_xscale("log")
     panel.set_yscale("log")

@@ -21,7 +21,7 @@ _SI = {
     "energy density": "J/m^2",
 }
 
-WITH_PREFIX = frozenset({*_SI.values(), "s"})
+_WITH_PREFIX = frozenset({*_SI.values(), "s"} - {""})
 """Units that may get an SI prefix."""
 
 _DIMENSIONLESS = {
@@ -48,10 +48,11 @@ def units(problem: Problem) -> dict[str, str]:
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     """A factor for `values`, and `unit` with an SI prefix. In this unit the largest value reads well.
 
-    Ratios, and units of a dimensionless problem, with an F or an R, keep the factor 1 and have no prefix.
+    Ratios, units of a dimensionless problem, degrees and units of the user such as "MPa" keep the factor 1 and get no
+    prefix.
     """
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
-    if "F" in unit or unit.startswith("R") or unit == "" or largest == 0.0:
+    if unit not in _WITH_PREFIX or largest == 0.0:
         return 1.0, unit
     exponent = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))

@@ -125,7 +125,7 @@ def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
 
 def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
     zero = row.verdict == "to rounding" and abs(row.limit) <= row.negligible
-    factor, unit = scaled([0.0] if zero else [row.values[-1]], row.unit) if row.unit != "deg" else (1.0, "deg")
+    factor, unit = scaled([0.0] if zero else [row.values[-1]], row.unit)
     if row.verdict == "to rounding":
         decimals = None
     else:

@@ -15,8 +15,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, closest
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import scaled as with_prefix
-from fastpin.model.units import units
+from fastpin.model.units import scaled, units
 from fastpin.report.table import table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
@@ -61,7 +60,8 @@ _SHOWN = {
 def text(plan: Plan, rows: Sequence[Row]) -> str:
     """Return a text table: varied fields, outcomes of the plan, status.
 
-    A plan without outcomes has the most important key figures in their place. `rows` come from :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
+    A plan without outcomes has the most important key figures in their place. `rows` come from
+    :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
     """
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
@@ -156,8 +156,9 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     Raises
     ------
     InputError
-        The field is "value", "x", "y" or "plot". The outcome, key figure or a field is unknown, an axis has values that are no
-        numbers, both axes have the same field, no field is left for the x axis, or there are too many maps or curves.
+        The field is "value", "x", "y" or "plot". The outcome, the key figure or a field is unknown, an axis has values
+        that are no numbers, both axes have the same field, no field is left for the x axis, or there are too many maps
+        or curves.
     """
     known = (*plan.outcomes, *KEY_FIGURES, "seconds")
     if value not in known:
@@ -210,7 +211,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     x, y, others = check_axes(plan, value, x, y)
     unit = _units(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
-    factor, label = _scaled([number for number in found if number is not None], _unit(plan, value, unit))
+    factor, label = scaled([number for number in found if number is not None], _unit(plan, value, unit))
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
@@ -234,7 +235,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = _scaled(values, unit.get(_KIND.get(_key(name), ""), ""))
+    factor, label = scaled(values, unit.get(_KIND.get(_key(name), ""), ""))
     axis = Axis(
         f"{name}{f'  [{label}]' if label else ''}", factor * np.array(values, float), plan.fields[name] == "log"
     )
@@ -245,7 +246,7 @@ def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list
     """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
     if not all(value is None or _is_number(value) for value in values):
         return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]
-    factor, label = _scaled([value for value in values if value is not None], unit)
+    factor, label = scaled([value for value in values if value is not None], unit)
     return name, label, ["-" if value is None else f"{value * factor:.5g}" for value in values]
 
 
@@ -254,11 +255,6 @@ def _units(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         return {}
     return {**units(plan.case(plan.points[0]).problem), "angle": "deg"}
-
-
-def _scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
-    """Return a factor and a unit with an SI prefix. Other units, such as degrees or MPa, keep the factor 1."""
-    return with_prefix(values, unit) if unit in WITH_PREFIX else (1.0, unit)
 
 
 def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:

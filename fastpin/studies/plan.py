@@ -121,11 +121,13 @@ class Plan:
         Raises
         ------
         InputError
-            With all faults. Also if the plan has an outcome of such a name.
+            With all faults. Also if the plan has another outcome of such a name.
         """
         found = outcomes_from(outcomes)
-        if twice := {name.lower() for name in found} & {name.lower() for name in self.outcomes}:
-            raise InputError("outcomes", f"{min(twice)}: is an outcome of the plan already; choose another name")
+        known = {name.lower(): outcome.definition for name, outcome in self.outcomes.items()}
+        for name, outcome in found.items():
+            if known.get(name.lower(), outcome.definition) != outcome.definition:
+                raise InputError("outcomes", f"{name}: the plan has another outcome of this name; choose another one")
         return replace(self, outcomes=self.outcomes | found)
 
     def case(self, point: Point) -> Case:

@@ -103,7 +103,7 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
         (["--workers", "2", "--dask", "x"], "--workers: is for processes of this machine"),
         (["--x", "load.2.M"], "--x: says what a figure shows; --plot FILE is missing"),
         (["--plot", "a.xyz"], "--plot: the figure's name must end in .png, .pdf, .svg, not 'a.xyz'"),
-        (["--plot", "a.png", "--value", "peak"], "--value: there is no key figure 'peak'"),
+        (["--plot", "a.png", "--value", "peak"], "--value: there is no outcome or key figure 'peak'"),
         (["--plot", "a.png", "--x", "contact.frict"], "--x: the plan does not vary 'contact.frict', did you mean"),
         (["--plot", "a.png", "--x", "contact.pin_load"], "--x: the values of contact.pin_load are not all numbers"),
         (["--plot", "none/a.png"], "the directory none does not exist"),
