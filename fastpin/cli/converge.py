@@ -27,6 +27,7 @@ def run(options: argparse.Namespace) -> int:
     increments = [] if options.increments is None else _numbers("--increments", options.increments)
 
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
+    outcomes = {} if options.outcomes is None else studies.read_outcomes(options.outcomes)
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs, options.case)
     code, trouble = EXIT_OK, ""
@@ -40,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             study: studies.convergence.Convergence | None = studies.converge(
                 case.problem, case.history, nodes, increments, options.increment_nodes, options.corner,
-                case.options.arc, progress,
+                case.options.arc, progress, outcomes,
             )  # fmt: skip
         except studies.convergence.StudyInterrupted as ended:
             study, code, trouble = ended.study, EXIT_INTERRUPTED, "interrupted"
@@ -48,11 +49,15 @@ def run(options: argparse.Namespace) -> int:
             study, code, trouble = lost.study, EXIT_FAILED, str(lost)
         except InputError as error:
             option = error.field.replace("_", "-")
-            known = option in ("nodes", "increments", "increment-nodes", "corner")
+            known = option in ("nodes", "increments", "increment-nodes", "corner", "outcomes")
             raise InputError(f"--{option}" if known else error.field, error.reason) from None
     if study is None:
         return fail(f"{trouble}; less than three grids were finished", code)
-    return _write_study(study, options, case.title) or (code and fail(f"{trouble}; {_describe_kept(study)}", code))
+    written = _write_study(study, options, case.title)
+    for name, reason in study.unread.items():
+        code = code or EXIT_FAILED
+        fail(f"outcome {name} can't be read with {reason}", code)
+    return fail(f"{trouble}; {_describe_kept(study)}", written or code) if trouble else written or code
 
 
 def _describe_kept(study: studies.convergence.Convergence) -> str:

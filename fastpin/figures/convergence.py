@@ -43,7 +43,7 @@ TITLE_WIDTH = 90
 def plot_convergence(
     convergence: Convergence, path: str | Path, corner: int | None = None, title: str = "", dpi: float = 160.0
 ) -> None:
-    """Save a figure of the convergence at one corner, with up to nine panels, one for each quantity.
+    """Save a figure of the convergence at one corner, with up to nine panels, one for each outcome or quantity.
 
     A panel shows the distance of the values to the limit of their sequence, against the number of nodes or of
     increments. Marks are filled if an order is observed; the panel names it. Else the marks are open, and the distance
@@ -81,7 +81,8 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
         for row in reported_series(study, convergence.problem, corner):
             if row.verdict in ("observed", "not observed"):
                 found.setdefault(row.name, {})[study.method] = study.counts, row
-    names = [name for name in (*ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
+    chosen = [name for name, rows in found.items() if any(row.is_outcome for _, row in rows.values())]
+    names = [name for name in (*chosen, *ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
     names = list(dict.fromkeys(names))[:MOST_PANELS]
     rows = max(1, math.ceil(len(names) / COLUMNS))
     figure, axes = panels(rows, COLUMNS, height=2.0, width=7.6)
@@ -117,7 +118,7 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Reporte
     rows = [row for _, row in sequences.values()]
     largest = max(float(np.ptp(row.values)) for row in rows)
     factor, unit = scaled([largest], rows[0].unit)
-    panel.set_title(f"{rows[0].label}  [{unit}]".replace("beta*", "β*"), fontsize=8.5)
+    panel.set_title(f"{rows[0].label}  [{unit}]".replace("beta*", "β*"), fontsize=8.5, parse_math=False)
     panel.set_xscale("log")
     panel.set_yscale("log")
     words = []

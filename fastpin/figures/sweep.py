@@ -84,7 +84,7 @@ def _draw_maps(chart: Chart) -> Figure:
     for panel in axes[:, 0]:
         panel.set_ylabel(chart.y.label)
     bar = figure.colorbar(mesh, ax=list(axes.flat), aspect=30, pad=0.02)
-    bar.set_label(chart.label)
+    bar.set_label(chart.label, parse_math=False)
     bar.outline.set_linewidth(0.5)
     _explain(figure, chart)
     return figure
@@ -121,7 +121,7 @@ def _draw_curves(chart: Chart) -> Figure:
         )
         entries.append((name, style))
     _scale_axes(panel, chart)
-    panel.set_ylabel(chart.label)
+    panel.set_ylabel(chart.label, parse_math=False)
     _finish(figure, axes, chart)
     cross: Line = {"color": "0.3", "linestyle": "none", "marker": "x", "markersize": 4.0}
     marks = [("failed", cross)] if any(failed.any() for _, _, failed in chart.parts) else []

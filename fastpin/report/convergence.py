@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,10 @@ the grid of the increment solver.
 """
 
 
+MOST_DECIMALS = 9
+"""Most decimals of a value in the text tables. A value that needs more is written with an exponent."""
+
+
 @dataclass(frozen=True)
 class ReportedSeries:
     """One quantity at one corner, on all grids or for all numbers of increments, in the units of reports.
@@ -42,7 +47,8 @@ class ReportedSeries:
     corner : int
         From 1.
     name, label : str
-        The quantity's name, see :data:`fastpin.states.quantities.QUANTITIES`, and its heading in tables.
+        The quantity's name, see :data:`fastpin.states.quantities.QUANTITIES`, and its heading in tables. An outcome has
+        the name that the user chose for both.
     unit : str
         "deg" for angles and widths.
     values : tuple of float
@@ -54,6 +60,8 @@ class ReportedSeries:
         The value of the path solver on the same grid, for a study of increments; else NaN.
     negligible : float
         Differences up to this size are rounding.
+    is_outcome : bool
+        Whether the user chose it.
     """
 
     corner: int
@@ -67,21 +75,29 @@ class ReportedSeries:
     bar: float
     path: float
     negligible: float
+    is_outcome: bool
 
     @classmethod
     def of(cls, series: QuantitySeries, problem: Problem) -> ReportedSeries:
         """Convert a series of a study of `problem`, which is in SI units and rad."""
-        kind, estimate, last = quantity(series.name).kind, series.estimate, series.values[-1]
-        reported_last = in_degrees(series.name, last)
+        name, outcome, estimate, last = series.name, series.outcome, series.estimate, series.values[-1]
+        reported: Callable[[float], float]
+        reported_bar: Callable[[float], float]
+        if outcome is None:
+            label, unit = quantity(name).label, units(problem).get(quantity(name).kind, "deg")
+            reported, reported_bar = partial(in_degrees, name), partial(bar_in_degrees, name)
+        else:
+            label, unit = name, outcome.unit_in(units(problem))
+            reported, reported_bar = outcome.reported, outcome.reported_bar
+        reported_last = reported(last)
 
         def in_report_units(value: float) -> float:  # an angle stays next to the last one, also across 180 degrees
-            return reported_last + bar_in_degrees(series.name, value - last)
+            return reported_last + reported_bar(value - last)
 
         return cls(
-            series.corner, series.name, quantity(series.name).label, units(problem).get(kind, "deg"),
-            tuple(map(in_report_units, series.values)), estimate.verdict, estimate.order,
-            in_report_units(estimate.limit), bar_in_degrees(series.name, estimate.bar), in_report_units(series.path),
-            bar_in_degrees(series.name, ROUNDING * series.size),
+            series.corner, name, label, unit, tuple(map(in_report_units, series.values)), estimate.verdict,
+            estimate.order, in_report_units(estimate.limit), reported_bar(estimate.bar), in_report_units(series.path),
+            reported_bar(ROUNDING * series.size), outcome is not None,
         )  # fmt: skip
 
 
@@ -130,14 +146,19 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
         decimals = None
     else:
         size = row.bar if math.isfinite(row.bar) else 1e-4 * abs(row.values[-1])
-        decimals = min(max(1 - math.floor(math.log10(factor * size)), 0), 9) if size > 0.0 else 3
+        decimals = max(1 - math.floor(math.log10(factor * size)), 0) if size > 0.0 else 3
 
     def number(value: float) -> str:
         if zero:
             return "0"
         if math.isnan(value):
             return "-"
-        return f"{factor * value:.7g}" if decimals is None else f"{factor * value:z.{decimals}f}"
+        if decimals is None:
+            return f"{factor * value:.7g}"
+        if decimals <= MOST_DECIMALS or value == 0.0:
+            return f"{factor * value:z.{min(decimals, MOST_DECIMALS)}f}"
+        digits = decimals + math.floor(math.log10(abs(factor * value)))
+        return f"{factor * value:.{min(max(digits, 0), MOST_DECIMALS)}e}"
 
     order = f"{row.order:.2f}" if row.verdict == "observed" else row.verdict
     bar = "-" if decimals is None or math.isnan(row.bar) else f"{factor * row.bar:.2g}"
@@ -190,6 +211,7 @@ def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
             "complete": convergence.complete,
             "arc": [float(grid.theta[0]), 2.0 * math.pi + grid.theta[0] if grid.closed else float(grid.theta[-1])],
             "loads": convergence.loads,
+            "unread": convergence.unread,
             "studies": [
                 {
                     "solver": study.method,

@@ -146,6 +146,11 @@ def size(name: str, state: State) -> float:
 
     Without contact all sizes are 0 except the sizes of the pin's motion.
     """
+    return sizes(state)[quantity(name).kind]
+
+
+def sizes(state: State) -> dict[str, float]:
+    """The natural size of each kind of quantity."""
     problem, pressure = state.problem, state.peak_pressure
     force = QUANTITIES["pressure_integral"].of(state)
     strain = problem.pair.beta_star * pressure or abs(problem.clearance) / problem.hole_radius
@@ -159,7 +164,7 @@ def size(name: str, state: State) -> float:
         "moment": problem.hole_radius * force,
         "energy": problem.hole_radius * strain * force,
         "ratio": 1.0,
-    }[quantity(name).kind]
+    }
 
 
 def _ends(zone: str, found: Sequence[Interval]) -> Iterator[tuple[str, float]]:

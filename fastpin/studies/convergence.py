@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -22,8 +22,11 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.solver.task import Task, as_history
 from fastpin.states.error_bars import PLACE_FLOOR, spacing
-from fastpin.states.quantities import matching_values, quantity, size, values
+from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quantity, size, sizes, values
+from fastpin.states.state import State
 from fastpin.studies.extrapolate import Estimate, estimate
+from fastpin.studies.outcome_tables import Outcomes, outcomes_from
+from fastpin.studies.outcomes import Outcome, OutcomeValue, value_of
 
 LEAST_GRIDS = 3
 """Fewest grids, or numbers of increments, of a study."""
@@ -61,7 +64,7 @@ class QuantitySeries(NamedTuple):
     corner : int
         Counted from 1.
     name : str
-        See :data:`fastpin.states.QUANTITIES`.
+        See :data:`fastpin.states.QUANTITIES`. Or the name of an outcome of the user.
     values : tuple of float
         Values for every grid or every number of increments, SI or in the units of a dimensionless problem, angles in
         rad. NaN stands for a value that can't be compared with the last one.
@@ -71,6 +74,8 @@ class QuantitySeries(NamedTuple):
         The natural size of the quantity, see :func:`fastpin.states.quantities.size`.
     path : float
         In a study of increments, the value of the path solver on the same grid. In a study of grids, NaN.
+    outcome : Outcome or None
+        The outcome of the user. None for a quantity. An outcome belongs to the history up to its corner.
     """
 
     corner: int
@@ -79,6 +84,7 @@ class QuantitySeries(NamedTuple):
     estimate: Estimate
     size: float
     path: float
+    outcome: Outcome | None = None
 
 
 @dataclass(frozen=True)
@@ -118,6 +124,8 @@ class Convergence:
     complete : bool
         False after an interrupt, or after a grid that can't follow the loads. Finer grids, increments or later corners
         are then missing.
+    unread : dict of str to str
+        Outcomes that could not be read on a grid, and the first reason.
     """
 
     problem: Problem
@@ -125,6 +133,7 @@ class Convergence:
     loads: dict[int, dict[str, float]]
     studies: tuple[Study, ...]
     complete: bool = True
+    unread: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{study.method}: {'-'.join(map(str, study.counts))}" for study in self.studies)
@@ -159,6 +168,7 @@ def converge(
     corner: int | None = None,
     arc: tuple[float, float] | None = None,
     progress: Progress | None = None,
+    outcomes: Mapping[str, Any] | None = None,
 ) -> Convergence:
     """Follow a history on several grids, and estimate how its quantities converge.
 
@@ -185,6 +195,9 @@ def converge(
     progress : callable, optional
         Called as ``progress(done, total, label)`` now and then. `done` and `total` are in units of some constant time.
         `label` names the present run.
+    outcomes : mapping of str, optional
+        Numbers to study besides the quantities, see :func:`fastpin.studies.outcome_tables.outcomes_from`. They are read
+        from the history up to the last studied corner, whose corners are then all kept.
 
     Returns
     -------
@@ -214,7 +227,16 @@ def converge(
     task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
     if corner is not None and whole_number("corner", corner, 1) > len(task.history):
         raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {as_toml(corner)}")
-    return _Work(task, counts, steps, single, corner, progress).study()
+    chosen = _checked_outcomes(outcomes or {})
+    return _Work(task, counts, steps, single, corner, progress, chosen).study()
+
+
+def _checked_outcomes(outcomes: Mapping[str, Any]) -> Outcomes:
+    chosen = outcomes_from(outcomes)
+    for name in chosen:
+        if name in QUANTITIES or (name.startswith(ZONES) and name.endswith(("_start", "_stop"))):
+            raise InputError("outcomes", f"{name}: is a quantity that every study has; choose another name")
+    return chosen
 
 
 def _is_empty(values: object) -> bool:
@@ -247,13 +269,16 @@ class _Work:
         increment_nodes: int,
         corner: int | None,
         progress: Progress | None,
+        outcomes: Outcomes,
     ) -> None:
+        self.outcomes = outcomes
+        self.read: dict[Result, dict[str, OutcomeValue]] = {}
         self.task, self.counts, self.increments, self.single = task, counts, increments, increment_nodes
         self.history = task.history if corner is None else task.history[:corner]
         corners = len(self.history)
         self.every = corner is None and corners <= SHORT
         self.corners = range(1, corners + 1) if self.every else range(corners, corners + 1)
-        self.keep = "corners" if self.every else f"every {corners}"
+        self.keep = "corners" if self.every or outcomes else f"every {corners}"
         self.lost: StudyLostError | None = None
         self.progress = progress
         self.done = 0.0
@@ -291,7 +316,7 @@ class _Work:
         coarsest = common + 1 if common >= LEAST_NODES - 1 else self.counts[0]
         for arc in replace(self.task, options=self.task.options.changed(nodes=coarsest)).grids():
             try:
-                self.found, self.done = {}, 0.0
+                self.found, self.read, self.done = {}, {}, 0.0
                 for count in (*self.counts, *self._path_apart()):
                     self.found[count] = self._solve_grid(arc, count, "path", 0)
                 break
@@ -333,7 +358,9 @@ class _Work:
             self.history = self.history[: error.step]
         except MemoryError:
             raise StudyLostError(f"with {setting}: not enough memory") from None
-        for corner, state in zip(self.corners, result, strict=False):
+        if self.lost is None:
+            self.read[result] = {name: value_of(outcome, result) for name, outcome in self.outcomes.items()}
+        for corner, state in zip(self.corners, self._states(result), strict=False):
             closed = int(np.count_nonzero(state.pressure))
             if 0 < closed < LEAST_CLOSED:
                 field = "nodes" if nodes in self.counts else "increment_nodes"
@@ -342,6 +369,10 @@ class _Work:
                 )
         self.done += cost
         return result
+
+    def _states(self, result: Result) -> list[State]:
+        """Return the states at the studied corners."""
+        return result.states if self.every else result.states[-1:]
 
     def _convergence(self, complete: bool) -> Convergence:
         counts = tuple(count for count in self.counts if count in self.found)
@@ -355,27 +386,65 @@ class _Work:
             spacings, path = [1.0 / step for step in steps], self.found[self.single]
             series = self._series(spacings, self.found_increments, path)
             studies.append(Study("increment", steps, self.single, tuple(series)))
-        loads = {corner: state.load for corner, state in zip(self.corners, finest, strict=False)}
-        return Convergence(self.task.problem, finest.grid, loads, tuple(studies), complete)
+        loads = {corner: state.load for corner, state in zip(self.corners, self._states(finest), strict=False)}
+        return Convergence(self.task.problem, finest.grid, loads, tuple(studies), complete, self._unread())
+
+    def _unread(self) -> dict[str, str]:
+        """Return the first reason why an outcome could not be read, by its name."""
+        unread: dict[str, str] = {}
+        for result, read in self.read.items():
+            for name, value in read.items():
+                if value.reason is not None:
+                    unread.setdefault(name, f"{result.grid.size} nodes: {value.reason}")
+        return unread
 
     def _series(
         self, spacings: Sequence[float], results: Sequence[Result], path: Result | None
     ) -> Iterator[QuantitySeries]:
-        """Yield the series of all quantities at all corners; `path` is the path solver's result for comparison."""
+        """Yield the series of all quantities at all corners, and of all outcomes.
+
+        `path` is the path solver's result for comparison.
+        """
         for index, corner in enumerate(self.corners):
-            last = results[-1][index]
-            rows = [matching_values(last, result[index]) for result in results]
-            path_values = {} if path is None else matching_values(last, path[index])
+            last = self._states(results[-1])[index]
+            rows = [matching_values(last, self._states(result)[index]) for result in results]
+            path_values = {} if path is None else matching_values(last, self._states(path)[index])
             for name, value in values(last).items():
                 if math.isfinite(value):
                     numbers, natural_size = tuple(row[name] for row in rows), size(name, last)
-                    limit = estimate(spacings, numbers, ROUNDING * natural_size)
-                    if quantity(name).kind in ("angle", "width") and limit.bar <= ROUNDING * natural_size:
-                        # All grids share the nodes at which, or between which, this place was read. Thus equal values
-                        # show no order.
-                        limit = Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
+                    limit = _estimate(quantity(name).kind, spacings, numbers, natural_size, last)
                     path_value = path_values.get(name, math.nan)
                     yield QuantitySeries(corner, name, numbers, limit, natural_size, path_value)
+        if self.lost is None:
+            yield from self._outcome_series(spacings, results, path)
+
+    def _outcome_series(
+        self, spacings: Sequence[float], results: Sequence[Result], path: Result | None
+    ) -> Iterator[QuantitySeries]:
+        """Yield the series of all outcomes. A value that a result does not have is NaN."""
+        last = results[-1][-1]
+        for name, outcome in self.outcomes.items():
+            found = [self.read[result][name].value for result in (*results, *([path] if path else []))]
+            every = [math.nan if value is None else value for value in found]
+            if outcome.kind == "angle":  # next to the last one, also across the top
+                latest = every[len(results) - 1]
+                every = [latest + math.remainder(value - latest, 2.0 * math.pi) for value in every]
+            numbers = tuple(every[: len(results)])
+            natural_size = sizes(last).get(outcome.kind, max(map(abs, numbers)))
+            limit = _estimate(outcome.kind, spacings, numbers, natural_size, last)
+            path_value = every[-1] if path else math.nan
+            yield QuantitySeries(self.corners[-1], name, numbers, limit, natural_size, path_value, outcome)
+
+
+def _estimate(
+    kind: str, spacings: Sequence[float], numbers: Sequence[float], natural_size: float, last: State
+) -> Estimate:
+    """Return the estimate of a sequence of values of some kind. `last` is the state on the finest grid."""
+    limit = estimate(spacings, numbers, ROUNDING * natural_size)
+    if kind in ("angle", "width") and limit.bar <= ROUNDING * natural_size:
+        # All grids share the nodes at which, or between which, this place was read. Thus equal values show no order.
+        return Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
+    return limit
 
 
 def _cost(method: Method, nodes: int, increments: int) -> float:

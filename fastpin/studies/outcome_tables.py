@@ -17,7 +17,7 @@ from typing import Any
 
 from fastpin.casefile.reader import read_text
 from fastpin.casefile.toml_text import CaseText, Section
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, closest, file_path, string
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
@@ -259,7 +259,7 @@ def _of_callable(function: Callable[..., Any]) -> Outcome:
 
 def _unit(function: Callable[..., Any]) -> str:
     """The attribute ``unit`` of a function; empty without one."""
-    return string("the attribute unit", getattr(function, "unit", ""))
+    return printable(string("the attribute unit", getattr(function, "unit", "")))
 
 
 def _functions(path: Path, text: str) -> tuple[str, ...]:

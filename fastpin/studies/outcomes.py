@@ -106,7 +106,7 @@ class OutcomeValue(NamedTuple):
     definition : str
         See :class:`Outcome`.
     value : float or None
-        In the units of reports. None: the result has no such number, or it could not be read.
+        None: the result has no such number, or it could not be read.
     reason : str or None
         Why the number could not be read.
     """
@@ -117,12 +117,12 @@ class OutcomeValue(NamedTuple):
 
 
 def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
-    """Read an outcome. Whatever goes wrong becomes the reason of a missing value."""
+    """Read an outcome, with angles and widths in rad. Whatever goes wrong becomes the reason of a missing value."""
     try:
         value = outcome.read(result)
         if value is None or (isinstance(value, float | np.floating) and math.isnan(value)):
             return OutcomeValue(outcome.definition, None)
-        return OutcomeValue(outcome.definition, outcome.reported(number("its value", value)))
+        return OutcomeValue(outcome.definition, number("its value", value))
     except (Exception, SystemExit) as error:  # A function of the user may fail in any way.
         return OutcomeValue(outcome.definition, None, reason_of(error))
 
@@ -144,7 +144,7 @@ def pickled(outcome: Outcome) -> bytes:
 
 
 def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) -> dict[str, OutcomeValue]:
-    """Read outcomes, each a definition and the bytes of :func:`pickled`.
+    """Read outcomes in the units of reports. Each is given by its definition and the bytes of :func:`pickled`.
 
     A function that this process does not find is a missing value, and not the end of the process.
     """
@@ -154,8 +154,9 @@ def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) 
             outcome = pickle.loads(content)
         except Exception as error:  # Unpickling imports modules of the user.
             values[name] = OutcomeValue(definition, None, f"the worker does not find the function: {reason_of(error)}")
-        else:
-            values[name] = value_of(outcome, result)
+            continue
+        read = value_of(outcome, result)
+        values[name] = read if read.value is None else read._replace(value=outcome.reported(read.value))
     return values
 
 

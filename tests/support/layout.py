@@ -69,6 +69,7 @@ LONG_FUNCTIONS: dict[str, str] = {}
 MANY_PARAMETERS: dict[str, str] = {
     "model/problem.py Problem.from_load_parameter": "the fields of a problem",
     "solver/solving.py solve": "the options are spelt out for help and completion",
+    "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }
