@@ -118,7 +118,8 @@ def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], Reporte
     rows = [row for _, row in sequences.values()]
     largest = max(float(np.ptp(row.values)) for row in rows)
     factor, unit = scaled([largest], rows[0].unit)
-    panel.set_title(f"{rows[0].label}  [{unit}]".replace("beta*", "β*"), fontsize=8.5, parse_math=False)
+    title = f"{rows[0].label}{f'  [{unit}]' if unit else ''}"
+    panel.set_title(title.replace("beta*", "β*"), fontsize=8.5, parse_math=False)
     panel.set_xscale("log")
     panel.set_yscale("log")
     words = []

@@ -158,6 +158,11 @@ class Index:
         with self._as_input_error(), self._transaction():
             self._write_outcomes(run, values)
 
+    def forget_unread(self) -> None:
+        """Remove the outcomes that could not be read."""
+        with self._as_input_error():
+            self._database.execute("DELETE FROM outcomes WHERE reason IS NOT NULL")
+
     # -- reading --------------------------------------------------------------------------------------------------
 
     @property

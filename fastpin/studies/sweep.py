@@ -13,7 +13,7 @@ from __future__ import annotations
 import os
 import shutil
 import time
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -29,7 +29,7 @@ from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_dir
 from fastpin.studies.outcomes import OutcomeValue, pickled
 from fastpin.studies.plan import Plan, Point
 from fastpin.studies.run_end import RunEnd
-from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, cores, read_run, run_tasks, solve_run
+from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, Submit, cores, read_run, run_tasks, solve_run
 from fastpin.version import __version__
 
 RESULTS = "results"
@@ -147,21 +147,23 @@ def run(
             _clear(results)
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
-            statuses = _now(index, points, results)
+            if retry:
+                index.forget_unread()
             skipped = (DONE,) if retry else (DONE, FAILED)
-            todo = [run for run, (state, _) in statuses.items() if state not in skipped]
-            done = [run for run, (state, _) in statuses.items() if state == DONE]
-            missing = _missing_outcomes(index, plan, done, retry)
-            began = time.perf_counter()
+            todo = [run for run, (state, _) in _now(index, points, results).items() if state not in skipped]
+            missing = _missing_outcomes(index, plan, points, results)
+            work = _Work(plan, results, content, executor, workers)
             report = progress or (lambda ended, all_runs: None)
+            began = time.perf_counter()
             report(0, len(todo) + len(missing))
-            work = _Work(plan, results, content, missing)
-            with closing(work.ends(todo, executor, workers)) as ends:
+            with closing(work.solve(todo)) as ends:
                 for ended, end in enumerate(ends, start=1):
-                    if end.id in missing:
-                        index.record_outcomes(end.id, end.outcomes)
-                    else:
-                        index.record(end)
+                    index.record(end)
+                    report(ended, len(todo) + len(missing))
+            missing = _missing_outcomes(index, plan, points, results)  # Also of runs that were solved again alone.
+            with closing(work.read(missing)) as ends:
+                for ended, end in enumerate(ends, start=len(todo) + 1):
+                    index.record_outcomes(end.id, end.outcomes)
                     report(ended, len(todo) + len(missing))
             summary = _summary(index, plan, points, results)
             return replace(summary, ended=len(todo), seconds=time.perf_counter() - began, read=len(missing))
@@ -270,58 +272,71 @@ def _pickled_outcomes(plan: Plan) -> PickledOutcomes:
     return content
 
 
-def _missing_outcomes(index: Index, plan: Plan, done: Iterable[str], retry: bool) -> dict[str, list[str]]:
-    """Return the names of the outcomes that are to be read from the stored result of each finished run, by run."""
+def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], results: Path) -> dict[str, list[str]]:
+    """Return the names of the outcomes that finished runs lack, by run."""
+    if not plan.outcomes:
+        return {}
     known = index.outcomes()
     missing = {
-        run: [
-            name
-            for name in plan.outcomes
-            if name not in (values := known.get(run, {})) or (retry and values[name].reason is not None)
-        ]
-        for run in done
+        run: [name for name in plan.outcomes if name not in known.get(run, {})]
+        for run, (state, _) in _now(index, points, results).items()
+        if state == DONE
     }
     return {run: names for run, names in missing.items() if names}
 
 
-@dataclass(frozen=True)
 class _Work:
     """The tasks of one call: runs that are solved, and finished runs whose outcomes are read."""
 
-    plan: Plan
-    results: Path
-    outcomes: PickledOutcomes
-    missing: dict[str, list[str]]
+    def __init__(
+        self, plan: Plan, results: Path, outcomes: PickledOutcomes, executor: Executor | None, workers: int
+    ) -> None:
+        self._plan, self._results, self._outcomes = plan, results, outcomes
+        self._executor, self._workers = executor, workers
+        self._submitted: set[str] = set()
 
-    def ends(self, todo: list[str], executor: Executor | None, workers: int) -> Generator[RunEnd, None, None]:
-        """Yield the end of each run in `todo` when it ends, and the outcomes of finished runs when they are read."""
-        tasks = [*todo, *self.missing]
+    def solve(self, todo: Collection[str]) -> Generator[RunEnd, None, None]:
+        """Yield the end of each run when it ends."""
+        with closing(self._run(todo, self._submit_solve)) as ended:
+            for run, end in ended:
+                yield _check_end(run, end, self._results)
+
+    def read(self, missing: dict[str, list[str]]) -> Generator[RunEnd, None, None]:
+        """Yield the outcomes of finished runs, when they are read. `missing` has their names by run."""
+
+        def submit(executor: Executor, run: str) -> Future[RunEnd]:
+            wanted = {name: self._outcomes[name] for name in missing[run]}
+            return executor.submit(read_run, run, self._path(run), wanted, os.getpid(), __version__)
+
+        with closing(self._run(missing, submit)) as ended:
+            for run, unchecked in ended:
+                end = _as_end(run, unchecked)
+                lost = {name: OutcomeValue(self._outcomes[name][0], None, end.reason) for name in missing[run]}
+                yield end if end.reason is None else RunEnd(run, None, outcomes=lost)
+
+    def _submit_solve(self, executor: Executor, run: str) -> Future[RunEnd]:
+        """Submit a run. If its worker died, perhaps in a function of the user, its outcomes are left for later."""
+        outcomes = {} if run in self._submitted else self._outcomes
+        self._submitted.add(run)
+        case = self._plan.case(self._plan.runs[run])
+        return executor.submit(solve_run, run, case, self._path(run), outcomes, os.getpid(), __version__)
+
+    def _run(
+        self, tasks: Collection[str], submit: Submit[str, RunEnd]
+    ) -> Generator[tuple[str, RunEnd | BaseException], None, None]:
         if not tasks:
             return
-        ended = run_tasks(executor, workers, tasks, self._submit)
         # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
-        with threadpool_limits(limits=1, user_api="blas"), closing(ended):
+        with threadpool_limits(limits=1, user_api="blas"):
             try:
-                for run, end in ended:
-                    yield self._read(run, end) if run in self.missing else _check_end(run, end, self.results)
+                ended = run_tasks(self._executor, self._workers, tasks, submit)
+                with closing(ended):
+                    yield from ended
             except BrokenError:
                 raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
 
-    def _submit(self, executor: Executor, run: str) -> Future[RunEnd]:
-        path = str(self.results / f"{run}.h5")
-        if run in self.missing:
-            wanted = {name: self.outcomes[name] for name in self.missing[run]}
-            return executor.submit(read_run, run, path, wanted, os.getpid(), __version__)
-        case = self.plan.case(self.plan.runs[run])
-        return executor.submit(solve_run, run, case, path, self.outcomes, os.getpid(), __version__)
-
-    def _read(self, run: str, end: RunEnd | BaseException) -> RunEnd:
-        """Return the outcomes of a finished run. A failure to read its file is the reason of each missing value."""
-        end = _as_end(run, end)
-        if end.reason is None:
-            return end
-        values = {name: OutcomeValue(self.outcomes[name][0], None, end.reason) for name in self.missing[run]}
-        return RunEnd(run, None, outcomes=values)
+    def _path(self, run: str) -> str:
+        return str(self._results / f"{run}.h5")
 
 
 def _as_end(run: str, end: RunEnd | BaseException) -> RunEnd:

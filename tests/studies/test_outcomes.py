@@ -1,0 +1,352 @@
+"""Outcomes: the numbers that they read, and the faults of their tables, all at once and each with its line."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.errors import CaseFileError, FastpinError, InputError
+from fastpin.kernels.status import OPEN
+from fastpin.model.angles import from_bottom
+from fastpin.model.materials import MaterialPair
+from fastpin.solver.result import Result
+from fastpin.states.quantities import QUANTITIES
+from fastpin.studies import outcomes, read_outcomes
+from fastpin.studies.outcome_tables import outcomes_from
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, pickled, value_of, values_in_worker
+from fastpin.studies.plan import parse_plan
+from fastpin.studies.run_end import RUN_COLUMNS
+from tests.support.outcomes import FILE, TABLE, last_work, solved
+from tests.support.studies import small_problem
+
+
+@pytest.fixture(scope="module")
+def result(similar: MaterialPair) -> Result:
+    return solved(small_problem(similar))
+
+
+def value(given: Any, result: Result) -> float | None:
+    """The value of an outcome as a worker reads and reports it."""
+    (outcome,) = outcomes_from({"it": given}).values()
+    found = values_in_worker({"it": (outcome.definition, pickled(outcome))}, result)["it"]
+    assert found.reason is None
+    return found.value
+
+
+# -- values ----------------------------------------------------------------------------------------------------
+
+
+def test_a_quantity_is_taken_from_the_kept_states(result: Result) -> None:
+    shear = np.array([state.peak_shear for state in result])
+    assert shear.min() < 0.0 < shear.max()
+    expected = {
+        "last": shear[-1],
+        "largest": shear.max(),
+        "smallest": shear.min(),
+        "largest magnitude": np.abs(shear).max(),
+        "range": shear.max() - shear.min(),
+    }
+    assert tuple(expected) == outcomes.TAKES
+    for take, number in expected.items():
+        assert value({"quantity": "peak_shear", "take": take}, result) == number, take
+    assert value({"quantity": "peak_shear"}, result) == shear[-1]
+
+
+def test_the_last_cycle_is_from_its_beginning_to_its_end(result: Result) -> None:
+    lost = [state.dissipation for state in result]
+    assert len(lost) == 5
+    assert lost == sorted(set(lost))  # it grows at every corner
+    given = {"quantity": "dissipation", "over": "cycle"}
+    assert value(given | {"take": "smallest"}, result) == lost[2]
+    assert value(given | {"take": "largest"}, result) == lost[4]
+    assert value(given | {"take": "range"}, result) == lost[4] - lost[2]
+
+
+@pytest.mark.parametrize("name", CYCLE_QUANTITIES)
+def test_quantities_of_the_last_cycle(name: str, result: Result) -> None:
+    assert value({"cycle": name}, result) == getattr(result.cycles[-1], name)
+
+
+def test_every_quantity_can_be_an_outcome(result: Result) -> None:
+    for name, quantity in QUANTITIES.items():
+        number, raw = value({"quantity": name}, result), quantity.of(result[-1])
+        expected = from_bottom(raw) if quantity.kind == "angle" else raw
+        assert number == (math.degrees(raw) if quantity.kind == "width" else expected), name
+
+
+def test_a_new_cycle_quantity_takes_one_line(result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = outcomes.CycleQuantity("width", lambda result: 0.5 * math.pi)
+    monkeypatch.setitem(CYCLE_QUANTITIES, "swept_arc", entry)
+    assert value({"cycle": "swept_arc"}, result) == 90.0
+
+
+@pytest.mark.parametrize(
+    ("places", "arc"), [([170.0, -170.0, 175.0], 20.0), ([-90.0, 90.0, 10.0], 180.0), ([30.0, 30.0], 0.0)]
+)
+def test_the_range_of_a_place_is_the_smallest_arc(
+    places: list[float], arc: float, result: Result, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = iter(places)
+    changed = QUANTITIES["peak_shear_angle"]._replace(of=lambda state: math.radians(next(left) - 90.0))
+    monkeypatch.setitem(QUANTITIES, "peak_shear_angle", changed)
+    some = replace(result, states=result.states[: len(places)])
+    assert value({"quantity": "peak_shear_angle", "take": "range"}, some) == pytest.approx(arc, abs=1e-9)
+
+
+def test_states_without_a_value_do_not_count(result: Result) -> None:
+    zeros = np.zeros(result.grid.size)
+    open_state = replace(result[0], pressure=zeros, shear=zeros, status=np.full(result.grid.size, OPEN, dtype=np.int8))
+    assert math.isnan(open_state.peak_pressure_angle)
+    mixed = replace(result, states=[open_state, result[-1]])
+    largest = value({"quantity": "peak_pressure_angle", "take": "largest"}, mixed)
+    assert largest == pytest.approx(from_bottom(result[-1].peak_pressure_angle))
+    assert value({"quantity": "peak_pressure_angle", "take": "largest"}, replace(result, states=[open_state])) is None
+
+
+def test_a_number_that_the_history_does_not_have_has_a_reason(similar: MaterialPair, result: Result) -> None:
+    swing = outcomes_from({"it": {"quantity": "dx", "take": "range", "over": "cycle"}})["it"]
+    assert value_of(swing, replace(result, cycles=())).reason == "the history has no cycle"
+    ends = solved(small_problem(similar), keep="cycles")
+    assert value_of(swing, ends).reason == 'not all corners of the last cycle are kept; keep = "corners" keeps them'
+    assert value_of(outcomes_from({"it": {"cycle": "dissipation"}})["it"], ends).reason is None
+
+
+@pytest.mark.parametrize(
+    ("function", "expected", "reason"),
+    [
+        (lambda _: None, None, None),
+        (lambda _: np.float64("nan"), None, None),
+        (lambda _: np.float32(0.5), 0.5, None),
+        (lambda _: 3, 3.0, None),
+        (lambda _: math.inf, None, "its value: must be a finite number, not inf"),
+        (lambda _: "high", None, 'its value: must be a number, not "high"'),
+        (lambda _: np.zeros(3), None, "its value: must be a number, not [0.0, 0.0, 0.0]"),
+        (lambda result: result[99], None, "IndexError: list index out of range (test_outcomes.py, line "),
+        (lambda _: exit(3), None, "SystemExit: 3 (test_outcomes.py, line "),
+    ],
+)
+def test_a_function_may_give_and_raise_anything(
+    function: Callable[[Result], Any], expected: float | None, reason: str | None, result: Result
+) -> None:
+    found = value_of(outcomes_from({"it": function})["it"], result)
+    assert found.value == expected
+    assert (found.reason or "").startswith(reason or "")
+    assert (found.reason is None) == (reason is None)
+
+
+def test_an_interrupt_is_no_fault_of_a_function(result: Result) -> None:
+    def interrupted(result: Result) -> float:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        value_of(outcomes_from({"it": interrupted})["it"], result)
+
+
+# -- functions -------------------------------------------------------------------------------------------------
+
+
+def test_the_functions_of_a_file(result: Result, tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text(FILE)
+    found = read_outcomes(path)
+    assert list(found) == ["largest_pressure", "nothing", "broken"]
+    path.unlink()  # workers don't need it
+    read = {
+        name: values_in_worker({name: (outcome.definition, pickled(outcome))}, result)[name]
+        for name, outcome in found.items()
+    }
+    assert read["largest_pressure"].value == max(state.peak_pressure for state in result)
+    assert (read["nothing"].value, read["nothing"].reason) == (None, None)
+    assert read["broken"].reason == "ZeroDivisionError: division by zero (mine.py, line 20)"
+    assert [outcome.unit_in({}) for outcome in found.values()] == ["Pa", "", ""]
+
+
+def test_the_definition_of_a_function_changes_with_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    definitions = []
+    for text in (FILE, FILE, FILE.replace("1 / 0", "1 / 2")):
+        path.write_text(text)
+        definitions.append(read_outcomes(path)["broken"].definition)
+    assert definitions[0] == definitions[1] != definitions[2]
+    table = '[outcomes]\nit = { function = "mine.py:broken" }\n'
+    path.with_suffix(".toml").write_text(table)
+    assert read_outcomes(path.with_suffix(".toml"))["it"].definition == definitions[2]
+
+
+def test_the_definition_of_a_callable_has_its_arguments() -> None:
+    cubes, squares = (
+        outcomes_from({"it": functools.partial(pow, exponent)})["it"].definition for exponent in (3.0, 2.0)
+    )
+    assert cubes != squares
+    assert outcomes_from({"it": last_work})["it"].definition == outcomes_from({"other": last_work})["other"].definition
+
+
+def test_a_function_that_workers_can_not_import_is_refused() -> None:
+    with pytest.raises(FastpinError, match="can't be sent to workers, which import it by its name"):
+        pickled(outcomes_from({"it": lambda result: 1.0})["it"])
+
+
+def test_a_function_that_a_worker_does_not_find_is_a_missing_value(result: Result) -> None:
+    content = pickled(outcomes_from({"it": last_work})["it"])
+    lost = content.replace(b"last_work", b"lost_work")
+    found = values_in_worker({"it": ("a definition", lost), "other": ("another", content)}, result)
+    assert found["it"][:2] == ("a definition", None)
+    assert (found["it"].reason or "").startswith("the worker does not find the function: AttributeError")
+    assert found["other"].value == result[-1].work
+
+
+# -- faults ----------------------------------------------------------------------------------------------------
+
+
+def faults(text: str, folder: Path) -> list[str]:
+    with pytest.raises(CaseFileError) as caught:
+        parse_plan(text, "plan", folder)
+    return str(caught.value).splitlines()
+
+
+def test_all_faults_of_the_table_come_at_once_with_their_lines(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(FILE)
+    (tmp_path / "bad.py").write_text("x = 1\ndef f(:\n")
+    (tmp_path / "worse.py").write_text("import nowhere_at_all\n")
+    text = """titel = "x"
+[grid]
+contact.friction = 0.3
+[outcomes]
+a = { quantity = "peak_sheer" }
+b = { quantity = "dx", take = "biggest", over = "cycles" }
+c = { cycle = "disipation" }
+d = { quantity = "dx", tak = "last", of = 3 }
+e = { cycle = "dissipation", over = "cycle" }
+f = { take = "largest" }
+g = { quantity = "dx", cycle = "dissipation" }
+h = "peak_shear"
+peak_pressure = { quantity = "peak_pressure" }
+"i-j" = { quantity = "dx" }
+A = { quantity = "dx" }
+k = { quantity = "peak_shear_angle", take = "largest magnitude" }
+l = { quantity = "dx", over = "cycle" }
+m = { function = "mine.py" }
+n = { function = "mine.py:largest_presure" }
+o = { function = "none.py:f" }
+p = { function = "bad.py:f" }
+q = { function = "worse.py:f" }
+r = { function = 3 }
+[outcomes.s]
+quantity = "dx"
+take = "most"
+"""
+    expected = [
+        (1, 'unknown key "titel"'),
+        (3, "contact.friction: must be a list of values"),
+        (5, 'a: quantity: must be "peak_pressure" or '),
+        (6, 'b: take: must be "last" or "largest" or "smallest" or "largest magnitude" or "range", not "biggest"'),
+        (6, 'b: over: must be "history" or "cycle", not "cycles"'),
+        (7, 'c: cycle: must be "dissipation" or '),
+        (8, 'd: unknown key "tak", did you mean "take"?'),
+        (8, 'd: unknown key "of"; beside quantity there may be take and over'),
+        (9, 'e: unknown key "over"; beside cycle there is no other key'),
+        (10, "f: must have one of the keys quantity, cycle, function, such as {"),
+        (11, "g: must have one of the keys quantity, cycle, function, such as {"),
+        (12, 'h: must be a table such as { quantity = "peak_shear", take = "largest" }'),
+        (13, "peak_pressure: is a column of every sweep; choose another name"),
+        (14, '"i-j": the name of an outcome is a letter, then letters, digits and underscores, at most 64'),
+        (16, 'k: take: a place on the hole has no magnitude; take "largest" or "smallest"'),
+        (17, "l: over: the last state is that of the history, too"),
+        (18, 'm: function: must be FILE.py:NAME, such as "my.py:wear", not "mine.py"'),
+        (19, 'n: there is no function "largest_presure" in mine.py, did you mean "largest_pressure"?'),
+        (20, "o: none.py: can't be read: No such file or directory"),
+        (21, "p: bad.py, line 2: is not Python: "),
+        (
+            22,
+            "q: worse.py: can't be imported: ModuleNotFoundError: No module named 'nowhere_at_all' (worse.py, line 1)",
+        ),
+        (23, 'r: function: must be FILE.py:NAME, such as "my.py:wear", not 3'),
+        (26, 's: take: must be "last" or'),
+    ]
+    found = faults(text, tmp_path)
+    assert [line.split(":")[0] for line in found] == [f"plan, line {number}" for number, _ in expected]
+    for line, (number, words) in zip(found, expected, strict=True):
+        assert line.startswith(f"plan, line {number}: {words}"), line
+    assert 'not "peak_sheer", did you mean "peak_shear"?' in found[2]
+    assert 'did you mean "dissipation"?' in found[5]
+
+
+def test_capital_letters_make_no_difference(tmp_path: Path) -> None:
+    text = '[grid]\nsolve.nodes = [41]\n[outcomes]\na = { quantity = "dx" }\nA = { quantity = "dy" }\n'
+    assert faults(text, tmp_path) == [
+        "plan, line 5: A: there is a already; capital letters make no difference",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ([last_work], "outcomes: must be a dict of functions and tables by name"),
+        ({"it": None}, "outcomes: it: must be a table"),
+        ({3: last_work}, "outcomes: 3: the name of an outcome is a letter"),
+        ({"seconds": last_work}, "outcomes: seconds: is a column of every sweep"),
+        ({"it": {"quantity": "dz"}}, "outcomes: it: quantity: must be "),
+        ({"it": {"quantity": ["dx"]}}, "outcomes: it: quantity: must be "),
+    ],
+)
+def test_faults_in_python_name_the_outcome(given: Any, words: str) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        outcomes_from(given)
+    assert caught.value.field == "outcomes"
+
+
+def test_a_unit_is_text() -> None:
+    def weighed(result: Result) -> float:
+        return 1.0
+
+    weighed.unit = 3  # type: ignore[attr-defined]
+    with pytest.raises(InputError, match="weighed: the attribute unit: must be text in quotes, not 3"):
+        outcomes_from({"weighed": weighed})
+
+
+def test_no_column_of_the_index_can_be_an_outcome() -> None:
+    for name in RUN_COLUMNS:
+        with pytest.raises(InputError, match="is a column of every sweep"):
+            outcomes_from({name.upper(): last_work})
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.txt", "", "outcomes: the file's name must end in .py or .toml"),
+        ("a.py", "x = 1\n", "defines no function whose name begins with a letter"),
+        ("a.py", "raise SystemExit('no')\n", r"can't be imported: SystemExit: no \(a.py, line 1\)"),
+        ("a.py", "def f(r):\n  return 1\ndef seconds(r):\n  return 1\n", "seconds: is a column of every sweep"),
+        ("a.toml", "[grid]\n", r"the section \[outcomes\] is missing"),
+        ("a.toml", "[outcomes]\nx = 3\n", "line 2: x: must be a table"),
+        ("a.toml", "[outcomes]\nx = {\n", "a.toml"),
+    ],
+)
+def test_faults_of_files(name: str, text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=words):
+        read_outcomes(tmp_path / name)
+
+
+def test_a_file_that_is_missing_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none.py: can't be read"):
+        read_outcomes(tmp_path / "none.py")
+
+
+def test_outcomes_change_no_run(tmp_path: Path) -> None:
+    text = "[grid]\nsolve.nodes = [41, 51]\n"
+    bare, full = parse_plan(text), parse_plan(text + TABLE)
+    assert list(bare.runs) == list(full.runs)
+    assert bare.digest == full.digest
+    assert list(full.outcomes) == ["shear", "swing", "loss"]
+    more = full.with_outcomes({"work": last_work, "loss": {"cycle": "dissipation"}})
+    assert list(more.outcomes) == ["shear", "swing", "loss", "work"]
+    with pytest.raises(InputError, match="loss: the plan has another outcome of this name"):
+        full.with_outcomes({"loss": {"cycle": "rotation_change"}})
