@@ -68,7 +68,7 @@ def read_outcomes(path: str | Path) -> Outcomes:
     """
     path = file_path("outcomes", path)
     if path.suffix not in (".py", ".toml"):
-        raise InputError("outcomes", f"the file's name must end in .py or .toml, not {as_toml(path.name)}")
+        raise InputError(str(path), "must end in .py or .toml to be a file of outcomes")
     text = read_text(path)
     if path.suffix == ".toml":
         source = CaseText(text)

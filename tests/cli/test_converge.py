@@ -16,6 +16,7 @@ from fastpin.model.materials import MaterialPair
 from fastpin.report.convergence import COLUMNS
 from fastpin.studies import convergence
 from fastpin.studies.convergence import Convergence, StudyInterrupted
+from tests.support.outcomes import FILE
 from tests.support.studies import small_problem, small_study
 
 
@@ -61,6 +62,31 @@ def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytes
     assert files["png"].read_bytes().startswith(b"\x89PNG")
 
 
+def test_outcomes_are_studied_too(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mine.py").write_text(FILE)
+    written = {name: str(tmp_path / f"a.{name}") for name in ("csv", "json", "png")}
+    outputs = ["--csv", written["csv"], "--json", written["json"], "--plot", written["png"]]
+    nodes = ["--nodes", "51,101,201", "--corner", "2"]
+    assert main(["converge", str(case), *nodes, "--outcomes", str(tmp_path / "mine.py"), *outputs]) == 1
+    captured = capsys.readouterr()
+    reason = "ZeroDivisionError: division by zero (mine.py, line 20)"
+    assert captured.err == f"fastpin: outcome broken can't be read with 51 nodes: {reason}\n"
+    lines = [line.split() for line in captured.out.splitlines()]
+    assert ["broken", "-", "-", "-", "not", "comparable", "-", "-"] in lines
+    largest = next(line for line in lines if line[:1] == ["largest_pressure"])
+    peak = next(line for line in lines if line[:2] == ["peak", "N"])
+    assert largest[1] == "MPa"
+    assert largest != peak  # the peak is larger at the first corner
+    with Path(written["csv"]).open() as file:
+        rows = [row for row in csv.DictReader(file) if row["quantity"] in ("largest_pressure", "broken")]
+    assert [row["unit"] for row in rows] == ["Pa"] * 3 + [""] * 3
+    assert [row["value"] for row in rows[3:]] == [""] * 3
+    document = json.loads(Path(written["json"]).read_text())
+    assert document["unread"] == {"broken": f"51 nodes: {reason}"}
+    assert document["studies"][0]["quantities"][-3]["quantity"] == "largest_pressure"
+    assert Path(written["png"]).read_bytes().startswith(b"\x89PNG")
+
+
 def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["converge", str(case), "--nodes", "51,61,71", "--corner", "1", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["loads"]["1"]["P"] == 2.42e6
@@ -75,6 +101,7 @@ def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFi
         (["--increments", "4,2,8"], "--increments: must increase"),
         (["--increment-nodes", "101"], "--increment-nodes: is for the increment solver"),
         (["--corner", "9"], "--corner: must be one of the history, 1 to 4, not 9"),
+        (["--outcomes", "case.json"], "case.json: must end in .py or .toml to be a file of outcomes"),
         (["--plot", "a.docx"], "--plot: the figure's name must end in"),
         (["--csv", "a.csv", "--json", "a.csv"], "writes the same file as"),
         (["--csv", "no/such/place.csv"], "does not exist"),

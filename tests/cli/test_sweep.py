@@ -14,6 +14,7 @@ from fastpin.cli import sweep as sweep_command
 from fastpin.cli.main import main
 from fastpin.studies import sweep, workers
 from scripts.inline import Inline
+from tests.support.outcomes import FILE
 from tests.support.plans import MOMENT
 
 
@@ -85,6 +86,35 @@ def test_parts_are_merged(path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert "6 runs in whole: 4 done, 2 failed, 0 waiting" in capsys.readouterr().out
 
 
+def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", str(path)]) == 1
+    capsys.readouterr()
+    Path("mine.py").write_text(FILE)
+    path.write_text(MOMENT + '[outcomes]\nshear = { quantity = "peak_shear", take = "largest magnitude" }\n')
+    arguments = ["sweep", str(path), "--outcomes", "mine.py"]
+    assert main([*arguments, "--table", "--plot", "a.png"]) == 1
+    captured = capsys.readouterr()
+    lines = captured.out.splitlines()
+    run = lines[-6].split()[0]
+    assert lines[1].startswith("6 runs in moment: 4 done, 2 failed, 0 waiting; 0 in ")
+    assert "outcomes of 4 finished runs were read from their results" in lines
+    reason = "ZeroDivisionError: division by zero (mine.py, line 20)"
+    assert f"outcome broken can't be read in 4 runs, first {run}: {reason}" in lines
+    assert lines[-8].split()[-5:] == ["shear", "largest_pressure", "nothing", "broken", "status"]
+    assert lines[-7].split()[-2:] == ["MPa", "MPa"]
+    assert [line.split()[-3:] for line in lines[-2:]] == [["-", "-", "done"]] * 2
+    assert Path("a.png").read_bytes().startswith(b"\x89PNG")  # of the first outcome
+    assert "2 of 6 points have no value" in captured.err
+
+    assert main([*arguments, "--status", "--table", "a.csv", "--plot", "b.png", "--value", "largest_pressure"]) == 0
+    assert "outcome broken can't be read in 4 runs" in capsys.readouterr().out
+    lines = Path("a.csv").read_text().splitlines()
+    assert "# units: shear Pa, largest_pressure Pa, peak_pressure Pa" in lines[1]
+    for row in csv.DictReader(lines[2:]):
+        assert row["largest_pressure"] == row["max_pressure"]
+        assert row["shear"] == row["max_shear"]
+
+
 def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "plan.toml"
     path.write_text("[grid]\nplate.nu = [0.33, 0.330]\n")
@@ -101,6 +131,9 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
         (["--shard", "1"], "--shard: must be I/N"),
         (["--workers", "0"], "--workers: must be a whole number of at least 1, not 0"),
         (["--workers", "2", "--dask", "x"], "--workers: is for processes of this machine"),
+        (["--outcomes", "moment.txt"], "moment.txt: must end in .py or .toml to be a file of outcomes"),
+        (["--outcomes", "none.py"], "none.py: can't be read: No such file or directory"),
+        (["--outcomes", "moment.toml"], "moment.toml: the section [outcomes] is missing"),
         (["--x", "load.2.M"], "--x: says what a figure shows; --plot FILE is missing"),
         (["--plot", "a.xyz"], "--plot: the figure's name must end in .png, .pdf, .svg, not 'a.xyz'"),
         (["--plot", "a.png", "--value", "peak"], "--value: there is no outcome or key figure 'peak'"),

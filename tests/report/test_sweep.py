@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.report.sweep import chart, check_axes, text
+from fastpin.figures.sweep import plot_sweep
+from fastpin.report.sweep import chart, check_axes, text, write_csv
+from fastpin.solver.result import Result
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
 from tests.support.plans import FRICTION, MAP, made_up_rows
@@ -98,3 +100,35 @@ def test_a_printed_table_scales_its_units(plan: Plan, rows: list[dict[str, Any]]
     assert unit[:3] == ["GPa", "um", "MPa"]
     assert first[1:6] == ["steel", "-", "0.2", "1", "20"]
     assert second[-1] == "failed"
+
+
+@pytest.fixture
+def with_outcomes(plan: Plan) -> Plan:
+    def mass(result: Result) -> float:
+        return 1.0
+
+    mass.unit = "$/kg_{2"  # type: ignore[attr-defined]
+    walk = {"quantity": "peak_shear_angle", "take": "range"}
+    return plan.with_outcomes({"mass": mass, "walk": walk, "loss": {"cycle": "dissipation"}})
+
+
+def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any]], tmp_path: Path) -> None:
+    for place, row in enumerate(rows):
+        row |= {"mass": 2e6 + place, "walk": 2e3, "loss": 0.5 * place}
+    table = [line.split() for line in text(with_outcomes, rows).splitlines()]
+    assert table[0][-4:] == ["mass", "walk", "loss", "status"]
+    assert table[1][-3:] == ["$/kg_{2", "deg", "J/m"]  # without a prefix, but for J/m, whose values are near 1
+    assert table[-1][-4:-1] == ["2e+06", "2000", "5.5"]
+    write_csv(with_outcomes, rows, tmp_path / "a.csv")
+    lines = (tmp_path / "a.csv").read_text().splitlines()
+    assert lines[1].startswith("# units: mass $/kg_{2, walk deg, loss J/m, peak_pressure Pa")
+    assert lines[2].startswith("id,pin.material,pin.E,contact.friction,contact.clearance,mass,walk,loss,states,")
+    found = chart(with_outcomes, rows, "mass")
+    assert (found.label, found.missing) == ("mass  [$/kg_{2]", 2)
+    plot_sweep(found, tmp_path / "a.png")  # the unit is no formula
+    assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+def test_a_value_that_is_unknown_names_outcomes_first(with_outcomes: Plan) -> None:
+    with pytest.raises(InputError, match="value: there is no outcome or key figure 'los', did you mean \"loss\""):
+        check_axes(with_outcomes, "los", None, None)

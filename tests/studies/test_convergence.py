@@ -13,6 +13,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.report.convergence import reported_series
 from fastpin.solver.errors import ArcError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -224,3 +225,73 @@ def test_an_interrupt_keeps_three_grids(at: str, grids: int, studies: int, probl
     assert not kept.complete
     assert len(kept.studies) == studies
     assert len(kept.studies[0].counts) == grids
+
+
+# -- outcomes --------------------------------------------------------------------------------------------------
+
+REPEATED = LoadHistory([{"P": 1.0}]) + LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(4)
+"""Nine corners, of which the last is studied."""
+
+
+def test_an_outcome_at_the_end_has_the_estimate_of_its_quantity(problem: Problem) -> None:
+    given = {"end_work": {"quantity": "work"}, "own": lambda result: result[-1].work}
+    study = converge(problem, CORNERS, GRIDS, (5, 10, 20), 51, outcomes=given)
+    for method in (0, 1):
+        work, end_work, own = (series(study, name, method=method) for name in ("work", "end_work", "own"))
+        assert end_work.values == own.values == work.values
+        assert end_work.estimate == work.estimate == own.estimate
+        assert end_work.size == work.size
+        assert end_work.path == own.path == work.path or method == 0
+    assert [each.corner for each in study.studies[0].series if each.outcome] == [3, 3]
+    assert study.unread == {}
+
+
+def test_outcomes_of_the_history_and_of_its_last_cycle(problem: Problem) -> None:
+    given = {
+        "loss": {"cycle": "dissipation"},
+        "shear": {"quantity": "peak_shear", "take": "largest magnitude"},
+        "walk": {"quantity": "peak_pressure_angle", "take": "range", "over": "cycle"},
+        "place": {"quantity": "peak_pressure_angle", "take": "largest"},
+    }
+    study = converge(problem, REPEATED, GRIDS, outcomes=given)
+    assert list(study.loads) == [9]
+    for count, loss, shear, walk in zip(
+        GRIDS, *(series(study, name, 9).values for name in ("loss", "shear", "walk")), strict=True
+    ):
+        result = solve(problem, REPEATED, grid=study.grid.with_nodes(count))
+        assert loss == result.cycles[-1].dissipation
+        assert shear == max(abs(state.peak_shear) for state in result)
+        places = [state.peak_pressure_angle for state in result][-3:]
+        assert walk == pytest.approx(max(places) - min(places))
+    reported = {row.name: row for row in reported_series(study.studies[0], problem, 9)}
+    assert (reported["walk"].unit, reported["place"].unit, reported["loss"].unit) == ("deg", "deg", "F^2 beta*")
+    assert reported["walk"].values[-1] == pytest.approx(math.degrees(series(study, "walk", 9).values[-1]))
+    assert reported["place"].values[-1] == pytest.approx(math.degrees(series(study, "place", 9).values[-1]) + 90.0)
+    without = converge(problem, REPEATED, GRIDS)
+    assert [each for each in study.studies[0].series if not each.outcome] == list(without.studies[0].series)
+
+
+def test_an_outcome_that_fails_on_one_grid_is_not_comparable(problem: Problem) -> None:
+    def fine(result: Result) -> float:
+        if result.grid.size == 101:
+            raise ValueError("not here")
+        return result[-1].work
+
+    study = converge(problem, CORNERS, GRIDS, outcomes={"fine": fine})
+    found = series(study, "fine")
+    assert found.estimate.verdict == "not comparable"
+    assert [math.isnan(value) for value in found.values] == [False, True, False]
+    assert study.unread["fine"].startswith("101 nodes: ValueError: not here (test_convergence.py, line ")
+
+
+def test_a_lost_study_has_no_outcomes(problem: Problem) -> None:
+    with pytest.raises(StudyLostError) as lost:
+        converge(problem, [{"P": 1.0}, {"M": 1.0}], GRIDS, outcomes={"own": lambda result: result[-1].work})
+    assert lost.value.study is not None
+    assert not any(each.outcome for each in lost.value.study.studies[0].series)
+
+
+@pytest.mark.parametrize("name", ["work", "contact_1_start", "stick_12_stop"])
+def test_an_outcome_must_not_have_the_name_of_a_quantity(name: str, problem: Problem) -> None:
+    with pytest.raises(InputError, match=f"outcomes: {name}: is a quantity that every study has"):
+        converge(problem, CORNERS, GRIDS, outcomes={name: {"cycle": "dissipation"}})

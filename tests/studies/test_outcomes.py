@@ -320,7 +320,7 @@ def test_no_column_of_the_index_can_be_an_outcome() -> None:
 @pytest.mark.parametrize(
     ("name", "text", "words"),
     [
-        ("a.txt", "", "outcomes: the file's name must end in .py or .toml"),
+        ("a.txt", "", "a.txt: must end in .py or .toml to be a file of outcomes"),
         ("a.py", "x = 1\n", "defines no function whose name begins with a letter"),
         ("a.py", "raise SystemExit('no')\n", r"can't be imported: SystemExit: no \(a.py, line 1\)"),
         ("a.py", "def f(r):\n  return 1\ndef seconds(r):\n  return 1\n", "seconds: is a column of every sweep"),
