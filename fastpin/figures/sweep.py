@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
@@ -22,13 +22,16 @@ _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MOST_COLUMNS = 3
 """Most maps side by side."""
 
+LOG_RATIO = 100.0
+"""Ratio of the largest to the smallest value, all positive, from which on their scale is logarithmic."""
+
 
 def plot_sweep(chart: Chart, path: str | Path, dpi: float = 160.0) -> None:
     """Save the figure of a sweep: maps over two fields, or curves over one field.
 
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
     at the geometric mean. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are failed
-    runs, too.
+    runs, too. Positive values that differ by a factor of 100 or more have a logarithmic scale.
 
     Parameters
     ----------
@@ -65,9 +68,8 @@ def _draw_maps(chart: Chart) -> Figure:
     columns = min(len(chart.parts), MOST_COLUMNS)
     rows = math.ceil(len(chart.parts) / columns)
     figure, axes = panels(rows, columns, height=3.4 if columns == 1 else 2.5, width=5.4 if columns == 1 else 7.6)
-    finite = [numbers[np.isfinite(numbers)] for _, numbers, _ in chart.parts]
-    known = np.concatenate(finite) if any(part.size for part in finite) else np.zeros(1)
-    scale = Normalize(known.min(), known.max())
+    known = _known_values(chart)
+    scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
     x, y = cell_edges(chart.x), cell_edges(chart.y)
     mesh: Any = None
     for panel, (name, numbers, failed) in zip(axes.flat, chart.parts, strict=False):
@@ -88,6 +90,17 @@ def _draw_maps(chart: Chart) -> Figure:
     bar.outline.set_linewidth(0.5)
     _explain(figure, chart)
     return figure
+
+
+def _known_values(chart: Chart) -> np.ndarray:
+    """Return all values of a chart in one array; a single zero if there are none."""
+    values = np.concatenate([numbers[np.isfinite(numbers)] for _, numbers, _ in chart.parts])
+    return values if values.size else np.zeros(1)
+
+
+def _spans_decades(values: np.ndarray) -> bool:
+    """Whether the values are positive, and too different for a linear scale."""
+    return bool(values.min() > 0.0 and values.max() >= LOG_RATIO * values.min())
 
 
 def _explain(figure: Figure, chart: Chart) -> None:
@@ -122,6 +135,8 @@ def _draw_curves(chart: Chart) -> Figure:
         entries.append((name, style))
     _scale_axes(panel, chart)
     panel.set_ylabel(chart.label, parse_math=False)
+    if _spans_decades(_known_values(chart)):
+        panel.set_yscale("log")
     _finish(figure, axes, chart)
     cross: Line = {"color": "0.3", "linestyle": "none", "marker": "x", "markersize": 4.0}
     marks = [("failed", cross)] if any(failed.any() for _, _, failed in chart.parts) else []

@@ -81,3 +81,18 @@ def test_figures_are_saved_without_a_trace(
 def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
     for x in (None, "contact.friction"):
         plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
+
+
+@pytest.mark.parametrize(("value", "scale"), [(101.0, "log"), (99.0, "linear"), (-101.0, "linear")])
+def test_values_that_span_two_decades_have_a_logarithmic_scale(
+    value: float, scale: str, plan: Plan, rows: list[dict[str, Any]]
+) -> None:
+    known = [row for row in rows if row.get("peak_pressure")]
+    largest = max(known, key=lambda row: row["peak_pressure"])
+    for row in known:
+        row["peak_pressure"] = 1.0
+    largest["peak_pressure"] = value
+    figure = sweep_figure._draw_maps(chart(plan, rows, "peak_pressure"))
+    assert isinstance(figure.axes[0].collections[0].norm, mpl.colors.LogNorm) == (scale == "log")
+    curves = sweep_figure._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
+    assert curves.axes[0].get_yscale() == scale
