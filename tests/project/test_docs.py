@@ -9,8 +9,12 @@ from pathlib import Path
 import pytest
 
 from fastpin.paper import catalog
+from fastpin.studies import sweep
+from fastpin.studies.outcome_tables import KEYS
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import KEY_FIGURES
+from scripts.inline import Inline
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted((ROOT / "docs").glob("*.md"))
@@ -79,10 +83,28 @@ def test_every_figure_is_shown() -> None:
 
 def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
-    case, plan = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    case, plan, outcomes = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
     (tmp_path / "case.toml").write_text(case)
     assert len(parse_plan(plan, folder=tmp_path).runs) == 3 * 10 * 2 * 2
     assert "3 x 10 x 2 x 2 = 120 runs" in text
+    (tmp_path / "wear.py").write_text(re.findall(r"```python\n(import numpy.*?)```", text, re.DOTALL)[0])
+    grid = "[grid]\nsolve.nodes = [61]\n"
+    small = parse_plan(f'case = "case.toml"\n{grid}{outcomes}', folder=tmp_path)
+    summary = sweep.run(small, tmp_path / "out", Inline())
+    assert (summary.done, summary.unread) == (1, [])
+    (row,) = sweep.rows(small, tmp_path / "out")
+    assert list(small.outcomes) == ["shear", "swing", "lost", "wear"]
+    assert (row["shear"], row["lost"]) == (row["max_shear"], row["dissipation"])
+    assert row["swing"] > 0.0
+    assert row["wear"] > 0.0
+
+
+def test_every_way_to_an_outcome_is_explained() -> None:
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    for name in (*CYCLE_QUANTITIES, *TAKES):
+        assert f'"{name}"' in text, name
+    for key in {key for keys in KEYS.values() for key in keys}:
+        assert f"`{key}`" in text, key
 
 
 def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
