@@ -226,6 +226,9 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
             f'{name}: function: must be FILE.py:NAME, such as "my.py:wear", not {as_toml(value)}', "function"
         )
         return None
+    if Path(file).is_absolute() or ".." in Path(file).parts:  # A plan runs no code from elsewhere.
+        section.report(f"{name}: {file}: must lie beside the plan, or in a folder below", "function")
+        return None
     path = folder / file
     try:
         text = read_text(path)

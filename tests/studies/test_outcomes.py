@@ -238,6 +238,8 @@ o = { function = "none.py:f" }
 p = { function = "bad.py:f" }
 q = { function = "worse.py:f" }
 r = { function = 3 }
+t = { function = "../mine.py:broken" }
+u = { function = "/mine.py:broken" }
 [outcomes.s]
 quantity = "dx"
 take = "most"
@@ -268,7 +270,9 @@ take = "most"
             "q: worse.py: can't be imported: ModuleNotFoundError: No module named 'nowhere_at_all' (worse.py, line 1)",
         ),
         (23, 'r: function: must be FILE.py:NAME, such as "my.py:wear", not 3'),
-        (26, 's: take: must be "last" or'),
+        (24, "t: ../mine.py: must lie beside the plan, or in a folder below"),
+        (25, "u: /mine.py: must lie beside the plan, or in a folder below"),
+        (28, 's: take: must be "last" or'),
     ]
     found = faults(text, tmp_path)
     assert [line.split(":")[0] for line in found] == [f"plan, line {number}" for number, _ in expected]
