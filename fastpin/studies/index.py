@@ -230,9 +230,9 @@ class Index:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
                 self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)
             self._database.execute(_OUTCOMES_TABLE)
-            for run, values in other.outcomes().items():
-                if run in ids:
-                    self._write_outcomes(run, values)
+            outcomes = other.outcomes()
+            for run in ids:
+                self._write_outcomes(run, outcomes.get(run, {}))
 
     # -- the database --------------------------------------------------------------------------------------------
 

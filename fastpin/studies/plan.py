@@ -128,7 +128,8 @@ class Plan:
         for name, outcome in found.items():
             if known.get(name.lower(), outcome.definition) != outcome.definition:
                 raise InputError("outcomes", f"{name}: the plan has another outcome of this name; choose another one")
-        return replace(self, outcomes=self.outcomes | found)
+        new = {name: outcome for name, outcome in found.items() if name.lower() not in known}
+        return replace(self, outcomes=self.outcomes | new)
 
     def case(self, point: Point) -> Case:
         """Return the case of one point, for :func:`fastpin.solve`.

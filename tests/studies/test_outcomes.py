@@ -350,7 +350,7 @@ def test_outcomes_change_no_run(tmp_path: Path) -> None:
     assert list(bare.runs) == list(full.runs)
     assert bare.digest == full.digest
     assert list(full.outcomes) == ["shear", "swing", "loss"]
-    more = full.with_outcomes({"work": last_work, "loss": {"cycle": "dissipation"}})
+    more = full.with_outcomes({"work": last_work, "Loss": {"cycle": "dissipation"}})
     assert list(more.outcomes) == ["shear", "swing", "loss", "work"]
     with pytest.raises(InputError, match="loss: the plan has another outcome of this name"):
         full.with_outcomes({"loss": {"cycle": "rotation_change"}})
