@@ -16,16 +16,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fastpin.errors import FastpinError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
-from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
+
+if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
+    from fastpin.solver.result import Result
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""

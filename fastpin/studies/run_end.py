@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastpin.model.angles import interval_from_bottom
-from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, in_degrees
 from fastpin.states.zones import Interval
 from fastpin.studies.outcomes import OutcomeValue
+
+if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
+    from fastpin.solver.result import Result
 
 _PEAKS = ("peak_pressure", "peak_pressure_angle", "peak_shear", "peak_shear_angle")
 _OTHERS = ("contact_width", "stick_width", "rotation", "dx", "dy", "dissipation")
