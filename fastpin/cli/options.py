@@ -22,6 +22,19 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 """The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
 
+PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
+    "tractions": ("states",),
+    "hoop": ("states", "body"),
+    "profile": ("states", "body", "angle", "depth"),
+    "map": ("states", "body", "component", "extent"),
+    "cycles": (),
+    "slip": (),
+    "loops": (),
+    "fatigue": ("body", "criterion", "depth"),
+}
+"""Kinds of figures of a stored result, and their options."""
+
+
 def parser() -> argparse.ArgumentParser:
     """Build the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
     root = argparse.ArgumentParser(
@@ -35,6 +48,7 @@ def parser() -> argparse.ArgumentParser:
     add_case_commands(commands)
     add_run(commands)
     add_stored_commands(commands)
+    add_plot(commands)
     add_converge(commands)
     add_sweep(commands)
     add_paper(commands)
@@ -113,6 +127,34 @@ def add_stored_commands(commands: Any) -> None:
     show = _command(commands, "show", "run", "show", "print and draw a stored result")
     show.add_argument("output", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); the run may still be going")
     _add_outputs(show)
+
+
+def add_plot(commands: Any) -> None:
+    """Add ``plot``."""
+    plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue")
+    plot.add_argument("result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE)")
+    plot.add_argument(
+        "kind",
+        choices=tuple(PLOT_OPTIONS),
+        help="tractions; hoop: hoop stress round hole and pin; profile: stresses below the edge; map: one component of "
+        "the stress in both bodies; cycles: changes in each cycle; slip: slip and friction energy in the last cycle; "
+        "loops: hysteresis loops of the last cycle; fatigue: a criterion along the edge over the last cycle",
+    )
+    plot.add_argument(
+        "-o", "--output", metavar="FIGURE", type=Path, help="the figure (png, pdf or svg; default KIND.png)"
+    )
+    plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
+    plot.add_argument("--states", metavar="WHICH", help="last, cycle (the last one), all, or load points such as 2,3.5")
+    plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
+    plot.add_argument("--component", help="of a map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
+    plot.add_argument("--extent", metavar="RADII", type=literal, help="outer radius of a map (default 2)")
+    plot.add_argument(
+        "--angle", metavar="DEG", type=literal, help="place of a profile (default: the largest hoop stress)"
+    )
+    plot.add_argument(
+        "--depth", metavar="D", type=literal, help="profile: largest depth, in radii; fatigue: depth of the points, m"
+    )
+    plot.add_argument("--criterion", help="of fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
 
 
 def add_converge(commands: Any) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 
 from fastpin.errors import InputError
@@ -25,7 +25,9 @@ def check_figure(option: str, path: Path) -> None:
         raise InputError(option, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
 
 
-def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> None:
+def check_outputs(
+    names: Mapping[str, str | Path | None], case: Path | None, figures: Collection[str] = ("--plot", "--cycles")
+) -> None:
     """Check before the work that all output files can be written.
 
     Parameters
@@ -34,6 +36,8 @@ def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> 
         "-" means standard output.
     case : Path or None
         The case file, which must not be overwritten.
+    figures : collection of str
+        The options that name figures.
 
     Raises
     ------
@@ -46,7 +50,7 @@ def check_outputs(names: Mapping[str, str | Path | None], case: Path | None) -> 
         # "fastpin run --json case.toml" takes the case file for the output.
         if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
             raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
-        if name in ("--plot", "--cycles"):
+        if name in figures:
             check_figure(name, path)
         check_writable(path)
         other = seen.setdefault(path.resolve(), name)

@@ -16,6 +16,8 @@ from fastpin.model.checks import choice, instance, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
@@ -57,6 +59,7 @@ class Fatigue:
 
     Attributes
     ----------
+    problem : Problem
     criterion : str
         One of :data:`CRITERIA`.
     body : str
@@ -75,6 +78,7 @@ class Fatigue:
         Parameter at the fatigue limit, Pa; None for "smith-watson-topper" and "fatemi-socie".
     """
 
+    problem: Problem
     criterion: str
     body: str
     theta: np.ndarray
@@ -89,6 +93,11 @@ class Fatigue:
         found = f"{spot.parameter:.5g} at theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
         life = "" if self.life is None else f", life {spot.life:.4g} cycles"
         return f"<Fatigue of the {self.body}, {self.criterion}: largest parameter {found}{life}>"
+
+    @property
+    def unit(self) -> str:
+        """Unit of the parameter: "rad", "Pa", or "F/R" in a dimensionless problem."""
+        return "rad" if self.criterion == "fatemi-socie" else units(self.problem)["traction"]
 
     @property
     def margin(self) -> np.ndarray | None:
@@ -282,7 +291,7 @@ def evaluated(
     parameter, plane, life, limit = values(history, criterion, material, given, body)
     shaped = [None if array is None else array.reshape(place[0].shape) for array in (parameter, plane, life)]
     assert shaped[0] is not None
-    return Fatigue(criterion, body, *place, shaped[0], shaped[1], shaped[2], limit)
+    return Fatigue(state.problem, criterion, body, *place, shaped[0], shaped[1], shaped[2], limit)
 
 
 _Found = tuple[np.ndarray, np.ndarray | None, np.ndarray | None, float | None]

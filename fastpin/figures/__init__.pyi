@@ -1,5 +1,8 @@
 from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
+from .fatigue import plot_fatigue as plot_fatigue
+from .load_cycle import plot_loops as plot_loops
+from .load_cycle import plot_slip as plot_slip
 from .notebook import result_html as result_html
 from .notebook import state_html as state_html
 from .states import drawn_places as drawn_places

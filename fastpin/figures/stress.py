@@ -221,8 +221,8 @@ def _draw_field(state: State, curves: list[Curve], component: str, title: str, w
 
 
 def _levels(low: float, high: float) -> np.ndarray:
-    """Round values from `low` to `high`, about :data:`LEVELS`."""
-    span = max(high - low, 1e-300)
+    """Round values from `low` to `high`, about :data:`LEVELS`; from 0 to 1 if all is zero."""
+    span = high - low or abs(high) or 1.0
     step = 10.0 ** math.floor(math.log10(span / LEVELS))
     step *= next(part for part in (1.0, 2.0, 2.5, 5.0, 10.0) if span / (part * step) <= LEVELS)
     first, last = math.floor(low / step), math.ceil(high / step)

@@ -1,6 +1,8 @@
 from . import checks as checks
 from . import convergence as convergence
 from . import cycle as cycle
+from . import fatigue as fatigue
+from . import stress as stress
 from . import summary as summary
 from . import sweep as sweep
 from .case import describe as describe

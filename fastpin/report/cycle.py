@@ -10,7 +10,9 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units, with_unit
+from fastpin.report.curves import Curve
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.quantities import load_point
 from fastpin.storage.files import replacing
 
 WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
@@ -70,6 +72,15 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
         writer.writerow(["angle [deg]", *header])
         for angle, *values in zip(cycle.theta.tolist(), *cells.values(), strict=True):
             writer.writerow([from_bottom(angle), *values])
+
+
+def loop_curves(cycle: LoadCycle) -> list[Curve]:
+    """Return the loops of the loads: a curve for each load, with the displacement on which it does work."""
+    points = np.array([load_point(state) for state in cycle.states])
+    return [
+        Curve({"load": name}, {"load point": points, "displacement": loop.displacement, "value": loop.load})
+        for name, loop in cycle.loops.items()
+    ]
 
 
 def _largest(cycle: LoadCycle, name: str) -> tuple[float | None, float | None]:

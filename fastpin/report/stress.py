@@ -1,4 +1,4 @@
-"""Curves of stresses: round the hole and the pin, below a place of the edge, and as a field."""
+"""Curves of stresses: tractions, round the hole and the pin, below a place of the edge, and as a field."""
 
 from __future__ import annotations
 
@@ -102,6 +102,7 @@ def depth_curves(
     InputError
         If an argument is out of range.
     """
+    choice("body", body, BODIES)
     deepest = number("depth", depth)
     if not 0.0 < deepest < (math.inf if body == "plate" else 1.0):
         raise InputError("depth", "must be above 0, and below 1 radius in the pin")
@@ -161,4 +162,20 @@ def field_curves(
             f"{COMPONENTS[component]} [{unit['traction']}]": values.ravel(),
         }
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
+    return curves
+
+
+def traction_curves(states: Sequence[State]) -> list[Curve]:
+    """The nodal tractions: a curve for each state.
+
+    Columns: the angle in degrees from the bottom, pressure and shear traction in Pa or F/R.
+    """
+    unit, curves = units(states[0].problem)["traction"], []
+    for state in states:
+        columns = {
+            "angle [deg]": np.degrees(state.theta) + 90.0,
+            f"pressure [{unit}]": state.pressure,
+            f"shear [{unit}]": state.shear,
+        }
+        curves.append(Curve({"load point": load_point(state)}, columns))
     return curves

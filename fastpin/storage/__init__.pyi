@@ -6,6 +6,7 @@ from .recording import resume as resume
 from .recording import stored_case as stored_case
 from .recording import stored_error as stored_error
 from .store import load as load
+from .store import load_points as load_points
 from .store import places_between as places_between
 from .store import save as save
 from .store import state_count as state_count

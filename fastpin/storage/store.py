@@ -187,6 +187,19 @@ def state_count(path: str | Path) -> int:
         return count(file["states"])
 
 
+def load_points(path: str | Path) -> np.ndarray:
+    """Return the load points of the states in a file: step + fraction, 1 at the first corner.
+
+    Raises
+    ------
+    InputError
+        See :func:`load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        points: np.ndarray = file["states/step"][()] + file["states/fraction"][()]
+        return points
+
+
 def places_between(path: str | Path, first: int, last: int) -> slice:
     """Return the places of the states in a file from corner `first` to corner `last`, counted from 1.
 
@@ -195,9 +208,7 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
     InputError
         See :func:`load`.
     """
-    with open_result(file_path("path", path)) as file:
-        points = file["states/step"][()] + file["states/fraction"][()]
-        return slice(*np.searchsorted(points, [first, np.nextafter(last, np.inf)]).tolist())
+    return slice(*np.searchsorted(load_points(path), [first, np.nextafter(last, np.inf)]).tolist())
 
 
 @contextmanager

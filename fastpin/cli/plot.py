@@ -1,0 +1,163 @@
+"""``fastpin plot``: a figure of a stored result, and the numbers in it as CSV."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin import damage, figures, report, solver, storage
+from fastpin.cli.options import PLOT_OPTIONS
+from fastpin.cli.terminal import check_outputs, write_files
+from fastpin.errors import InputError
+from fastpin.report.curves import Curve, write_csv
+from fastpin.states.state import State
+
+Made = tuple[Callable[[Path], object], Callable[[Path], object]]
+"""Two functions that write a file: the figure, and its numbers."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw one kind of figure of a stored result."""
+    _check(options)
+    figure = Path(f"{options.kind}.png") if options.output is None else options.output
+    check_outputs({"--output": figure, "--csv": options.csv}, None, figures=("--output",))
+    title = storage.stored_case(options.result).title
+    try:
+        draw, write = KINDS[options.kind](options, title)
+    except InputError as error:
+        option = f"--{error.field}"
+        raise InputError(option if error.field in PLOT_OPTIONS[options.kind] else error.field, error.reason) from None
+    code = write_files([(figure, draw), (options.csv, write)])
+    if code == 0:
+        print(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
+    return code
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that have no effect on this kind of figure."""
+    known = PLOT_OPTIONS[options.kind]
+    for name in sorted({name for names in PLOT_OPTIONS.values() for name in names}):
+        if getattr(options, name) is not None and name not in known:
+            kinds = ", ".join(kind for kind, names in PLOT_OPTIONS.items() if name in names)
+            raise InputError(f"--{name}", f"has no effect on {options.kind}; it is for {kinds}")
+
+
+def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """The options of these names that were given."""
+    return {name: value for name in names if (value := getattr(options, name)) is not None}
+
+
+def _states(options: argparse.Namespace, usual: str) -> list[State]:
+    """The states of ``--states``, or the `usual` ones."""
+    path, chosen = options.result, usual if options.states is None else options.states
+    points = storage.load_points(path)
+    if not points.size:
+        raise InputError("result", f"{path} holds no state")
+    places: slice | Sequence[int] = slice(-1, None)
+    if chosen == "cycle":
+        cycles = storage.load(path, states=[]).cycles
+        if cycles:
+            end = cycles[-1].corner + 1
+            places = storage.places_between(path, end - cycles[-1].length, end)
+        elif options.states is not None:
+            raise InputError("states", "the history has no cycle that has ended")
+        else:
+            places = slice(None)
+    elif chosen == "all":
+        places = figures.drawn_places(points.size)
+    elif chosen != "last":
+        places = [_place(points, part) for part in chosen.split(",")]
+    states = storage.load(path, states=places).states
+    if not states:
+        raise InputError("states", "the states of the last cycle were not kept")
+    return states
+
+
+def _place(points: np.ndarray, text: str) -> int:
+    """The place of the state at a load point."""
+    try:
+        found = np.flatnonzero(np.abs(points - float(text)) < 1e-9)
+    except ValueError:
+        raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, not {text!r}") from None
+    if not found.size:
+        raise InputError("states", f"there is no state at load point {text.strip()}; the last is {points[-1]:g}")
+    return int(found[0])
+
+
+def _curves(curves: Sequence[Curve]) -> Callable[[Path], object]:
+    return lambda path: write_csv(curves, path)
+
+
+def _tractions(options: argparse.Namespace, title: str) -> Made:
+    states = _states(options, "cycle")
+    curves = report.stress.traction_curves(states)
+    return lambda path: figures.plot_tractions(states, path, title), _curves(curves)
+
+
+def _hoop(options: argparse.Namespace, title: str) -> Made:
+    states, given = _states(options, "cycle"), _given(options, "body")
+    curves = report.stress.hoop_curves(states, **given)
+    return lambda path: figures.plot_hoop_stress(states, path, title=title, **given), _curves(curves)
+
+
+def _profile(options: argparse.Namespace, title: str) -> Made:
+    states, given = _states(options, "cycle"), _given(options, "body", "angle", "depth")
+    curves = report.stress.depth_curves(states, **given)
+    return lambda path: figures.plot_stress_profile(states, path, title=title, **given), _curves(curves)
+
+
+def _map(options: argparse.Namespace, title: str) -> Made:
+    state, given = _states(options, "last")[-1], _given(options, "component", "body", "extent")
+    curves = report.stress.field_curves(state, **given)
+    return lambda path: figures.plot_stress_field(state, path, title=title, **given), _curves(curves)
+
+
+def _result(options: argparse.Namespace) -> solver.Result:
+    """The stored result with the states of its last cycle."""
+    result = storage.load(options.result, states=[])
+    if not result.cycles:
+        raise InputError("result", "the history has no cycle that has ended")
+    end = result.cycles[-1].corner + 1
+    places = storage.places_between(options.result, end - result.cycles[-1].length, end)
+    return storage.load(options.result, states=places)
+
+
+def _cycles(options: argparse.Namespace, title: str) -> Made:
+    result = storage.load(options.result, states=[])
+    fields = [name for name in (result.cycles[0]._fields if result.cycles else ()) if name != "solved"]
+    columns = {name: np.array([getattr(cycle, name) for cycle in result.cycles], dtype=float) for name in fields}
+    return lambda path: figures.plot_cycles(result, path, title=title), _curves([Curve({}, columns)])
+
+
+def _slip(options: argparse.Namespace, title: str) -> Made:
+    cycle = _result(options).cycle()
+    return lambda path: figures.plot_slip(cycle, path, title), lambda path: report.cycle.write_csv(cycle, path)
+
+
+def _loops(options: argparse.Namespace, title: str) -> Made:
+    cycle = _result(options).cycle()
+    return lambda path: figures.plot_loops(cycle, path, title), _curves(report.cycle.loop_curves(cycle))
+
+
+def _fatigue(options: argparse.Namespace, title: str) -> Made:
+    states = list(_result(options))
+    criterion: Any = "smith-watson-topper" if options.criterion is None else options.criterion
+    found = damage.fatigue(states, criterion, **_given(options, "body", "depth"))
+    return lambda path: figures.plot_fatigue(found, path, title), _curves([report.fatigue.fatigue_curve(found)])
+
+
+KINDS: dict[str, Callable[[argparse.Namespace, str], Made]] = {
+    "tractions": _tractions,
+    "hoop": _hoop,
+    "profile": _profile,
+    "map": _map,
+    "cycles": _cycles,
+    "slip": _slip,
+    "loops": _loops,
+    "fatigue": _fatigue,
+}
+"""Each kind of figure, with the function that makes its writers."""

@@ -1,0 +1,102 @@
+"""Figures of fatigue along the edge of hole or pin."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fastpin.damage import Fatigue
+from fastpin.figures.style import COLOURS, angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
+from fastpin.model.checks import instance
+from fastpin.model.units import scaled, units, with_unit
+
+PLANES = 40
+"""Planes that are drawn as short lines, spread over the edge."""
+
+LEAST = 0.02
+"""Least parameter with a plane, in parts of the largest."""
+
+
+def plot_fatigue(
+    found: Fatigue, path: str | Path | None = None, title: str = "", width: float = 6.7, dpi: float = 200.0
+) -> Figure:
+    """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
+
+    Short lines show the worst planes as they cut the edge: a line along the axis lies along the edge, an upright line
+    is a crack that goes straight into the body.
+
+    Parameters
+    ----------
+    found : Fatigue
+        Of points at one depth, such as from :meth:`fastpin.Result.fatigue`.
+    path, title, width, dpi
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If `found` is no fatigue of points at one depth. Also see :func:`fastpin.plot_tractions`.
+    """
+    instance("found", found, Fatigue, "a fatigue result, such as result.fatigue(...)")
+    inches = check_figure_text(title, width)
+    return draw_and_save(lambda: _draw(found, title, inches), path, dpi)
+
+
+def _draw(found: Fatigue, title: str, width: float) -> Figure:
+    rows = 1 if found.life is None else 2
+    figure, axes = panels(rows, 1, 2.2, width)
+    figure.set_figheight(2.2 * rows + 0.9)
+    theta, parameter = found.theta.ravel(), found.parameter.ravel()
+    angle = np.degrees(theta) + 90.0
+    order, spot = np.argsort(angle), found.hot_spot
+    angle, parameter = angle[order], parameter[order]
+    top = axes[0, 0]
+    factor, unit = scaled([spot.parameter], found.unit)
+    parameter = factor * parameter
+    top.plot(angle, parameter, **line(0))
+    top.plot(math.degrees(spot.theta) + 90.0, factor * spot.parameter, "o", markersize=4.5, color=COLOURS[1])
+    top.set_ylabel(f"{found.criterion}  [{unit}]")
+    top.set_ylim(0.0, 1.15 * float(parameter.max()) or 1.0)
+    handles = [
+        Line2D([], [], label=f"hot spot at {math.degrees(spot.theta) + 90.0:.2f} deg", linestyle="none", marker="o",
+               markersize=4.5, color=COLOURS[1]),
+    ]  # fmt: skip
+    if found.plane is not None:
+        _draw_planes(top, angle, parameter, (found.plane.ravel() - theta)[order])
+        handles.append(Line2D([], [], color="0.3", linewidth=1.0, label="worst planes"))
+    if found.limit is not None and found.limit < 3.0 * spot.parameter:
+        top.axhline(factor * found.limit, **line(2, 1))
+        handles.append(Line2D([], [], label="fatigue limit", **line(2, 1)))
+    if found.life is not None:
+        life = found.life.ravel()[order]
+        axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan), **line(0))
+        axes[1, 0].set_ylabel("life  [cycles]")
+        shortest = float(np.nanmin(life))
+        if math.isfinite(shortest):
+            axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
+    for panel in axes[:, 0]:
+        panel.set_xlim(-180.0, 180.0)
+        angle_axis(panel)
+    axes[-1, 0].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
+    fitted_legend(figure, list(handles), len(handles))
+    depth = float(found.depth.ravel()[0])
+    place = "on the edge" if depth == 0.0 else f"{with_unit(depth, units(found.problem)['length'], 4)} below the edge"
+    heading = f"{found.body}, {place}"
+    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    return figure
+
+
+def _draw_planes(panel: Axes, angle: np.ndarray, parameter: np.ndarray, turned: np.ndarray) -> None:
+    """Draw planes as short lines; `turned` is the angle from the edge to the plane, rad."""
+    cells = np.floor((angle + 180.0) / 360.0 * PLANES)
+    drawn = [int(np.flatnonzero(cells == cell)[np.argmax(parameter[cells == cell])]) for cell in np.unique(cells)]
+    drawn = [k for k in drawn if np.isfinite(turned[k]) and parameter[k] >= LEAST * parameter.max()]
+    panel.quiver(
+        angle[drawn], parameter[drawn], np.cos(turned[drawn]), np.sin(turned[drawn]), color="0.3", pivot="middle",
+        units="inches", width=0.014, headwidth=1.0, headlength=0.0, headaxislength=0.0, scale=8.0, scale_units="inches",
+    )  # fmt: skip

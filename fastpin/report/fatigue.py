@@ -1,0 +1,28 @@
+"""Fatigue of points as a curve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fastpin.damage import Fatigue
+from fastpin.model.units import units
+from fastpin.report.curves import Curve
+
+
+def fatigue_curve(found: Fatigue) -> Curve:
+    """Return angle, depth, parameter, plane and life of the points, in the order of the angles.
+
+    Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
+    """
+    length = units(found.problem)["length"]
+    columns = {
+        "angle [deg]": np.degrees(found.theta) + 90.0,
+        f"depth [{length}]": found.depth,
+        f"{found.criterion} [{found.unit}]": found.parameter,
+    }
+    if found.plane is not None:
+        columns["plane [deg]"] = np.degrees(found.plane)
+    if found.life is not None:
+        columns["life [cycles]"] = found.life
+    order = np.argsort(found.theta.ravel(), kind="stable")
+    return Curve({"body": found.body}, {name: np.ravel(values)[order] for name, values in columns.items()})

@@ -1,0 +1,82 @@
+"""``fastpin plot``: all kinds of figures, their numbers, and wrong options."""
+
+import csv
+
+import pytest
+
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, record
+from fastpin.cli.main import main
+from fastpin.cli.options import PLOT_OPTIONS
+from fastpin.cli.plot import KINDS
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    path = tmp_path_factory.mktemp("plot") / "joint.h5"
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"], "stress")
+    problem = Problem(pair, hole_radius=2.4e-3, clearance=10e-6, friction=0.4, pin_load="body")
+    cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
+    record(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), path, nodes=101, between=1, slip_sums=True)
+    return path
+
+
+def read_rows(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_every_kind_has_its_options():
+    assert list(KINDS) == list(PLOT_OPTIONS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_figure_and_its_numbers(stored, kind, tmp_path, capsys):
+    figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
+    assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
+    assert figure.read_text(encoding="utf-8").startswith("<?xml")
+    assert len(read_rows(numbers)) >= 2
+    assert capsys.readouterr().out == f"wrote {figure} and {numbers}\n"
+
+
+def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["plot", str(stored), "map", "--component", "hoop", "--extent", "3", "--body", "plate"]) == 0
+    assert (tmp_path / "map.png").exists()
+
+
+def test_states_are_chosen_by_load_points(stored, tmp_path):
+    numbers = tmp_path / "hoop.csv"
+    for chosen, points in (("last", {"5"}), ("2,3.5", {"2", "3.5"}), ("cycle", {"3", "3.5", "4", "4.5", "5"})):
+        arguments = ["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
+        assert main([*arguments, "--states", chosen, "--body", "plate"]) == 0
+        assert {f"{float(row['load point']):g}" for row in read_rows(numbers)} == points
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["hoop", "--component", "sxx"], "--component: has no effect on hoop; it is for map"),
+        (["slip", "--states", "last"], "--states: has no effect on slip; it is for tractions, hoop, profile, map"),
+        (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
+        (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, not 'now'"),
+        (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
+        (["map", "--component", "x"], "--component: must be "),
+        (["profile", "--body", "both"], '--body: must be "plate" or "pin"'),
+        (["fatigue", "--criterion", "crossland"], "crossland needs bending_limit, torsion_limit of the plate"),
+        (["hoop", "-o", "hoop.txt"], "--output: the figure's name must end in .png, .pdf, .svg, not 'hoop.txt'"),
+    ],
+)
+def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["plot", str(stored), *arguments]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_without_cycles(tmp_path, capsys):
+    path = tmp_path / "one.h5"
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    record(Problem(pair, 1e-2, 1e-5, 0.3), LoadHistory([{"P": 1e5}]), path, nodes=61)
+    assert main(["plot", str(path), "loops", "-o", str(tmp_path / "a.png")]) == 2
+    assert "the history has no cycle that has ended" in capsys.readouterr().err
+    assert main(["plot", str(path), "hoop", "-o", str(tmp_path / "a.png")]) == 0
+    assert main(["plot", str(path), "cycles", "-o", str(tmp_path / "b.png")]) != 0

@@ -1,0 +1,127 @@
+"""Figures of stresses, load cycles and fatigue."""
+
+import numpy as np
+import pytest
+
+from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
+from fastpin.damage import fatigue
+from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves, traction_curves
+
+
+@pytest.fixture(scope="module")
+def result():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"], "stress")
+    problem = Problem(pair, hole_radius=2.4e-3, clearance=10e-6, friction=0.4, pin_load="body")
+    cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
+    return solve(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), nodes=121, between=1, slip_sums=True)
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
+    return solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
+
+
+def test_hoop_stress_with_its_peaks(result, tmp_path):
+    figure = figures.plot_hoop_stress(list(result)[-2:], tmp_path / "hoop.png", title="joint")
+    plate, pin = figure.axes
+    assert plate.get_ylabel() == "hoop stress, plate  [MPa]"
+    assert pin.get_ylabel() == "hoop stress, pin  [MPa]"
+    for state, dot in zip(result[-2:], [line for line in plate.lines if line.get_marker() == "o"], strict=True):
+        peak = state.peak_hoop_stress()
+        assert dot.get_ydata()[0] == pytest.approx(peak.value / 1e6)
+        assert (dot.get_markerfacecolor() == "white") == (not peak.resolved)
+        curve = next(line for line in plate.lines if line.get_color() == dot.get_color() and line is not dot)
+        assert max(curve.get_ydata()) <= peak.value / 1e6 * (1.0 + 1e-9)
+        assert max(curve.get_ydata()) > 0.99 * peak.value / 1e6
+    assert (tmp_path / "hoop.png").stat().st_size > 10_000
+
+
+def test_many_states_have_a_scale_and_one_body_one_panel(result):
+    figure = figures.plot_hoop_stress(result, body="pin")
+    assert figure.axes[0].get_ylabel() == "hoop stress, pin  [MPa]"
+    assert "load point" in figure.axes[1].get_ylabel()
+
+
+def test_a_rigid_body_is_left_out(rigid):
+    figure = figures.plot_hoop_stress(rigid)
+    assert [panel.get_ylabel() for panel in figure.axes] == ["hoop stress, plate  [F/R]"]
+    assert len(field_curves(rigid[-1], fineness=10)) == 1
+    with pytest.raises(InputError, match="the pin is rigid"):
+        figures.plot_stress_profile(rigid, body="pin")
+
+
+def test_profiles_begin_with_the_stress_on_the_edge(result):
+    state = result[-1]
+    curve = depth_curves([state], "plate", 30.0, 0.4)[0]
+    assert curve["hoop stress [Pa]"][0] == state.hoop_stress("plate", np.radians([-60.0]))[0]
+    assert curve["depth [m]"][[0, -1]] == pytest.approx([0.0, 0.4 * 2.4e-3])
+    figure = figures.plot_stress_profile(result, angle=30.0)
+    assert "at 30.00 deg" in figure.get_suptitle()
+    at_peak = depth_curves([state])[0]
+    assert at_peak["hoop stress [Pa]"][0] == pytest.approx(state.peak_hoop_stress().value)
+
+
+@pytest.mark.parametrize("component", COMPONENTS)
+def test_maps_of_all_components(result, component):
+    figure = figures.plot_stress_field(result[-1], component=component)
+    assert any(COMPONENTS[component] in panel.get_ylabel() for panel in figure.axes)
+
+
+def test_a_map_has_the_stresses_of_its_points(result):
+    state = result[-1]
+    for curve in field_curves(state, "hoop", fineness=20):
+        radius, angle = curve["radius [m]"], np.radians(curve["angle [deg]"] - 90.0)
+        edge = radius == 2.4e-3
+        expected = state.hoop_stress(curve.parameters["body"], angle[edge])
+        assert curve["hoop stress [Pa]"][edge] == pytest.approx(expected)
+
+
+def test_curves_have_the_tractions(result):
+    curve = traction_curves([result[-1]])[0]
+    assert np.array_equal(curve["shear [Pa]"], result[-1].shear)
+    assert [curve.parameters["body"] for curve in hoop_curves([result[-1]])] == ["plate", "pin"]
+
+
+def test_slip_and_loops_of_a_cycle(result, tmp_path):
+    cycle = result.cycle()
+    slip = figures.plot_slip(cycle, tmp_path / "slip.pdf")
+    upper, lower = slip.axes
+    assert max(upper.lines[0].get_ydata()) == pytest.approx(cycle.slip_range.max() * 1e9)
+    assert lower.get_ylabel().startswith("friction energy")
+    loops = figures.plot_loops(cycle, tmp_path / "loops.svg", title="loops")
+    names = [panel.get_ylabel().partition(" ")[0] for panel in loops.axes if panel.get_visible()]
+    assert names == ["Q", "sxx"]
+    with pytest.raises(InputError, match="cycle: must be a load cycle"):
+        figures.plot_slip(result)
+    with pytest.raises(InputError, match="has no loop"):
+        figures.plot_loops(solve(result.problem, [{"P": 1e5}, {"P": 1e5}], nodes=61).cycle(first=1, last=2))
+
+
+def test_fatigue_along_the_edge(result):
+    found = fatigue(list(result)[-4:], "smith-watson-topper")
+    figure = figures.plot_fatigue(found, title="SWT")
+    parameter, life = figure.axes
+    assert max(parameter.lines[0].get_ydata()) == pytest.approx(found.hot_spot.parameter / 1e3)
+    assert min(life.lines[0].get_ydata()) == pytest.approx(found.hot_spot.life)
+    with pytest.raises(InputError, match="found: must be a fatigue result"):
+        figures.plot_fatigue(result)
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (lambda r: figures.plot_hoop_stress([]), "states: there is no state"),
+        (lambda r: figures.plot_hoop_stress(r, body="hub"), 'body: must be "plate" or "pin" or "both"'),
+        (lambda r: figures.plot_stress_profile(r, body="both"), 'body: must be "plate" or "pin"'),
+        (lambda r: figures.plot_stress_profile(r, depth=0.0), "depth: must be above 0"),
+        (lambda r: figures.plot_stress_profile(r, angle="a"), "angle: must be a number"),
+        (lambda r: figures.plot_stress_field(r), "state: must be a State"),
+        (lambda r: figures.plot_stress_field(r[0], component="x"), "component: must be"),
+        (lambda r: figures.plot_stress_field(r[0], extent=1.0), "extent: must be above 1"),
+        (lambda r: figures.plot_hoop_stress(r, "hoop.txt"), "path: a figure's name must end in"),
+    ],
+)
+def test_bad_input(result, draw, message):
+    with pytest.raises(InputError, match=message):
+        draw(result)
