@@ -34,7 +34,7 @@ def plate_stress(
         Distances of the points from the edge of the hole, in units of R; at least 0.
     """
     kolosov = problem.pair.plate_kolosov
-    (pressure, shear), away = tractions.coefficients(1), np.log1p(depth)
+    (pressure, shear), away = tractions.low_coefficients, np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
     below = depth * (2.0 + depth) * square  # 1 - (R/r)^2
@@ -69,9 +69,9 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     """
     radius = 1.0 - depth
     near = radius < 0.5
-    pressure, shear = tractions.coefficients(SERIES if near.any() else 1)
+    pressure, shear = tractions.coefficients(SERIES) if near.any() else tractions.low_coefficients
     if not tractions.has_moment:
-        shear[0] = 0.0
+        shear = np.r_[0.0, shear[1:]]
     zeta = radius * np.exp(1j * theta)
     force = 2.0 * math.pi * np.conj(pressure[1] + 1j * shear[1])
     whole, first = np.empty(theta.size, dtype=complex), np.empty(theta.size, dtype=complex)

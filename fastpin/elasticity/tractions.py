@@ -65,6 +65,11 @@ class Tractions:
         return result[0], result[1]
 
     @cached_property
+    def low_coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """The first two coefficients of N and T, which give the force and the moment."""
+        return self.coefficients(1)
+
+    @cached_property
     def tree(self) -> Tree:
         """The blocks of the linear pieces, for fast sums."""
         return Tree.of(self)

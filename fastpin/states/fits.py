@@ -141,11 +141,14 @@ class Peak:
         Standard error of the value.
     place : float
         Distance of the peak from the point x = 0 of the fit, in node distances.
+    cusp : float
+        Coefficient of the power of the distance from a cusp, in node distances; 0 unless it was fitted.
     """
 
     value: float
     error: float
     place: float
+    cusp: float = 0.0
 
 
 def _standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
@@ -400,7 +403,8 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
             place -= float(inverse[-1] @ residual)
         error = _standard_error(residual, inverse.shape[0], float(np.linalg.norm(inverse[0])))
         if abs(place) <= CUSP_REACH and (best is None or error < best.error):
-            best = Peak(float(coefficients[0]), error, place)
+            steepness = float(coefficients[shape[0] + 1]) / float(window[-1]) ** exponent
+            best = Peak(float(coefficients[0]), error, place, steepness)
     return best
 
 

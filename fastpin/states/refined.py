@@ -5,7 +5,8 @@ taken from power laws in the distance x, which are fitted to the nodes (:func:`f
 
 * N beside a contact edge, with the exponents (T21);
 * mu N - s T on the stick side of a border, with the exponents (T26), where T = s mu N in the slip zone;
-* T beside a contact edge that sticks.
+* T beside a contact edge that sticks;
+* the cusp that an earlier border or edge left in T inside a stick zone.
 
 Nothing is fitted inside a slip zone: there T = s mu N. So a slip zone may be as narrow as a node distance.
 """
@@ -26,11 +27,32 @@ from fastpin.states.fits import Law
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round, runs, unrolled
 
+REACH = 20.0
+"""Nodes on the side of a cusp within which it is refined."""
+
 PIECES = 60
-"""Linear pieces of a power law. Their ends gather at the edge like the fourth power of equal steps."""
+"""Linear pieces of a power law."""
+
+GRADED = np.linspace(0.0, 1.0, PIECES + 1) ** 4
+"""The ends of these pieces. They gather at the edge."""
 
 EXCESS = 1.1
 """Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""
+
+CUSP_ROOM = 7
+"""Least number of nodes between the cusp of an earlier border and the ends of its stick zone, but for two."""
+
+KINK = 15.0
+"""Least change of the slope of T at a node, over the median beside it, at which a cusp is looked for."""
+
+LEAST_KINK = 0.005
+"""Least change of T over a node distance by which the slope changes at a cusp, in parts of the largest T."""
+
+RIVAL = 0.6
+"""Least hoop stress of the plate at a cusp, in parts of the largest one at an edge or a border. Others are left out."""
+
+CUSP_ERROR = 0.01
+"""Largest standard error of T at a cusp, in parts of the cusp at a node distance."""
 
 BOTH_ENDS = (slice(None), slice(None, None, -1))
 """Order of the nodes of a zone, from its start and from its stop."""
@@ -74,8 +96,8 @@ class Patch:
         Of the pressure at the edges, (T21); None all round.
     stick : tuple of Zone
         Its stick zones, in order.
-    friction, beta : float
-        Friction coefficient, and Dundurs' second parameter in the usual sign.
+    friction, beta, tilt : float
+        Friction coefficient, Dundurs' second parameter in the usual sign, and arctan(mu beta)/pi of (T26).
     """
 
     theta: np.ndarray
@@ -87,6 +109,35 @@ class Patch:
     stick: tuple[Zone, ...]
     friction: float
     beta: float
+    tilt: float
+
+
+@dataclass(frozen=True, eq=False)
+class OldCusp:
+    """The cusp of T that an earlier border left in a stick zone: T gains height * x^exponent on one side.
+
+    Attributes
+    ----------
+    place : float
+        Angle, rad.
+    side : int
+        1 if the cusp is at larger angles, otherwise -1.
+    exponent, height : float
+        For the distance x from the place in node distances.
+    spacing : float
+        Node distance, rad.
+    """
+
+    place: float
+    side: int
+    exponent: float
+    height: float
+    spacing: float
+
+    def values(self, theta: np.ndarray) -> np.ndarray:
+        """The part of T that the cusp adds, shape (m,)."""
+        beyond = np.maximum(self.side * (theta - self.place), 0.0) / self.spacing
+        return np.asarray(self.height * beyond**self.exponent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +176,9 @@ def refined_tractions(state: State) -> RefinedTractions:
         pressure = _pressure_laws(patch)
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
-        laws = _laws(replace(patch, stick=zones), pressure)
-        arrays.append(_refined(replace(patch, stick=zones), laws))
-        resolved += [law.place for law in laws.all]
+        laws, cusps = _laws(replace(patch, stick=zones), pressure), _old_cusps(state, patch)
+        arrays.append(_refined(replace(patch, stick=zones), laws, cusps))
+        resolved += [*(law.place for law in laws.all), *(cusp.place for cusp in cusps)]
         unresolved += laws.unresolved + hidden
     moment = float(state.grid.weights @ state.shear)
     excess = sum(float(np.trapezoid(array[:, 2], array[:, 0])) for array in arrays) - moment
@@ -192,9 +243,49 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
     return laws
 
 
-def _refined(patch: Patch, laws: Laws) -> np.ndarray:
+def _old_cusps(state: State, patch: Patch) -> list[OldCusp]:
+    """The cusps of earlier borders inside stick zones, where the hoop stress of the plate may be largest."""
+    kinks = [(zone, node, side) for zone in patch.stick for node, side in _kinks(patch, zone)]
+    if not kinks or state.problem.pair.plate.is_rigid:
+        return []
+    places = [patch.theta[zone.nodes[node]] for zone, node, _ in kinks]
+    ends = [*patch.edges, *(end for zone in patch.stick for end in zone.ends)]
+    hoop = state.hoop_stress("plate", [*places, *ends], straight=True)
+    high = hoop[: len(places)] >= RIVAL * hoop.max()
+    fitted = (_fitted_cusp(patch, *kink) for kink, rival in zip(kinks, high, strict=True) if rival)
+    return [cusp for cusp in fitted if cusp is not None]
+
+
+def _kinks(patch: Patch, zone: Zone) -> Iterator[tuple[int, int]]:
+    """Nodes of a stick zone at which the slope of T changes much more than beside them.
+
+    With each node stands the side of its cusp: 1 for larger angles. There the slope changes quickly.
+    """
+    theta, shear = patch.theta[zone.nodes], patch.shear[zone.nodes]
+    steps = np.diff(theta)
+    bends = np.abs(np.diff(np.diff(shear) / steps)) * steps[1:]  # of the nodes from the second to the last but one
+    for k in np.flatnonzero(bends > LEAST_KINK * np.abs(shear).max()).tolist():
+        around = bends[max(k - CUSP_ROOM, 0) : k + CUSP_ROOM + 1]
+        if around.size == 2 * CUSP_ROOM + 1 and bends[k] == around.max() > KINK * float(np.median(around)):
+            yield k + 1, 1 if around[CUSP_ROOM + 2 :].sum() > around[: CUSP_ROOM - 1].sum() else -1
+
+
+def _fitted_cusp(patch: Patch, zone: Zone, node: int, side: int) -> OldCusp | None:
+    """The cusp beside a node of a stick zone; None if the nodes do not show it."""
+    order = BOTH_ENDS[int(side > 0)]  # the fit wants the cusp at smaller x
+    theta, shear = patch.theta[zone.nodes][order], patch.shear[zone.nodes][order]
+    place, spacing = float(patch.theta[zone.nodes[node]]), float(np.diff(patch.theta[zone.nodes])[node])
+    exponent = 0.5 - side * patch.tilt * float(np.sign(patch.shear[zone.nodes[node]]))
+    cusp = fits.cusp(-side * (theta - place) / spacing, shear, exponent)
+    if cusp is None or cusp.error > CUSP_ERROR * abs(cusp.cusp):
+        return None
+    return OldCusp(place - side * cusp.place * spacing, side, exponent, cusp.cusp, spacing)
+
+
+def _refined(patch: Patch, laws: Laws, cusps: list[OldCusp]) -> np.ndarray:
     """Angle, pressure and shear of the refined patch, shape (m, 3)."""
     graded = [_graded(law) for law in laws.all]
+    graded += [cusp.place + cusp.side * REACH * cusp.spacing * GRADED for cusp in cusps]
     if patch.beta != 0.0:
         graded += [2.0 * law.place - _graded(law) for law, _ in laws.borders]
     nodes, values = _with_ends(patch, laws.pressure)
@@ -216,6 +307,10 @@ def _refined(patch: Patch, laws: Laws) -> np.ndarray:
     for law in laws.sticking:
         near = law.applies(theta)
         shear[near] = law.values(theta[near])
+    for cusp in cusps:
+        near = np.abs(theta - cusp.place) < REACH * cusp.spacing
+        missed = cusp.values(theta) - np.interp(theta, nodes, cusp.values(nodes))
+        shear[near] += missed[near]
     refined_patch = np.column_stack([theta, pressure, shear])
     refined_patch[-1, 1:] = 0.0 if patch.exponents is not None else refined_patch[0, 1:]
     if patch.exponents is not None:
@@ -225,7 +320,7 @@ def _refined(patch: Patch, laws: Laws) -> np.ndarray:
 
 def _graded(law: Law) -> np.ndarray:
     """Angles in the reach of a law that gather at its end, rad."""
-    return law.place + law.inwards * law.reach * np.linspace(0.0, 1.0, PIECES + 1) ** 4
+    return law.place + law.inwards * law.reach * GRADED
 
 
 def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -290,7 +385,7 @@ def _patches(state: State) -> Iterator[Patch]:
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
             theta, state.pressure[run], state.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(state, run, theta), state.problem.friction, state.problem.pair.dundurs()[1],
+            _zones(state, run, theta), state.problem.friction, state.problem.pair.dundurs()[1], state.tilt,
         )  # fmt: skip
 
 

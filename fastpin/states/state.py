@@ -211,7 +211,7 @@ class State:
     def _pressure_peak(self) -> tuple[float, float]:
         if not self.in_contact:
             return 0.0, math.nan
-        peak, place = peaks.pressure_peak(self.grid, self.pressure, self._tilt != 0.0)
+        peak, place = peaks.pressure_peak(self.grid, self.pressure, self.tilt != 0.0)
         return peak, near_bottom(place)
 
     @cached_property
@@ -219,25 +219,25 @@ class State:
         if not self.shear.any():
             return 0.0, math.nan
         peak, place = peaks.shear_peak(
-            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self._stick, self._tilt
+            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self._stick, self.tilt
         )
         most = self.problem.friction * self.peak_pressure
         return min(max(peak, -most), most), near_bottom(place)
 
     @cached_property
-    def _tilt(self) -> float:
+    def tilt(self) -> float:
         """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
         return math.atan(self.problem.friction * self.problem.pair.dundurs()[1]) / math.pi
 
     def contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
         first, last = self.status[run[[0, -1]]]
-        return 0.5 - self._tilt * float(first), 0.5 + self._tilt * float(last)
+        return 0.5 - self.tilt * float(first), 0.5 + self.tilt * float(last)
 
     def stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26)."""
         before, after = self.signs_beside(run)
-        return 0.5 - self._tilt * before, 0.5 + self._tilt * after
+        return 0.5 - self.tilt * before, 0.5 + self.tilt * after
 
     def signs_beside(self, run: np.ndarray) -> tuple[int, int]:
         """Signs of the shear traction before and after the stick zone of the nodes `run`; 0 beside an open node."""

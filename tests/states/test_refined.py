@@ -216,3 +216,13 @@ def test_a_rigid_body_has_no_peak():
     with pytest.raises(InputError, match="the pin is rigid"):
         state.peak_hoop_stress("pin")
     assert state.peak_hoop_stress().value > 0.0
+
+
+def test_the_cusp_of_an_earlier_edge_inside_the_contact():
+    """P grows, and the edge of the corner before lies inside a stick zone. The value is of 6,401 nodes."""
+    one, two = solve(problem(), [{"P": 1.0}, {"Q": 0.275}, {"P": 1.1, "Q": 0.15}], nodes=1601)[1:]
+    edge = one.contact[0][0]
+    assert two.contact[0][0] < edge - 0.1
+    assert any(abs(place - edge) < 1e-4 for place in two.refined.resolved)
+    assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401)).max() == pytest.approx(0.57639, abs=5e-5)
+    assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401), True).max() < 0.57632
