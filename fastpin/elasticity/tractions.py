@@ -6,7 +6,7 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -139,6 +139,7 @@ class Tree:
         return cls(nodes, turn, np.array(blocks), np.array(centres), np.array(radii), np.array(all_moments))
 
 
+@cache
 def _gauss() -> tuple[np.ndarray, np.ndarray]:
     """Gauss points and weights on (0, 1)."""
     points, weights = np.polynomial.legendre.leggauss(GAUSS)

@@ -48,8 +48,8 @@ KINK = 15.0
 LEAST_KINK = 0.005
 """Least change of T over a node distance by which the slope changes at a cusp, in parts of the largest T."""
 
-RIVAL = 0.6
-"""Least hoop stress of the plate at a cusp, in parts of the largest one at an edge or a border. Others are left out."""
+RIVAL = 0.5
+"""Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
 
 CUSP_ERROR = 0.01
 """Largest standard error of T at a cusp, in parts of the cusp at a node distance."""
@@ -176,7 +176,7 @@ def refined_tractions(state: State) -> RefinedTractions:
         pressure = _pressure_laws(patch)
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
-        laws, cusps = _laws(replace(patch, stick=zones), pressure), _old_cusps(state, patch)
+        laws, cusps = _laws(replace(patch, stick=zones), pressure), _old_cusps(patch)
         arrays.append(_refined(replace(patch, stick=zones), laws, cusps))
         resolved += [*(law.place for law in laws.all), *(cusp.place for cusp in cusps)]
         unresolved += laws.unresolved + hidden
@@ -243,16 +243,15 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
     return laws
 
 
-def _old_cusps(state: State, patch: Patch) -> list[OldCusp]:
-    """The cusps of earlier borders inside stick zones, where the hoop stress of the plate may be largest."""
-    kinks = [(zone, node, side) for zone in patch.stick for node, side in _kinks(patch, zone)]
-    if not kinks or state.problem.pair.plate.is_rigid:
-        return []
-    places = [patch.theta[zone.nodes[node]] for zone, node, _ in kinks]
-    ends = [*patch.edges, *(end for zone in patch.stick for end in zone.ends)]
-    hoop = state.hoop_stress("plate", [*places, *ends], straight=True)
-    high = hoop[: len(places)] >= RIVAL * hoop.max()
-    fitted = (_fitted_cusp(patch, *kink) for kink, rival in zip(kinks, high, strict=True) if rival)
+def _old_cusps(patch: Patch) -> list[OldCusp]:
+    """The cusps of earlier borders inside stick zones, where the pressure is low: there the hoop stress may be high."""
+    most = RIVAL * float(patch.pressure.max())
+    fitted = (
+        _fitted_cusp(patch, zone, node, side)
+        for zone in patch.stick
+        for node, side in _kinks(patch, zone)
+        if patch.pressure[zone.nodes[node]] <= most
+    )
     return [cusp for cusp in fitted if cusp is not None]
 
 
