@@ -48,7 +48,7 @@ KINK = 15.0
 LEAST_KINK = 0.005
 """Least change of T over a node distance by which the slope changes at a cusp, in parts of the largest T."""
 
-RIVAL = 0.5
+RIVAL = 0.6
 """Largest pressure at a cusp, in parts of the peak pressure. Where it is higher the hoop stress is no peak."""
 
 CUSP_ERROR = 0.01
