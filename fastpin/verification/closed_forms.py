@@ -1,4 +1,4 @@
-"""Closed forms of contact solutions, to check the solver.
+"""Closed forms of contact solutions and of stresses, to check the solver.
 
 Places along the contact are angles from the direction of the load, rad. Tractions are in units of F/R. The load
 parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays that broadcast.
@@ -8,7 +8,9 @@ Sources: A. Persson, "On the stress distribution of cylindrical elastic bodies i
 Chalmers (1964); M. Ciavarella and P. Decuzzi, "The state of stress induced by the plane frictionless
 cylindrical contact", Int. J. Solids Struct. 38 (2001); K. L. Johnson, "Contact Mechanics" (1985), chapters 4
 and 7; D. Nowell and D. A. Hills, "Mechanics of fretting fatigue tests", Int. J. Mech. Sci. 29 (1987); D. A.
-Spence, "An eigenvalue problem for elastic contact with finite friction", Proc. Camb. Phil. Soc. 73 (1973).
+Spence, "An eigenvalue problem for elastic contact with finite friction", Proc. Camb. Phil. Soc. 73 (1973); E.
+McEwen, "Stresses in elastic cylinders in contact along a generatrix", Phil. Mag. 40 (1949); G. Kirsch, "Die Theorie
+der Elastizitaet und die Beduerfnisse der Festigkeitslehre", Z. Ver. dt. Ing. 42 (1898).
 """
 
 from __future__ import annotations
@@ -219,26 +221,17 @@ def cattaneo_mindlin_shear(
     InputError
         If an argument is out of range, missing on its branch, or not allowed on it.
     """
-    choice("branch", branch, ("loading", "unloading", "reloading"))
     place = numbers("x", x)
     a = float(numbers("half_width", half_width, 0.0, open_low=True))
     p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
     mu = float(numbers("friction", friction, 0.0))
     e = float(numbers("eccentricity", eccentricity))
+    forms = _loading_forms(load_ratio, peak_ratio, branch)
     if branch == "loading":
-        now = float(numbers("load_ratio", load_ratio, 0.0, 1.0))
-        _inside(e, math.sqrt(1.0 - now) * a, a)
-        return _value(mu * p0 * _partial_slip(place, a, now, e))
-    if peak_ratio is None:
-        raise InputError("peak_ratio", f"the {branch} branch needs it")
-    if e != 0.0:
+        _inside(e, math.sqrt(1.0 - forms[0][1]) * a, a)
+    elif e != 0.0:
         raise InputError("eccentricity", "only the loading branch takes it")
-    peak = float(numbers("peak_ratio", peak_ratio, 0.0, 1.0))
-    now = float(numbers("load_ratio", load_ratio, -peak, peak))
-    sign = 1.0 if branch == "unloading" else -1.0
-    first = _partial_slip(place, a, peak, 0.0)
-    change = _partial_slip(place, a, 0.5 * (peak - sign * now), 0.0)
-    return _value(sign * mu * p0 * (first - 2.0 * change))
+    return _value(mu * p0 * np.sum([factor * _partial_slip(place, a, ratio, e) for factor, ratio in forms], axis=0))
 
 
 def bulk_stress_eccentricity(
@@ -308,6 +301,132 @@ def spence_stick_ratio(mu_over_beta: ArrayLike) -> Values:
     return _value(np.where(ratio <= 1.0, small, np.sqrt((1.0 - complementary) * (1.0 + complementary))))
 
 
+def elliptic_stress(
+    x: ArrayLike, depth: ArrayLike, half_width: float, pressure: float, shear: float = 0.0
+) -> np.ndarray:
+    """Stresses in a half-plane under elliptic tractions (McEwen; Johnson, sections 4.4 and 7.1).
+
+    The pressure on the surface is p0 sqrt(1 - x^2/a^2), and the shear traction in the direction of x is
+    q0 sqrt(1 - x^2/a^2). With (m + i n)^2 = a^2 - (x - i z)^2 at the depth z, m >= 0, n of the sign of x, and
+    k = (z^2 + n^2)/(m^2 + n^2), l = n (m^2 - z^2)/(m^2 + n^2):
+
+        s_xx = -p0/a [m (1 + k) - 2 z] + 2 q0/a (n - x) + q0/a l
+        s_zz = -p0/a m (1 - k) - q0/a l
+        s_xz = -p0/a l - q0/a [m (1 + k) - 2 z]
+
+    Parameters
+    ----------
+    x, depth : float or ndarray
+        Place along the surface from the middle of the contact, and depth >= 0, in the unit of `half_width`.
+    half_width : float
+        a, positive.
+    pressure, shear : float
+        p0 and q0.
+
+    Returns
+    -------
+    ndarray, shape (3, ...)
+        s_xx along the surface, s_zz across it and s_xz, in the unit of p0 and q0; tension is positive. z points into
+        the half-plane.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    """
+    a = float(numbers("half_width", half_width, 0.0, open_low=True))
+    p0, q0 = float(numbers("pressure", pressure)), float(numbers("shear", shear))
+    place, z = np.broadcast_arrays(numbers("x", x), numbers("depth", depth, 0.0))
+    root = np.sqrt((a - place) * (a + place) + z * z + 2j * place * z)
+    m, n = root.real, np.copysign(root.imag, place)
+    square = m * m + n * n
+    square = np.where(square == 0.0, 1.0, square)  # at the edge m = n = z = 0
+    share, mixed = (z * z + n * n) / square, n * (m * m - z * z) / square
+    along = m * (1.0 + share) - 2.0 * z
+    return np.array([
+        -p0 / a * along + q0 / a * (2.0 * (n - place) + mixed),
+        -p0 / a * m * (1.0 - share) - q0 / a * mixed,
+        -p0 / a * mixed - q0 / a * along,
+    ])  # fmt: skip
+
+
+def cattaneo_mindlin_stress(
+    x: ArrayLike,
+    depth: ArrayLike,
+    half_width: float,
+    peak_pressure: float,
+    friction: float,
+    load_ratio: float,
+    peak_ratio: float | None = None,
+    branch: Branch = "loading",
+) -> np.ndarray:
+    """Stresses in a half-plane under Hertz's pressure and the shear of :func:`cattaneo_mindlin_shear`.
+
+    Both tractions are sums of ellipses, and so are the stresses (:func:`elliptic_stress`). The largest s_xx is
+    2 p0 sqrt(mu Q/P), on the surface at x = -a on the loading branch; in full slip this is 2 mu p0.
+
+    Parameters
+    ----------
+    x, depth : float or ndarray
+        Place along the surface and depth, see :func:`elliptic_stress`.
+    half_width, peak_pressure, friction, load_ratio, peak_ratio, branch
+        As for :func:`cattaneo_mindlin_shear`. The shear acts on the half-plane in the direction of x.
+
+    Returns
+    -------
+    ndarray, shape (3, ...)
+        s_xx, s_zz and s_xz in the unit of `peak_pressure`, see :func:`elliptic_stress`.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or missing on its branch.
+    """
+    a = float(numbers("half_width", half_width, 0.0, open_low=True))
+    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
+    mu = float(numbers("friction", friction, 0.0))
+    total = elliptic_stress(x, depth, a, p0)
+    for factor, ratio in _loading_forms(load_ratio, peak_ratio, branch):
+        total = total + elliptic_stress(x, depth, a, 0.0, factor * mu * p0)
+        stick = math.sqrt(1.0 - ratio)
+        if stick > 0.0:
+            total = total - elliptic_stress(x, depth, stick * a, 0.0, factor * mu * p0 * stick)
+    return total
+
+
+def kirsch_stress(radius: ArrayLike, theta: ArrayLike, sxx: float, syy: float, sxy: float) -> np.ndarray:
+    """Stresses round an open hole under remote stress (Kirsch).
+
+    Parameters
+    ----------
+    radius, theta : float or ndarray
+        Polar coordinates: radius in units of the hole's, at least 1; angle in rad.
+    sxx, syy, sxy : float
+        Remote stress.
+
+    Returns
+    -------
+    ndarray, shape (3, ...)
+        s_rr, s_tt and s_rt in the unit of the remote stress; tension is positive.
+
+    Raises
+    ------
+    InputError
+        If `radius` is below 1, or an argument is no number.
+    """
+    square = np.asarray(numbers("radius", radius, 1.0)) ** -2.0
+    angle = numbers("theta", theta)
+    mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
+    along = half * np.cos(2.0 * angle) + sxy * np.sin(2.0 * angle)
+    across = sxy * np.cos(2.0 * angle) - half * np.sin(2.0 * angle)
+    fourth = 3.0 * square * square
+    return np.array([
+        mean * (1.0 - square) + along * (1.0 - 4.0 * square + fourth),
+        mean * (1.0 + square) - along * (1.0 + fourth),
+        across * (1.0 + 2.0 * square - fourth),
+    ])  # fmt: skip
+
+
 def _load_parameter(b: np.ndarray | float, a: np.ndarray | float) -> np.ndarray:
     b2 = np.square(b)
     return ((np.asarray(a) - 1.0) * (np.log1p(b2) + 2.0 * b2 * b2) + 2.0) / (8.0 * math.pi * b2 * (b2 + 1.0))
@@ -323,6 +442,19 @@ def _half_angle(lp: float, a: float) -> float:
         if high > 150.0:
             return math.pi
     return 2.0 * math.atan(math.exp(brentq(lambda x: _load_parameter(math.exp(x), a) - lp, low, high, xtol=1e-15)))
+
+
+def _loading_forms(load_ratio: float, peak_ratio: float | None, branch: Branch) -> list[tuple[float, float]]:
+    """The loading forms whose sum is the shear on a branch: the factor and Q/(mu P) of each."""
+    choice("branch", branch, ("loading", "unloading", "reloading"))
+    if branch == "loading":
+        return [(1.0, float(numbers("load_ratio", load_ratio, 0.0, 1.0)))]
+    if peak_ratio is None:
+        raise InputError("peak_ratio", f"the {branch} branch needs it")
+    peak = float(numbers("peak_ratio", peak_ratio, 0.0, 1.0))
+    now = float(numbers("load_ratio", load_ratio, -peak, peak))
+    sign = 1.0 if branch == "unloading" else -1.0
+    return [(sign, peak), (-2.0 * sign, 0.5 * (peak - sign * now))]
 
 
 def _partial_slip(x: np.ndarray, a: float, ratio: float, e: float) -> np.ndarray:
