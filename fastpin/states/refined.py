@@ -362,6 +362,8 @@ def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:
             yield *patch.edges, int(signs[0])
         return
     first, last = patch.stick[0], patch.stick[-1]
+    if is_all_round(first.ends[1] - first.ends[0]):
+        return
     yield patch.edges[0], first.ends[0], first.signs[0]
     for before, after in pairwise(patch.stick):
         if before.signs[1] == after.signs[0]:

@@ -240,7 +240,12 @@ class State:
         return 0.5 - self.tilt * before, 0.5 + self.tilt * after
 
     def signs_beside(self, run: np.ndarray) -> tuple[int, int]:
-        """Signs of the shear traction before and after the stick zone of the nodes `run`; 0 beside an open node."""
+        """Signs of the shear traction before and after the stick zone of the nodes `run`.
+
+        They are 0 beside an open node, and for a stick zone all round.
+        """
+        if run.size == self.shear.size:
+            return 0, 0
         before, after = np.sign(self.shear[[run[0] - 1, (run[-1] + 1) % self.shear.size]])
         return int(before), int(after)
 

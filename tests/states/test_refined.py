@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
-from fastpin import Grid, InputError, Material, MaterialPair, Problem, solve
+from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, solve
 from fastpin.kernels.status import OPEN
 from fastpin.states import fits
 
@@ -158,6 +158,16 @@ def test_a_contact_all_round_and_a_contact_across_the_first_node():
     )
     assert one.value == pytest.approx(two.value, rel=1e-9)
     assert one.angle == pytest.approx(two.angle, abs=1e-9)
+
+
+def test_a_contact_that_sticks_all_round_is_not_refined():
+    """It has no edge and no border. The last state has an even pressure and hardly any shear."""
+    fit = Problem.from_load_parameter(UNLIKE, -0.1, 0.3)
+    for state in solve(fit, [{"P": 0.01}, {"P": 0.0}], nodes=101):
+        assert np.all(state.status == Status.STICK)
+        assert state.refined.resolved == state.refined.unresolved == ()
+        assert state.hoop_stress() == pytest.approx(state.hoop_stress(straight=True), abs=1e-14)
+    assert np.ptp(state.hoop_stress()) < 1e-12 * state.peak_pressure
 
 
 def test_two_contacts_and_coarse_grids():
