@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -236,6 +237,116 @@ def test_spence_solves_the_equation_of_elliptic_integrals():
     assert closed_forms.spence_stick_ratio(0.5) == pytest.approx(3.0 - 2.0 * math.sqrt(2.0), rel=1e-14)
 
 
+def flamant(x, depth, pressure, shear, kinks):
+    """Stresses (s_xx, s_zz, s_xz) of a half-plane under tractions on (-1, 1), as an integral of line loads.
+
+    A line load has the radial stress -(2/pi) (P cos + Q sin)/r alone (Flamant). With s = sin(angle) the tractions are
+    smooth at their ends.
+    """
+
+    def part(angle, component):
+        s = math.sin(angle)
+        away, square = x - s, (x - s) ** 2 + depth**2
+        radial = -2.0 / math.pi * (pressure(s) * depth + shear(s) * away) / square**2
+        return radial * (away * away, depth * depth, away * depth)[component] * math.cos(angle)
+
+    breaks = sorted(math.asin(place) for place in {-1.0, 1.0, *kinks, *([x] if abs(x) < 1.0 else [])})
+    options = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
+    return [
+        sum(quad(part, low, high, (component,), **options)[0] for low, high in itertools.pairwise(breaks))
+        for component in range(3)
+    ]
+
+
+PLACES = [(0.3, 0.2), (-0.7, 0.05), (1.4, 0.3), (-1.01, 0.5), (0.0, 0.7), (2.0, 1.0), (-5.0, 3.0)]
+
+
+@pytest.mark.parametrize(("x", "depth"), PLACES)
+def test_stress_under_ellipses_is_flamants_integral(x, depth):
+    def ellipse(s):
+        return math.sqrt((1.0 - s) * (1.0 + s))
+
+    def nothing(_):
+        return 0.0
+
+    for p0, q0, tractions in ((1.0, 0.0, (ellipse, nothing)), (0.0, 1.0, (nothing, ellipse))):
+        expected = flamant(x, depth, *tractions, ())
+        assert closed_forms.elliptic_stress(x, depth, 1.0, p0, q0) == pytest.approx(expected, abs=2e-12)
+        scaled = closed_forms.elliptic_stress(0.01 * x, 0.01 * depth, 0.01, 3.0 * p0, 3.0 * q0)
+        assert scaled == pytest.approx(3.0 * np.array(expected), abs=6e-12)
+
+
+@pytest.mark.parametrize(
+    ("now", "branch", "kink"), [(0.6, "loading", 0.4), (-0.2, "unloading", 0.6), (0.1, "reloading", 0.65)]
+)
+def test_stress_in_partial_slip_is_flamants_integral(now, branch, kink):
+    """`kink` is 1 - Q/(mu P) of the latest border, and 0.4 that of the first load."""
+
+    def pressure(s):
+        return 2.0 * math.sqrt((1.0 - s) * (1.0 + s))
+
+    def shear(s):
+        return closed_forms.cattaneo_mindlin_shear(s, 1.0, 2.0, 0.3, now, 0.6, branch)
+
+    borders = [sign * math.sqrt(share) for share in {kink, 0.4} for sign in (-1.0, 1.0)]
+    for x, depth in PLACES:
+        found = closed_forms.cattaneo_mindlin_stress(x, depth, 1.0, 2.0, 0.3, now, 0.6, branch)
+        assert found == pytest.approx(flamant(x, depth, pressure, shear, borders), abs=5e-12)
+
+
+def test_stress_on_the_surface_of_the_half_plane():
+    x = np.linspace(-1.5, 1.5, 61)
+    inside = np.abs(x) <= 1.0
+    for ratio in (0.0, 0.3, 1.0):
+        along, across, shear = closed_forms.cattaneo_mindlin_stress(x, 0.0, 1.0, 2.0, 0.3, ratio)
+        assert across == pytest.approx(-2.0 * np.sqrt(np.maximum(1.0 - x**2, 0.0)), abs=1e-14)
+        assert shear == pytest.approx(-closed_forms.cattaneo_mindlin_shear(x, 1.0, 2.0, 0.3, ratio), abs=1e-14)
+        ends = closed_forms.cattaneo_mindlin_stress([-1.0, 1.0], 0.0, 1.0, 2.0, 0.3, ratio)[0]
+        peak = 2.0 * 2.0 * 0.3 * math.sqrt(ratio)
+        assert ends == pytest.approx([peak, -peak], abs=1e-14)
+        if ratio == 1.0:
+            assert along[inside] == pytest.approx(-2.0 * np.sqrt(1.0 - x[inside] ** 2) - 1.2 * x[inside], abs=1e-14)
+
+
+def test_largest_shear_below_a_hertz_contact():
+    """Johnson's 0.30 p0 at 0.78 a."""
+    depth = np.linspace(0.0, 2.0, 20001)
+    along, across, shear = closed_forms.elliptic_stress(0.0, depth, 1.0, 1.0)
+    largest = 0.5 * np.abs(along - across)
+    assert np.all(shear == 0.0)
+    assert largest.max() == pytest.approx(0.300283, abs=1e-6)
+    assert depth[np.argmax(largest)] == pytest.approx(0.78615, abs=1e-4)
+
+
+def test_kirsch_stress_is_free_on_the_edge_remote_far_away_and_at_rest_between():
+    theta, remote = np.linspace(-3.0, 3.0, 13), (1.0, -0.4, 0.3)
+    radial, hoop, shear = closed_forms.kirsch_stress(1.0, theta, *remote)
+    assert np.abs([radial, shear]).max() < 1e-15
+    assert closed_forms.kirsch_stress(1.0, [0.0, 0.5 * np.pi], 1.0, 0.0, 0.0)[1] == pytest.approx([-1.0, 3.0])
+    assert closed_forms.kirsch_stress(1.0, 0.25 * np.pi, 0.0, 0.0, 1.0)[1] == pytest.approx(-4.0)
+    radial, hoop, shear = closed_forms.kirsch_stress(1e9, theta, *remote)
+    cos, sin = np.cos(theta), np.sin(theta)
+    assert radial == pytest.approx(cos**2 - 0.4 * sin**2 + 0.6 * cos * sin, abs=1e-14)
+    assert hoop == pytest.approx(sin**2 - 0.4 * cos**2 - 0.6 * cos * sin, abs=1e-14)
+    assert shear == pytest.approx(-1.4 * cos * sin + 0.3 * (cos**2 - sin**2), abs=1e-14)
+    r, h = np.linspace(1.1, 3.0, 13), 1e-4
+
+    def at(radius, angle):
+        return closed_forms.kirsch_stress(radius, angle, *remote)
+
+    by_radius, by_angle = (
+        (at(r + h, theta) - at(r - h, theta)) / (2 * h),
+        (at(r, theta + h) - at(r, theta - h)) / (2 * h),
+    )
+    radial, hoop, shear = at(r, theta)
+    assert by_radius[0] + (by_angle[2] + radial - hoop) / r == pytest.approx(0.0, abs=1e-6)
+    assert by_radius[2] + (by_angle[1] + 2.0 * shear) / r == pytest.approx(0.0, abs=1e-6)
+    trace = (at(r + h, theta) + at(r - h, theta) - 2.0 * at(r, theta))[:2].sum(axis=0) / h**2
+    trace += by_radius[:2].sum(axis=0) / r
+    trace += (at(r, theta + h) + at(r, theta - h) - 2.0 * at(r, theta))[:2].sum(axis=0) / (h * r) ** 2
+    assert trace == pytest.approx(0.0, abs=2e-6)
+
+
 @pytest.mark.parametrize(
     ("field", "call"),
     [
@@ -259,6 +370,11 @@ def test_spence_solves_the_equation_of_elliptic_integrals():
         ("eccentricity", lambda: closed_forms.cattaneo_mindlin_shear(0.0, 1.0, 1.0, 0.3, 0.1, eccentricity=0.5)),
         ("friction", lambda: closed_forms.bulk_stress_eccentricity(0.1, 1.0, 1.0, 0.0)),
         ("mu_over_beta", lambda: closed_forms.spence_stick_ratio(-0.1)),
+        ("depth", lambda: closed_forms.elliptic_stress(0.0, -0.1, 1.0, 1.0)),
+        ("half_width", lambda: closed_forms.elliptic_stress(0.0, 0.1, 0.0, 1.0)),
+        ("shear", lambda: closed_forms.elliptic_stress(0.0, 0.1, 1.0, 1.0, math.nan)),
+        ("peak_ratio", lambda: closed_forms.cattaneo_mindlin_stress(0.0, 0.1, 1.0, 1.0, 0.3, 0.5, branch="reloading")),
+        ("radius", lambda: closed_forms.kirsch_stress([2.0, 0.9], 0.0, 1.0, 0.0, 0.0)),
     ],
 )
 def test_bad_input_names_the_argument(field, call):
