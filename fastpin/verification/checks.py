@@ -12,15 +12,24 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from fastpin.model.angles import BOTTOM
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms
-from fastpin.verification.comparisons import cattaneo_mindlin, cattaneo_mindlin_differences, residuals_away
+from fastpin.verification.comparisons import (
+    cattaneo_mindlin,
+    cattaneo_mindlin_differences,
+    half_plane_stress_difference,
+    residuals_away,
+    strain_slip_difference,
+    stress_resultant,
+)
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
 from fastpin.verification.sliding import solve_sliding
 
@@ -57,6 +66,22 @@ TOLERANCES: dict[str, dict[str, float]] = {
     },
     "sliding": {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-5, "end, unlike bodies": 9e-5},
     "equations": {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
+    "stresses": {
+        "Kirsch": 3e-15,
+        "peak N": 1.1e-13,
+        "Lame": 2e-13,
+        "on the edge": 1.6e-14,
+        "force": 8e-15,
+        "moment": 1.8e-15,
+    },
+    "strains": {"slip": 6e-5},
+    "stresses, half-plane": {
+        "largest shear": 4e-3,
+        "its depth": 1.5e-3,
+        "stresses": 6e-3,
+        "peak hoop stress": 4e-3,
+        "its place": 6e-4,
+    },
     "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
     "energy": {"work": 1.5e-5},
     "parts": {"differing numbers": 0.0},
@@ -271,6 +296,113 @@ def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
     yield _Row("slip", worst(lambda here, there: here.slip + there.slip[::-1]) / slip, "largest slip")
 
 
+_BODIES: tuple[Body, Body] = ("plate", "pin")
+
+
+def _open_hole(solving: _Solving) -> Rows:
+    """Remote stress, and a pin that touches nothing."""
+    remote = {"sxx": 0.1, "syy": -0.05, "sxy": 0.03}
+    (state,) = solving(Problem.from_load_parameter(LIKE, 0.5, 0.3, "body"), [remote])
+    radius, theta = 1.0 + np.geomspace(1e-6, 20.0, 30)[:, None], np.linspace(-3.0, 3.0, 37)
+    expected = closed_forms.kirsch_stress(radius, theta, **remote)
+    yield _Row("Kirsch", _stress_difference(state, "plate", radius, theta, expected) / remote["sxx"], "sxx")
+
+
+def _interference_fit(solving: _Solving) -> Rows:
+    """An oversized pin, loaded a little and unloaded.
+
+    The pressure p moves the edge by u_r = p R/(2 G) of the hole and by -p R (kappa - 1)/(4 G) of the pin.
+    """
+    problem = Problem.from_load_parameter(UNLIKE, -0.1, 0.3)
+    state = solving(problem, [{"P": 0.01}, {"P": 0.0}])[-1]
+    pair = problem.pair
+    compliance = 0.5 / pair.plate.shear_modulus + 0.25 * (pair.pin_kolosov - 1.0) / pair.pin.shear_modulus
+    pressure = -problem.clearance / compliance
+    yield _value("peak N", state.peak_pressure, pressure)
+    theta = np.linspace(-3.0, 3.0, 37)
+    radii = 1.0 + np.geomspace(1e-6, 10.0, 20), np.linspace(0.05, 1.0, 20)
+    for body, radius in zip(_BODIES, radii, strict=True):
+        fall = pressure * np.maximum(radius, 1.0)[:, None] ** -2.0 + 0.0 * theta
+        expected = np.array([-fall, fall if body == "plate" else -fall, 0.0 * fall])
+        difference = _stress_difference(state, body, radius[:, None], theta, expected)
+        yield _Row("Lame", difference / pressure, "p", case=f"interference fit, {body}")
+
+
+def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.ndarray, expected: np.ndarray) -> float:
+    """Largest difference of a polar component from the expected ones, shape (3, ...)."""
+    found = state.stress(Points.at_radius(radius, theta), body)
+    return float(np.abs(np.array([found.radial, found.hoop, found.shear]) - expected).max())
+
+
+def _edges_and_circles(name: str, problem: Problem, solving: _Solving) -> Rows:
+    """Stresses on the edge against the tractions, and on circles against the loads, of all states of a history."""
+    states = solving(problem, FRETTING)
+    for body in _BODIES:
+        edge, force, moment = [], [], []
+        for state in states:
+            found = state.stress(Points.at_depth(0.0, state.theta), body, straight=True)
+            difference = np.abs([found.radial + state.pressure, found.shear - state.shear])
+            edge.append(float(difference.max()) / state.peak_pressure)
+            for radius in (1.2, 3.0) if body == "plate" else (0.3, 0.8):
+                carried, turned = stress_resultant(state, body, radius)
+                part = radius**2 if body == "pin" and problem.pin_load == "body" else 1.0
+                force.append(abs(carried - part * complex(state.load["Q"], -state.load["P"])))
+                moment.append(abs(turned - state.resultants["M"]))
+        yield _Row("on the edge", float(np.max(edge)), "peak N", case=f"{name}, {body}")
+        yield _Row("force", float(np.max(force)), "F", case=f"{name}, {body}")
+        yield _Row("moment", float(np.max(moment)), "F R", case=f"{name}, {body}")
+
+
+def _strains(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
+    """Hoop strains on the edges against gap and slip of the solver, for the worst state."""
+    arc = (BOTTOM - half_arc, BOTTOM + half_arc)
+    states = solving(problem, [*FRETTING, {"sxx": 0.2, "sxy": 0.1}], arc=arc)
+    yield _Row("slip", float(np.max([strain_slip_difference(state) for state in states])), "largest slip")
+
+
+_NARROW = 1e-3
+"""Half-angle of the narrow contacts whose stresses are compared with the half-plane's, rad."""
+
+_NARROW_ARC = (BOTTOM - 1.2 * _NARROW, BOTTOM + 1.2 * _NARROW)
+
+
+def _hertz_stress(solving: _Solving) -> Rows:
+    """The largest shear below a contact without friction: at z/a = sqrt(g) with g = (sqrt(5) - 1)/2, z/a (1 - g) p0."""
+    load_parameter, golden = 1.0 / (math.pi * _NARROW**2), 0.5 * (math.sqrt(5.0) - 1.0)
+    problem = Problem.from_load_parameter(LIKE, load_parameter, 0.0)
+    (state,) = solving(problem, [{"P": 1.0}], arc=_NARROW_ARC)
+    peak = float(closed_forms.hertz_peak_pressure(load_parameter))
+    for body in _BODIES:
+
+        def shear(depth: float, body: Body = body) -> float:
+            found = state.stress(Points.at_depth(_NARROW * depth, BOTTOM), body)
+            return -0.5 * float(np.hypot(found.radial - found.hoop, 2.0 * found.shear)) / peak
+
+        largest = minimize_scalar(shear, bounds=(0.5, 1.1), method="bounded", options={"xatol": 1e-6})
+        yield _value("largest shear", -largest.fun, math.sqrt(golden) * (1.0 - golden), f"P, {body}")
+        yield _value("its depth", largest.x, math.sqrt(golden), f"P, {body}")
+
+
+def _cattaneo_mindlin_stress(solving: _Solving) -> Rows:
+    """Stresses in partial slip below the surface, and the largest hoop stress on it, 2 p0 sqrt(mu Q/P)."""
+    load_parameter, friction, ratio = 1.0 / (math.pi * _NARROW**2), 0.5, 0.6
+    problem = Problem.from_load_parameter(LIKE, load_parameter, friction, "centre", "fixed")
+    history = [{"P": 1.0}, {"Q": ratio * friction}, {"Q": -ratio * friction}]
+    _, first, back = solving(problem, history, arc=_NARROW_ARC)
+    peak = 2.0 * friction * math.sqrt(ratio) * float(closed_forms.hertz_peak_pressure(load_parameter))
+    branches: tuple[tuple[str, State, float, closed_forms.Branch], ...] = (
+        ("+Q", first, ratio, "loading"), ("-Q", back, -ratio, "unloading"),
+    )  # fmt: skip
+    for name, state, now, branch in branches:
+        for body in _BODIES:
+            difference = half_plane_stress_difference(state, body, now, ratio, branch)
+            yield _Row("stresses", difference, "p0", case=f"{name}, {body}")
+            found = state.peak_hoop_stress(body)
+            trailing = -1.0 if (now > 0.0) == (body == "plate") else 1.0
+            yield _value("peak hoop stress", found.value, peak, f"{name}, {body}")
+            yield _value("its place", (found.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
+
+
 def _energy(problem: Problem, solving: _Solving) -> Rows:
     """Work of the loads against stored plus dissipated energy, for the state with the largest difference."""
     rows = [
@@ -354,6 +486,23 @@ TOPICS: dict[str, tuple[str, Cases]] = {
     "equations": (
         "Residuals of the singular integral equations (46), (47)",
         {"P": _singular_equations, "Q and remote stress": _singular_equations_with_stress},
+    ),
+    "stresses": (
+        "Stresses: Kirsch, Lame, tractions on the edges, loads through circles",
+        {
+            "open hole": _open_hole,
+            "interference fit": _interference_fit,
+            "free rotation": partial(_edges_and_circles, "free rotation", _FREE),
+            "held rotation": partial(_edges_and_circles, "held rotation", _HELD),
+        },
+    ),
+    "strains": (
+        "Hoop strains of pin and plate: gap and slip",
+        {"free rotation": partial(_strains, _FREE, 1.75), "held rotation": partial(_strains, _HELD, 1.2)},
+    ),
+    "stresses, half-plane": (
+        "Stresses of half-planes, half-angle 0.001: Hertz, Cattaneo, Mindlin",
+        {"P": _hertz_stress, "P, Q": _cattaneo_mindlin_stress},
     ),
     "mirror": (
         "A history with -Q in place of Q: the mirror image",

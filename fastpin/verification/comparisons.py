@@ -1,4 +1,4 @@
-"""Differences of solved states from closed forms and from the singular integral equations.
+"""Differences of solved states from closed forms, from the singular integral equations, and of stresses from slip.
 
 ``fastpin verify``, scripts/accuracy.py and the tests share these measures. Problems are dimensionless
 (R = F = beta* = 1).
@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fastpin.model.angles import BOTTOM, angle_between
+from fastpin.model.points import Body, Points
 from fastpin.states.state import State
 from fastpin.verification import closed_forms, integral_equations
 
@@ -71,6 +72,86 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
             float(weights @ np.abs(state.shear - shear) / (state.problem.friction * (weights @ state.pressure)))
         )
     return found
+
+
+def half_plane_stress_difference(
+    state: State, body: Body, now: float, most: float, branch: closed_forms.Branch
+) -> float:
+    """Largest difference of a stress component from Cattaneo and Mindlin's half-plane, in parts of the peak pressure.
+
+    The points lie up to two half-widths from the middle of the contact, at depths of 0.02 to 2 half-widths.
+
+    Parameters
+    ----------
+    state : State
+        See :func:`cattaneo_mindlin`.
+    body : {"plate", "pin"}
+    now, most, branch
+        See :func:`cattaneo_mindlin`.
+    """
+    half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
+    x, depth = np.linspace(-2.0, 2.0, 41), np.linspace(0.02, 2.0, 21)[:, None]
+    found = state.stress(Points.at_depth(half * depth, BOTTOM + half * x), body)
+    # The pin pushes the plate along +x on the loading branch, and the plate pushes the pin along -x. The depth is
+    # +r in the plate and -r in the pin: in the pin x and srt change their signs.
+    side = 1.0 if body == "plate" else -1.0
+    expected = closed_forms.cattaneo_mindlin_stress(
+        side * x, depth, 1.0, 1.0, state.problem.friction, now, most, branch
+    )
+    peak = float(closed_forms.hertz_peak_pressure(state.problem.load_parameter(state.load["P"])))
+    return float(np.abs(np.array([found.hoop, found.radial, found.shear]) / peak - expected).max())
+
+
+def stress_resultant(state: State, body: Body, radius: float, count: int = 400) -> tuple[complex, float]:
+    """Force Q - iP and moment that the stress carries through a circle about the centre, from inside to outside.
+
+    Parameters
+    ----------
+    state : State
+    body : {"plate", "pin"}
+    radius : float
+        Radius of the circle, in the unit of the hole's radius.
+    count : int
+        Number of points on the circle.
+
+    Returns
+    -------
+    force, moment : complex, float
+        In N/m and N.
+    """
+    theta = 2.0 * np.pi * np.arange(count) / count
+    found = state.stress(Points.at_radius(radius, theta), body, straight=True)
+    force = -2.0 * np.pi * radius * np.mean((found.radial + 1j * found.shear) * np.exp(1j * theta))
+    return complex(force), -2.0 * np.pi * radius**2 * float(found.shear.mean())
+
+
+def strain_slip_difference(state: State) -> float:
+    """Largest difference of the slip from the integral of the hoop strains along the nodes, over the largest slip.
+
+    On the edge the hoop strain of a body is u_r + dv/dtheta for the displacements u_r and v. The rigid motion drops
+    out. So the strains of plate less pin are the change of the gap less the derivative of the slip. The displacements
+    have kernels of their own: the stresses are not used in the solver.
+
+    Parameters
+    ----------
+    state : State
+        Its pin first rested at the bottom of the hole, where slip and gap count from.
+    """
+    theta, clearance = state.theta, state.problem.clearance
+    points, weights = np.polynomial.legendre.leggauss(4)
+    steps = np.diff(theta)
+    between = theta[:-1, None] + 0.5 * steps[:, None] * (points + 1.0)
+    strains = _hoop_strain(state, "plate", between) - _hoop_strain(state, "pin", between)
+    opened = np.interp(between, theta, state.gap) - clearance * (1.0 - np.cos(between - BOTTOM))
+    slip = np.append(0.0, np.cumsum(0.5 * steps * ((opened - strains) @ weights)))
+    return float(np.abs(slip - (state.slip - state.slip[0])).max() / np.abs(state.slip).max())
+
+
+def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
+    pair = state.problem.pair
+    material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
+    found = state.stress(Points.at_depth(0.0, theta), body, straight=True)
+    return (found.hoop - 0.25 * (3.0 - kolosov) * (found.hoop + found.radial)) / (2.0 * material.shear_modulus)
 
 
 def residuals_away(state: State, margin: float) -> tuple[float, float]:

@@ -12,16 +12,18 @@ import numpy as np
 import pytest
 
 from fastpin.cli.main import main
-from fastpin.kernels import influence
+from fastpin.elasticity import stress as formulas
+from fastpin.kernels import cauchy, influence
 from fastpin.report.checks import table
 from fastpin.solver import solving
 from fastpin.solver.errors import ConvergenceError
+from fastpin.states import stress
 from fastpin.verification import checks as installation
 from fastpin.verification import closed_forms, finite_elements
 from fastpin.verification.checks import TOLERANCES, TOPICS, Check
 
 MOST_SLACK = 3.0
-ROUNDING = {"mirror", "conditions", "parts"}
+ROUNDING = {"mirror", "conditions", "parts", "stresses"}
 STATED = {"elements, frictionless", "elements, monotonic", "elements, fretting"}
 
 
@@ -159,6 +161,63 @@ def test_a_wrong_kernel_is_seen(only, monkeypatch, name: str) -> None:
     monkeypatch.setattr(influence, name, wrong)
     assert not all(check.passed for check in installation.verify())
     assert main(["verify"]) == 1
+
+
+def failed_cases(checks: list[Check]) -> set[tuple[str, str]]:
+    return {(check.quantity, check.case) for check in checks if not check.passed}
+
+
+def test_a_wrong_kernel_of_the_stresses_is_seen(only, monkeypatch) -> None:
+    """A billionth too large. Neither an open hole nor an even pressure has Cauchy integrals in the plate."""
+    only("stresses")
+    exact = cauchy.cauchy
+
+    def wrong(*given):
+        exact(*given)
+        given[-1][...] *= 1.0 + 1e-9
+
+    monkeypatch.setattr(cauchy, "cauchy", wrong)
+    checks = installation.verify()
+    passed = {(check.quantity, check.case) for check in checks if check.passed}
+    assert {("Kirsch", "open hole"), ("Lame", "interference fit, plate")} <= passed
+    seen = failed_cases(checks)
+    assert ("Lame", "interference fit, pin") in seen
+    for case in ("free rotation, plate", "free rotation, pin", "held rotation, plate", "held rotation, pin"):
+        assert {("on the edge", case), ("force", case)} <= seen
+
+
+@pytest.mark.parametrize(("body", "name"), [("plate", "plate_stress"), ("pin", "pin_stress")])
+def test_a_wrong_share_of_the_force_is_seen_by_the_strains(only, monkeypatch, body: str, name: str) -> None:
+    """A thousandth of the hoop stress of one wave. It changes neither the tractions on the edge nor the resultants."""
+    only("strains")
+    exact = getattr(formulas, name)
+
+    def wrong(problem, tractions, *given):
+        stresses, theta = exact(problem, tractions, *given), given[-2]
+        stresses[1] += 1e-3 * np.sin(theta)
+        return stresses
+
+    monkeypatch.setattr(stress, name, wrong)
+    assert not any(check.passed for check in installation.verify())
+
+
+@pytest.mark.parametrize("factor", [0.99, 1.01])
+def test_a_wrong_stress_of_the_half_plane_is_seen(only, monkeypatch, factor: float) -> None:
+    """The peak of the hoop stress has a reference of its own."""
+    only("stresses, half-plane")
+    exact = closed_forms.elliptic_stress
+    monkeypatch.setattr(closed_forms, "elliptic_stress", lambda *given: factor * exact(*given))
+    seen = failed_cases(installation.verify())
+    assert seen == {("stresses", f"{load}, {body}") for load in ("+Q", "-Q") for body in ("plate", "pin")}
+
+
+def test_a_wrong_sign_of_the_shear_stress_is_seen(only, monkeypatch) -> None:
+    only("stresses, half-plane", "stresses")
+    exact = formulas.pin_stress
+    monkeypatch.setattr(stress, "pin_stress", lambda *given: exact(*given) * np.array([[1.0], [1.0], [-1.0]]))
+    seen = failed_cases(installation.verify())
+    assert {case.split(", ")[-1] for _, case in seen} == {"pin"}
+    assert {"stresses", "on the edge", "force", "moment"} == {quantity for quantity, _ in seen}
 
 
 def test_a_wrong_reference_is_seen(only, monkeypatch, capsys) -> None:
