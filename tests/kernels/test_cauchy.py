@@ -2,7 +2,9 @@
 
 import itertools
 import math
+import threading
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.special import spence
@@ -101,6 +103,48 @@ def test_integrals_against_quadrature(way, name, outside):
         assert integrals == pytest.approx(quadrature(tractions, angle, distance, outside), abs=rounding(tractions))
 
 
+@pytest.mark.parametrize("outside", [True, False])
+def test_integrals_against_quadrature_with_25_digits(outside):
+    """Of random tractions at uneven nodes, 0.002 to 0.5 from the edge."""
+    tractions = Tractions((patch(np.random.default_rng(11), -3.0, -0.4, 12),))
+    away, theta = np.array([0.002, 0.03, 0.5]), np.array([-1.3, -2.2, 0.4])
+    found = cauchy_integrals(tractions, theta, away, outside)
+    with mpmath.workdps(25):
+        for angle, distance, integrals in zip(theta, away, found, strict=True):
+            zeta = mpmath.exp((distance if outside else -distance) + 1j * mpmath.mpf(angle))
+            expected = [0, 0, 0]
+            for left, right in itertools.pairwise(
+                [[mpmath.mpf(value) for value in row] for row in tractions.patches[0]]
+            ):
+                for k, part in enumerate(_parts(left, right, zeta)):
+                    breaks = [left[0], angle, right[0]] if left[0] < angle < right[0] else [left[0], right[0]]
+                    expected[k] += mpmath.quad(part, breaks, maxdegree=9) / (2 * mpmath.pi)
+            assert integrals == pytest.approx(np.array(expected, dtype=complex), abs=6.5e-14)
+
+
+def _parts(left, right, zeta):
+    """Integrands of C[p], C[T] and Z on a linear piece."""
+
+    def values(xi):
+        share = (xi - left[0]) / (right[0] - left[0])
+        pressure, shear = (left[k] + share * (right[k] - left[k]) for k in (1, 2))
+        return pressure - 1j * shear, shear, mpmath.expj(xi)
+
+    def whole(xi):
+        both, _, t = values(xi)
+        return both * t / (t - zeta)
+
+    def of_shear(xi):
+        _, shear, t = values(xi)
+        return shear * t / (t - zeta)
+
+    def slope(xi):
+        both, _, t = values(xi)
+        return both * t * zeta / (t - zeta) ** 2
+
+    return whole, of_shear, slope
+
+
 @pytest.mark.parametrize("name", [name for name in samples() if name != "nothing"])
 @pytest.mark.parametrize("outside", [True, False])
 def test_integrals_against_the_plain_sum_near_the_edge(way, name, outside):
@@ -158,3 +202,29 @@ def test_no_bit_depends_on_the_number_of_points_at_a_time(monkeypatch):
     whole = cauchy_integrals(tractions, theta, away, True)
     monkeypatch.setattr(module, "CHUNK", 37)
     assert np.array_equal(cauchy_integrals(tractions, theta, away, True), whole)
+
+
+@pytest.mark.parametrize("outside", [True, False])
+def test_one_thread_and_two_give_the_same_bits(monkeypatch, outside):
+    tractions, rng = samples()["arc"], np.random.default_rng(1)
+    count = 2 * module.CHUNK + 5_000
+    theta, away = rng.uniform(-3.0, 3.0, count), 10.0 ** rng.uniform(-6.0, 0.0, count)
+    found, exact = [], cauchy.cauchy
+    for cores in (1, 2):
+        used, all_used = set(), threading.Event()
+
+        def watched(*given, cores=cores, used=used, all_used=all_used):
+            used.add(threading.get_ident())
+            if len(used) == cores:
+                all_used.set()
+            assert all_used.wait(60.0)
+            exact(*given)
+
+        monkeypatch.setattr(cauchy, "cauchy", watched)
+        monkeypatch.setattr(module.os, "cpu_count", lambda cores=cores: cores)
+        found.append(cauchy_integrals(tractions, theta, away, outside))
+        assert len(used) == cores
+    monkeypatch.setattr(cauchy, "cauchy", exact)
+    assert np.array_equal(*found)
+    alone = np.concatenate([cauchy_integrals(tractions, theta[k : k + 1], away[k : k + 1], outside) for k in range(99)])
+    assert np.array_equal(alone, found[0][:99])
