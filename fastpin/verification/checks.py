@@ -68,8 +68,8 @@ TOLERANCES: dict[str, dict[str, float]] = {
     "equations": {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
     "stresses": {
         "Kirsch": 3e-15,
-        "peak N": 1.1e-13,
-        "Lame": 2e-13,
+        "peak N": 1.5e-13,
+        "Lame": 6e-13,  # 2.8e-13 with the BLAS kernels of older processors
         "on the edge": 1.6e-14,
         "force": 8e-15,
         "moment": 1.8e-15,
