@@ -82,9 +82,8 @@ def main() -> None:
     errors, holds, sizes, resolved = (np.array(column) for column in zip(*rows, strict=True))
     print(f"{errors.size} states, {int(resolved.sum())} resolved")
     print(f"errors up to 1e-3: {int(np.sum(errors <= 1e-3))}; of the resolved {int(np.sum(errors[resolved] <= 1e-3))}")
-    print(
-        f"median error {np.median(errors):.1e}, largest {errors.max():.1e}, of the resolved {errors[resolved].max():.1e}"
-    )
+    print(f"median error {np.median(errors):.1e}, largest {errors.max():.1e}")
+    print(f"largest error of the resolved {errors[resolved].max():.1e}")
     print(f"bars that hold: {int(holds.sum())} of {holds.size}; median bar {np.median(sizes):.1e}")
 
 
