@@ -19,6 +19,7 @@ _SI = {
     "energy": "J/m",
     "ratio": "",
     "energy density": "J/m^2",
+    "stress times strain": "Pa",
 }
 
 _WITH_PREFIX = frozenset({*_SI.values(), "s"} - {""})
@@ -35,6 +36,7 @@ _DIMENSIONLESS = {
     "energy": "F^2 beta*",
     "ratio": "",
     "energy density": "F^2 beta*/R",
+    "stress times strain": "F^2 beta*/R^2",
 }
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}

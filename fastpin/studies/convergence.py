@@ -197,7 +197,7 @@ def converge(
         `label` names the present run.
     outcomes : mapping of str, optional
         Numbers to study besides the quantities, see :func:`fastpin.studies.outcome_tables.outcomes_from`. They are read
-        from the history up to the last studied corner, whose corners are then all kept.
+        from the history up to the last studied corner, whose corners are then all kept, with slip sums.
 
     Returns
     -------
@@ -344,7 +344,7 @@ class _Work:
         try:
             result = solve(
                 self.task.problem, self.history, method=method, increments=increments or None, grid=grid,
-                keep=self.keep, progress=progress,
+                keep=self.keep, progress=progress, slip_sums=bool(self.outcomes),
             )  # fmt: skip
         except ArcError as error:
             error.args = (f"with {setting}: {error}",)

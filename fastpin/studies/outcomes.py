@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -27,7 +28,9 @@ from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
+    from fastpin.damage.hot_spots import HotSpot
     from fastpin.solver.result import Result
+    from fastpin.states.load_cycle import LoadCycle
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
@@ -36,7 +39,12 @@ SPANS = ("history", "cycle")
 """Kept states whose values count: those of the whole history, or of the last cycle."""
 
 
+SWT, FATEMI_SOCIE = "smith-watson-topper", "fatemi-socie"
+"""The criteria of fatigue that have a life."""
+
 _PACKAGE = Path(__file__).parents[1]
+
+_HOT_SPOTS: WeakKeyDictionary[Result, dict[str, HotSpot]] = WeakKeyDictionary()
 
 
 class CycleQuantity(NamedTuple):
@@ -60,8 +68,29 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     "rotation_change": CycleQuantity("rotation", lambda result: result.cycles[-1].rotation_change),
     "pressure_change": CycleQuantity("", lambda result: result.cycles[-1].pressure_change),
     "shear_change": CycleQuantity("", lambda result: result.cycles[-1].shear_change),
+    "largest_slip_range": CycleQuantity("displacement", lambda result: _load_cycle(result).largest_slip_range),
+    "largest_slip_range_angle": CycleQuantity("angle", lambda result: _load_cycle(result).largest_slip_range_angle),
+    "largest_friction_energy": CycleQuantity("energy density", lambda result: _friction_energy(result)[0]),
+    "largest_friction_energy_angle": CycleQuantity("angle", lambda result: _friction_energy(result)[1]),
+    "smith_watson_topper": CycleQuantity("stress times strain", lambda result: _hot_spot(result, SWT).parameter),
+    "smith_watson_topper_angle": CycleQuantity("angle", lambda result: _hot_spot(result, SWT).theta),
+    "smith_watson_topper_life": CycleQuantity("", lambda result: _life(result, SWT)),
+    "fatemi_socie": CycleQuantity("rotation", lambda result: _hot_spot(result, FATEMI_SOCIE).parameter),
+    "fatemi_socie_angle": CycleQuantity("angle", lambda result: _hot_spot(result, FATEMI_SOCIE).theta),
+    "fatemi_socie_life": CycleQuantity("", lambda result: _life(result, FATEMI_SOCIE)),
+    "findley": CycleQuantity("traction", lambda result: _hot_spot(result, "findley").parameter),
+    "findley_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "findley").theta),
+    "crossland": CycleQuantity("traction", lambda result: _hot_spot(result, "crossland").parameter),
+    "crossland_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "crossland").theta),
+    "dang_van": CycleQuantity("traction", lambda result: _hot_spot(result, "dang-van").parameter),
+    "dang_van_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "dang-van").theta),
 }
-"""The quantities of the last cycle, by name; see :class:`fastpin.states.cycles.Cycle`."""
+"""The quantities of the last cycle, by name.
+
+The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four are the largest values of a node in
+:class:`fastpin.states.LoadCycle`. The others belong to the hot spot on the edge of the plate, see
+:func:`fastpin.damage.fatigue`.
+"""
 
 
 @dataclass(frozen=True)
@@ -259,6 +288,37 @@ def _states_of_cycle(result: Result) -> list[State]:
     if sum(state.fraction == 1.0 and load_point(state) > first for state in states) < cycle.length:
         raise FastpinError('not all corners of the last cycle are kept; keep = "corners" keeps them')
     return states
+
+
+def _load_cycle(result: Result) -> LoadCycle:
+    """The last cycle. All its corners must be kept: its ranges are those of the kept states."""
+    _states_of_cycle(result)
+    return result.cycle()
+
+
+def _friction_energy(result: Result) -> tuple[float, float]:
+    """The largest friction energy of a node, J/m^2, and its angle, rad."""
+    cycle = result.cycle()
+    if cycle.friction_energy is None:
+        raise FastpinError("the friction energy of nodes is not counted; slip_sums = true in [solve] counts it")
+    return float(cycle.friction_energy.max()), cycle.angle_of_largest(cycle.friction_energy)
+
+
+def _hot_spot(result: Result, criterion: str) -> HotSpot:
+    """The hot spot on the edge of the plate. It is kept while the result lives: several outcomes read it."""
+    found = _HOT_SPOTS.setdefault(result, {})
+    if criterion not in found:
+        _states_of_cycle(result)
+        found[criterion] = result.fatigue(criterion).hot_spot
+    return found[criterion]
+
+
+def _life(result: Result, criterion: str) -> float:
+    """The life at the hot spot, cycles; NaN if it is infinite."""
+    life = _hot_spot(result, criterion).life
+    if math.isnan(life):
+        raise FastpinError(f"the plate's material has no constants for a life by {criterion}")
+    return life if math.isfinite(life) else math.nan
 
 
 def _arc(angles: np.ndarray) -> float:

@@ -69,7 +69,7 @@ def test_the_last_cycle_is_from_its_beginning_to_its_end(result: Result) -> None
     assert value(given | {"take": "range"}, result) == lost[4] - lost[2]
 
 
-@pytest.mark.parametrize("name", CYCLE_QUANTITIES)
+@pytest.mark.parametrize("name", ["dissipation", "rotation_change", "pressure_change", "shear_change"])
 def test_quantities_of_the_last_cycle(name: str, result: Result) -> None:
     assert value({"cycle": name}, result) == getattr(result.cycles[-1], name)
 
@@ -77,6 +77,9 @@ def test_quantities_of_the_last_cycle(name: str, result: Result) -> None:
 def test_every_quantity_can_be_an_outcome(result: Result) -> None:
     for name, quantity in QUANTITIES.items():
         number, raw = value({"quantity": name}, result), quantity.of(result[-1])
+        if math.isnan(raw):
+            assert (number, name) == (None, "kt_gross")  # there is no remote stress
+            continue
         expected = from_bottom(raw) if quantity.kind == "angle" else raw
         assert number == (math.degrees(raw) if quantity.kind == "width" else expected), name
 
