@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fastpin.damage import cycle_states, fatigue
+from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units, with_unit
 from fastpin.report.curves import Curve
+from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point
+from fastpin.states.state import State
 from fastpin.storage.files import replacing
+
+MOST_STOPS = 100
+"""Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""
 
 WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in NodeBehaviour}
 """Words for the behaviours of a node: "no contact", "sticks", "slips" and "opens"."""
@@ -30,6 +38,30 @@ def cycle_line(cycle: LoadCycle) -> str:
         parts.append(_in_words(cycle, "slip distance", unit["displacement"]))
         parts.append(_in_words(cycle, "friction energy", unit["energy density"]))
     return f"from corner {cycle.first:,} to {cycle.last:,}: {', '.join(parts)}"
+
+
+def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
+    """Return a line of text: the hot spot of the plate by Smith, Watson and Topper, its plane and its life.
+
+    It is empty if the plate has no fatigue constants, if the states lack a corner of the cycle, or if the cycle has
+    more than :data:`MOST_STOPS` states.
+    """
+    try:
+        stops = cycle_states(states, cycle)
+    except InputError:
+        return ""
+    problem = stops[0].problem
+    if problem.pair.plate.is_rigid or problem.pair.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
+        return ""
+    spot = fatigue(stops, "smith-watson-topper").hot_spot
+    parts = [
+        f"{with_unit(spot.parameter, units(problem)['stress times strain'], 4)} at {from_bottom(spot.theta):z.2f} deg"
+    ]
+    if np.isfinite(spot.plane):
+        parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
+    if not np.isnan(spot.life):
+        parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
+    return f"fatigue of the plate in the last cycle, Smith-Watson-Topper: {', '.join(parts)}"
 
 
 def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:

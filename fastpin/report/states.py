@@ -82,6 +82,28 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     return table(columns, hidden)
 
 
+def hoop_line(problem: Problem, states: Sequence[State]) -> str:
+    """Return a line of text: the largest hoop stress of the plate in the states, and its stress concentrations.
+
+    It is empty for a rigid plate, and if no state is in contact.
+    """
+    if problem.pair.plate.is_rigid or not any(state.in_contact for state in states):
+        return ""
+    state = max(states, key=lambda state: state.peak_hoop_stress().value)
+    peak = state.peak_hoop_stress()
+    resolved = "" if peak.resolved else " (not resolved by the nodes)"
+    text = (
+        f"largest hoop stress of the plate in these states: {with_unit(peak.value, units(problem)['traction'], 4)}"
+        f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
+    )
+    ratios = {"bearing": peak.kt_bearing, "remote": peak.kt_gross}
+    known = [f"Kt {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
+    parts = {"remote": peak.kt_bypass_part, "bearing": peak.kt_bearing_part}
+    if len(known) == len(parts):
+        known.append(f"it is {' + '.join(f'{value:.4g} x {name} stress' for name, value in parts.items())}")
+    return "; ".join([text, *known])
+
+
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
     """Return one line of text for each block of cycles: how the cycles changed tractions, energy and rotation."""
     lines = [_block_line(problem, block) for block in consecutive_cycles(cycles)]

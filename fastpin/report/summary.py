@@ -89,7 +89,7 @@ def _material_summary(material: Material) -> dict[str, Any]:
 
 
 def _state_summary(state: State) -> dict[str, Any]:
-    resultants, bars = state.resultants, state.error_bars
+    resultants, bars, plate = state.resultants, state.error_bars, state.problem.pair.plate
     return {
         "load_point": load_point(state),
         "step": state.step,
@@ -97,6 +97,7 @@ def _state_summary(state: State) -> dict[str, Any]:
         "load": state.load,
         "in_contact": state.in_contact,
         **{name: in_degrees(name, each.of(state)) for name, each in QUANTITIES.items() if name not in resultants},
+        "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],

@@ -11,8 +11,7 @@
 ``/restart``            restarts to continue from: ``start``, ``latest`` and the corners of the option ``save_after``
 ======================  ============================================================================================
 
-Every array has its unit as an attribute. Dimensions are named as in netCDF. Therefore xarray reads ``/states``
-directly.
+Every array has its unit as an attribute. Dimensions are named as in netCDF, so xarray reads ``/states`` directly.
 """
 
 from __future__ import annotations

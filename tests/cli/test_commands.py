@@ -181,7 +181,8 @@ def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: 
     first = lines[3].split()
     assert first[:3] == ["1", "2.42", "0"]
     assert float(first[3]) == pytest.approx(100.0, rel=1e-3)  # MPa
-    assert len(lines) == 7
+    assert len(lines) == 8
+    assert lines[-2].startswith("largest hoop stress of the plate in these states: ")
     assert "81 nodes" in lines[-1]
 
 
@@ -524,6 +525,43 @@ def test_the_last_cycle_is_told_and_written(cyclic: Path, tmp_path: Path, capsys
     assert sum(cycle["nodes"].values()) == 61
     assert cycle["dissipation"] == result.dissipation
     assert f"at {cycle['largest_friction_energy_angle']:z.2f} deg" in line
+
+
+SHEET = (
+    CYCLES.replace("repeat = 12  ", "repeat = 40  ")
+    .replace("nu = 0.33", "")
+    .replace("E  = 69e9", 'material = "2024-T3"')
+)
+
+
+def test_hoop_stress_and_fatigue_are_told(cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stored = str(tmp_path / "a.h5")
+    cyclic.write_text(SHEET)
+    assert main(["run", str(cyclic), "-o", stored]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    result = fastpin.load(stored)
+    assert len(result) == 121
+    hoop = next(line for line in lines if line.startswith("largest hoop stress of the plate in these states: "))
+    shown = [*result[:20], *result[-20:]]
+    assert f" {max(state.peak_hoop_stress().value for state in shown) / 1e6:.4g} MPa" in hoop
+    fatigue = next(line for line in lines if line.startswith("fatigue of the plate in the last cycle"))
+    assert fatigue.endswith(f"life {result.fatigue('smith-watson-topper').hot_spot.life:.3g} cycles")
+    assert main(["show", stored]) == 0
+    assert [line for line in capsys.readouterr().out.splitlines() if line in (hoop, fatigue)] == [hoop, fatigue]
+    assert main(["show", stored, "--json"]) == 0
+    states = json.loads(capsys.readouterr().out)["states"]
+    assert [state["peak_hoop_resolved"] for state in states] == [state.peak_hoop_stress().resolved for state in result]
+
+
+def test_fatigue_is_not_told_if_the_states_of_the_cycle_are_not_at_hand(
+    cyclic: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cyclic.write_text(SHEET)
+    stored = ["-o", str(tmp_path / "a.h5")]
+    assert main(["run", str(cyclic), *stored, "--between", "9"]) == 0  # the last cycle has 30 states, 20 are printed
+    assert "fatigue" not in capsys.readouterr().out
+    assert main(["run", str(cyclic), *stored, "--overwrite", "--between", "9", "--slip-sums"]) == 0  # they are read
+    assert "fatigue of the plate in the last cycle" in capsys.readouterr().out
 
 
 def test_a_cycle_whose_ends_were_not_kept_is_told(

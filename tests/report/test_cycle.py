@@ -6,10 +6,14 @@ import json
 
 import pytest
 
+from fastpin.model.angles import from_bottom
+from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.report.cycle import cycle_line, document, write_csv
+from fastpin.report.cycle import MOST_STOPS, cycle_line, document, fatigue_line, write_csv
 from fastpin.report.summary import json_ready
+from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.load_cycle import LoadCycle
 from tests.support.samples import PAIR
@@ -48,3 +52,36 @@ def test_the_table_names_units(cycle: LoadCycle, tmp_path) -> None:
     assert lines[0].startswith("angle [deg],behaviour,slip_range [m],slip_range_bound [m],slip_distance [m],")
     assert len(lines) == 62
     assert float(lines[31].split(",")[2]) == cycle.slip_range[30]
+
+
+def in_sheet(fatigue: FatigueConstants | None, **options: object) -> Result:
+    """A titanium pin in a sheet with these constants."""
+    pair = MaterialPair(MATERIALS["Ti-6Al-4V"], Material(70e9, 0.33, "", fatigue))
+    return solve(Problem(pair, 0.01, 2e-5, 0.4), HISTORY, nodes=61, **options)
+
+
+def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
+    result = in_sheet(MATERIALS["2024-T3"].fatigue)
+    spot = result.fatigue("smith-watson-topper").hot_spot
+    line = fatigue_line(result.states, result.cycles[-1])
+    assert line.startswith("fatigue of the plate in the last cycle, Smith-Watson-Topper: ")
+    assert f"{spot.parameter / 1e3:.4g} kPa at {from_bottom(spot.theta):z.2f} deg" in line
+    assert f"normal of the plane {spot.plane * 57.29577951308232:z.2f} deg from +x" in line
+    assert line.endswith(f", life {spot.life:.3g} cycles")
+
+
+def test_fatigue_is_told_without_a_life_if_constants_for_it_are_missing() -> None:
+    result = in_sheet(FatigueConstants(yield_strength=3e8))
+    assert "life" not in fatigue_line(result.states, result.cycles[-1])
+    assert "Smith-Watson-Topper" in fatigue_line(result.states, result.cycles[-1])
+
+
+def test_no_fatigue_is_told_without_constants_or_states() -> None:
+    bare = in_sheet(None)
+    assert fatigue_line(bare.states, bare.cycles[-1]) == ""
+    result = in_sheet(MATERIALS["2024-T3"].fatigue, between=60)
+    assert len(result.cycle().states) > MOST_STOPS
+    assert fatigue_line(result.states, result.cycles[-1]) == ""
+    corners = [state for state in result if state.fraction == 1.0]
+    assert fatigue_line(corners, result.cycles[-1]) != ""
+    assert fatigue_line(corners[:-1], result.cycles[-1]) == ""

@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
-from fastpin.report.states import state_table
-from tests.support.samples import sample_result
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fastpin.kernels.status import OPEN
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.report.states import hoop_line, state_table
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from tests.support.samples import PAIR, sample_result
 
 
 def test_long_tables_are_cut_in_the_middle() -> None:
@@ -11,3 +21,44 @@ def test_long_tables_are_cut_in_the_middle() -> None:
     text = state_table(sample_result().problem, list(sample_result(corners)))
     assert len(text.splitlines()) < 60
     assert "60 more" in text
+
+
+@pytest.fixture(scope="module")
+def states() -> list[State]:
+    return list(solve(Problem(PAIR, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"sxx": 5e7}, {"P": 1e6}], nodes=61))
+
+
+def test_the_largest_hoop_stress_is_told_with_its_concentrations(states: list[State]) -> None:
+    peaks = [state.peak_hoop_stress() for state in states]
+    assert peaks[1].value == max(peak.value for peak in peaks)
+    line = hoop_line(states[0].problem, states)
+    assert f"{peaks[1].value / 1e6:.4g} MPa" in line
+    assert "load point 2; " in line
+    assert (
+        f"Kt {peaks[1].kt_bearing:.4g} on the bearing stress; Kt {peaks[1].kt_gross:.4g} on the remote stress" in line
+    )
+    parts = [float(word) for word in line.rsplit("it is ", 1)[1].split() if word[0].isdigit()]
+    sums = parts[0] * peaks[1].gross_stress + parts[1] * peaks[1].bearing_stress
+    assert sums == pytest.approx(peaks[1].value, rel=1e-3)
+
+
+def test_without_remote_stress_there_is_one_concentration(states: list[State]) -> None:
+    line = hoop_line(states[0].problem, states[:1])
+    assert line.endswith(f"load point 1; Kt {states[0].peak_hoop_stress().kt_bearing:.4g} on the bearing stress")
+
+
+def test_a_peak_that_the_nodes_do_not_resolve_is_marked() -> None:
+    states = solve(Problem(PAIR, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"P": 5e5}], nodes=61)
+    marked = [" (not resolved by the nodes) at " in hoop_line(state.problem, [state]) for state in states]
+    assert marked == [not state.peak_hoop_stress().resolved for state in states]
+    assert marked == [False, True]
+
+
+def test_no_hoop_stress_is_told_of_a_rigid_plate_or_without_contact() -> None:
+    rigid = Problem(MaterialPair(MATERIALS["steel"], Material.rigid()), 0.01, 2e-5, 0.4)
+    assert hoop_line(rigid, list(sample_result(problem=rigid))) == ""
+    closed = sample_result()[0]
+    zeros = np.zeros(closed.grid.size)
+    empty = replace(closed, pressure=zeros, shear=zeros, status=np.full(closed.grid.size, OPEN, dtype=np.int8))
+    assert hoop_line(closed.problem, [empty]) == ""
+    assert hoop_line(closed.problem, [empty, closed]) != ""
