@@ -20,9 +20,10 @@ _SI = {
     "ratio": "",
     "energy density": "J/m^2",
     "stress times strain": "Pa",
+    "life": "cycles",
 }
 
-_WITH_PREFIX = frozenset({*_SI.values(), "s"} - {""})
+_WITH_PREFIX = frozenset({*_SI.values(), "s"} - {"", "cycles"})
 """Units that may get an SI prefix."""
 
 _DIMENSIONLESS = {
@@ -37,6 +38,7 @@ _DIMENSIONLESS = {
     "ratio": "",
     "energy density": "F^2 beta*/R",
     "stress times strain": "F^2 beta*/R^2",
+    "life": "cycles",
 }
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
@@ -50,8 +52,8 @@ def units(problem: Problem) -> dict[str, str]:
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     """A factor for `values`, and `unit` with an SI prefix. In this unit the largest value reads well.
 
-    Ratios, units of a dimensionless problem, degrees and units of the user such as "MPa" keep the factor 1 and get no
-    prefix.
+    Ratios, lives, units of a dimensionless problem, degrees and units of the user such as "MPa" keep the factor 1 and
+    get no prefix.
     """
     largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     if unit not in _WITH_PREFIX or largest == 0.0:

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from fastpin.cli.main import main
 from fastpin.paper import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
-from fastpin.studies.plan import parse_plan
+from fastpin.studies.plan import parse_plan, read_plan
 from fastpin.studies.run_end import KEY_FIGURES
 from scripts.inline import Inline
 
@@ -112,6 +113,48 @@ def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture
     (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
     exec(compile(code, "fatigue.md", "exec"), {})
     assert capsys.readouterr().out == printed
+
+
+RIVET = (ROOT / "docs" / "riveted-joint.md").read_text(encoding="utf-8")
+
+
+def test_the_riveted_joint_shows_its_files() -> None:
+    shown = re.findall(r"```toml\n(.*?)```", RIVET, re.DOTALL)
+    assert shown == [(ROOT / "docs" / f"riveted-joint{part}.toml").read_text() for part in ("", "-plan")]
+
+
+def test_the_riveted_joint_prints_its_numbers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The joint is symmetric, so the side of a printed angle is left to rounding."""
+    monkeypatch.chdir(ROOT / "docs")
+    run, printed = re.findall(r"```text\n(.*?)```", RIVET, re.DOTALL)
+    assert main(["run", "riveted-joint.toml"]) == 0
+    lines = without_sides(capsys.readouterr().out).splitlines()
+    for line in run.splitlines():
+        assert without_sides(line) in lines
+    (code,) = re.findall(r"```python\n(.*?)```", RIVET, re.DOTALL)
+    exec(compile(code, "riveted-joint.md", "exec"), {})
+    assert capsys.readouterr().out == printed
+
+
+def without_sides(text: str) -> str:
+    """Printed angles without their signs, and without the load point, one of several with equal stress."""
+    return re.sub(r"load point \d+;", "", re.sub(r"-(\d[\d.]* deg)", r"\1", text))
+
+
+def test_the_plan_of_the_riveted_joint_can_be_run(tmp_path: Path) -> None:
+    plan = read_plan(ROOT / "docs" / "riveted-joint-plan.toml")
+    assert len(plan.runs) == 18
+    text = (ROOT / "docs" / "riveted-joint-plan.toml").read_text(encoding="utf-8")
+    friction = "contact.friction = { from = 0.2, to = 0.6, count = 9 }"
+    assert friction in text
+    small = parse_plan(text.replace(friction, "solve.nodes = [101]"), folder=ROOT / "docs")
+    summary = sweep.run(small, tmp_path, Inline())
+    assert (summary.done, summary.unread) == (2, [])
+    clearance, interference = sorted(sweep.rows(small, tmp_path), key=lambda row: -row["contact.clearance"])
+    assert clearance["life"] < 0.1 * interference["life"]
+    assert clearance["energy"] < 0.1 * interference["energy"]
 
 
 def test_every_column_of_the_index_is_explained() -> None:

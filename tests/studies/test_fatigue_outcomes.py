@@ -113,7 +113,7 @@ def test_units_of_the_parameters_follow_the_problem() -> None:
         "smith_watson_topper": ("Pa", "F^2 beta*/R^2"),
         "fatemi_socie": ("rad", "F beta*/R"),
         "findley": ("Pa", "F/R"),
-        "smith_watson_topper_life": ("", ""),
+        "smith_watson_topper_life": ("cycles", "cycles"),
         "dang_van_angle": ("deg", "deg"),
         "largest_slip_range": ("m", "F beta*"),
     }
@@ -230,7 +230,7 @@ def test_a_sweep_ranks_designs_by_life(plan: Path, capsys: pytest.CaptureFixture
     assert reason in out
     assert Path("a.png").read_bytes().startswith(b"\x89PNG")
     lines = Path("a.csv").read_text().splitlines()
-    assert "place deg, energy J/m^2" in lines[1]
+    assert "life cycles, place deg, energy J/m^2" in lines[1]
     rows = list(csv.DictReader(lines[2:]))
     case = fastpin.read_case("case.toml")
     for row in rows:
