@@ -89,7 +89,10 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     """
     if problem.pair.plate.is_rigid or not any(state.in_contact for state in states):
         return ""
-    state = max(states, key=lambda state: state.peak_hoop_stress().value)
+    distinct: dict[tuple[object, ...], State] = {}
+    for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
+        distinct.setdefault((state.pressure.tobytes(), state.shear.tobytes(), *state.load.values()), state)
+    state = max(distinct.values(), key=lambda state: state.peak_hoop_stress().value)
     peak = state.peak_hoop_stress()
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     text = (
