@@ -24,13 +24,12 @@ import numpy as np
 from fastpin.errors import FastpinError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
-from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.states.quantities import QUANTITIES, load_point, size
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.damage.hot_spots import HotSpot
     from fastpin.solver.result import Result
-    from fastpin.states.load_cycle import LoadCycle
 
 TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 """Ways to take one number from the values of a quantity, see :func:`taken`."""
@@ -38,6 +37,9 @@ TAKES = ("last", "largest", "smallest", "largest magnitude", "range")
 SPANS = ("history", "cycle")
 """Kept states whose values count: those of the whole history, or of the last cycle."""
 
+
+ROUNDING = 1e-9
+"""Largest slip range without slip, in parts of the natural size of displacements."""
 
 SWT, FATEMI_SOCIE = "smith-watson-topper", "fatemi-socie"
 """The criteria of fatigue that have a life."""
@@ -68,8 +70,8 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     "rotation_change": CycleQuantity("rotation", lambda result: result.cycles[-1].rotation_change),
     "pressure_change": CycleQuantity("", lambda result: result.cycles[-1].pressure_change),
     "shear_change": CycleQuantity("", lambda result: result.cycles[-1].shear_change),
-    "largest_slip_range": CycleQuantity("displacement", lambda result: _load_cycle(result).largest_slip_range),
-    "largest_slip_range_angle": CycleQuantity("angle", lambda result: _load_cycle(result).largest_slip_range_angle),
+    "largest_slip_range": CycleQuantity("displacement", lambda result: _slip_range(result)[0]),
+    "largest_slip_range_angle": CycleQuantity("angle", lambda result: _slip_range(result)[1]),
     "largest_friction_energy": CycleQuantity("energy density", lambda result: _friction_energy(result)[0]),
     "largest_friction_energy_angle": CycleQuantity("angle", lambda result: _friction_energy(result)[1]),
     "smith_watson_topper": CycleQuantity("stress times strain", lambda result: _hot_spot(result, SWT).parameter),
@@ -290,10 +292,16 @@ def _states_of_cycle(result: Result) -> list[State]:
     return states
 
 
-def _load_cycle(result: Result) -> LoadCycle:
-    """The last cycle. All its corners must be kept: its ranges are those of the kept states."""
+def _slip_range(result: Result) -> tuple[float, float]:
+    """The largest slip range of a node, m, and its angle, rad; 0 and NaN where all slip is rounding.
+
+    All corners of the cycle must be kept: the ranges are those of the kept states.
+    """
     _states_of_cycle(result)
-    return result.cycle()
+    cycle = result.cycle()
+    if cycle.largest_slip_range <= ROUNDING * size("dx", cycle.states[-1]):
+        return 0.0, math.nan
+    return cycle.largest_slip_range, cycle.largest_slip_range_angle
 
 
 def _friction_energy(result: Result) -> tuple[float, float]:

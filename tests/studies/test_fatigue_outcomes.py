@@ -90,6 +90,15 @@ def test_slip_and_friction_energy_are_the_largest_of_a_node(result: Result) -> N
     assert np.cos(angle - cycle.theta[np.argmax(energy)]) == pytest.approx(1.0, abs=1e-12)
 
 
+def test_slip_that_is_rounding_is_no_slip() -> None:
+    pulses = fastpin.LoadHistory([{"P": 4e5, "syy": 5e7}, {"P": 4e4, "syy": 5e6}]).repeated(3)
+    stuck = fastpin.solve(problem(friction=0.7), fastpin.LoadHistory([{"P": 1e4}]) + pulses, nodes=61)
+    noisy = replace(stuck, states=[*stuck[:-1], replace(stuck[-1], slip=stuck[-1].slip + 1e-19)])
+    assert 0.0 < noisy.cycle().largest_slip_range < 1e-18
+    assert read("largest_slip_range", noisy)[1:] == (0.0, None)
+    assert read("largest_slip_range_angle", noisy)[1:] == (None, None)
+
+
 @pytest.mark.parametrize("name", ["peak_hoop", "kt_bearing", "kt_gross"])
 def test_hoop_stress_and_concentrations_are_taken_over_any_span(name: str, result: Result) -> None:
     fields = {"peak_hoop": "value"}
