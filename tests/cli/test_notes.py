@@ -67,7 +67,7 @@ def test_states_inside_steps_that_are_not_kept_are_warned_of(case, capsys):
 
 def test_one_fraction_of_a_step(case, capsys):
     assert main(["run", str(case), "--between", "0.25"]) == 0
-    points = [line.split()[0] for line in capsys.readouterr().out.splitlines()[2:-1]]
+    points = [line.split()[0] for line in capsys.readouterr().out.splitlines()[2:-2]]
     assert points == ["0.25", "1", "1.25", "2", "2.25", "3"]
 
 
