@@ -92,10 +92,11 @@ class Tableau(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,) and ``slip_sums`` (2, n).
+    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,), ``slip_tally`` (4, n).
 
-    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module. ``slip_sums``
-    are the slip distance and the friction energy of each node. If it is empty, they are not counted.
+    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module. ``slip_tally`` has
+    slip distance, friction energy, lowest and highest slip of each node while closed; empty if they are not counted.
+    The extremes count from ``rest_slip``.
     """
 
     pressure: np.ndarray
@@ -106,7 +107,8 @@ class Contact(NamedTuple):
     tie: np.ndarray
     touched: np.ndarray
     motion: np.ndarray
-    slip_sums: np.ndarray
+    rest_slip: np.ndarray
+    slip_tally: np.ndarray
 
 
 class LoadTerms(NamedTuple):
@@ -263,8 +265,7 @@ def _shear_rate(rates, contact, friction, i):
 @inner
 def _rate_scales(rates, contact, friction):
     """The largest traction rate and the largest displacement rate."""
-    status = contact.status
-    n = status.size
+    status, n = contact.status, contact.status.size
     traction, length = 0.0, 0.0
     for i in range(n):
         if status[i] == OPEN:
@@ -284,8 +285,7 @@ def _friction_violators(contact, rates, friction, traction_tol, length_tol, queu
 
     Nodes that are to stick come first, then nodes that are to slip.
     """
-    status = contact.status
-    n = status.size
+    status, n = contact.status, contact.status.size
     queued = 0
     if friction == 0.0:
         return queued
@@ -305,8 +305,7 @@ def _friction_violators(contact, rates, friction, traction_tol, length_tol, queu
             else:
                 continue
             if direction * shear_rate - growth > traction_tol:
-                queue.node[queued] = i
-                queue.status[queued] = NEGATIVE if direction > 0.0 else POSITIVE
+                queue.node[queued], queue.status[queued] = i, NEGATIVE if direction > 0.0 else POSITIVE
                 queued += 1
     return queued
 
@@ -314,13 +313,11 @@ def _friction_violators(contact, rates, friction, traction_tol, length_tol, queu
 @inner
 def _contact_violators(contact, rates, traction_tol, length_tol, queue):
     """Queue the open nodes that close. If none closes, queue the closed nodes that open. Returns their number."""
-    status = contact.status
-    n = status.size
+    status, n = contact.status, contact.status.size
     queued = 0
     for i in range(n):
         if status[i] == OPEN and contact.gap[i] == 0.0 and rates[i] < -length_tol:
-            queue.node[queued] = i
-            queue.status[queued] = NEGATIVE if rates[n + i] < 0.0 else POSITIVE
+            queue.node[queued], queue.status[queued] = i, NEGATIVE if rates[n + i] < 0.0 else POSITIVE
             queued += 1
     if queued > 0:
         return queued
@@ -380,7 +377,7 @@ def _advance(contact, rates, friction, weights, step):
     Returns the energy that friction dissipates.
     """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
-    n, sums = status.size, contact.slip_sums
+    n, tally = status.size, contact.slip_tally
     most_pressure, most_gap, dissipated = 0.0, 0.0, 0.0
     for i in range(n):
         if status[i] == OPEN:
@@ -388,7 +385,7 @@ def _advance(contact, rates, friction, weights, step):
             slip[i] += step * rates[n + i]
             most_gap = max(most_gap, gap[i])
         else:
-            old = pressure[i]
+            old, begin = pressure[i], slip[i]
             pressure[i] += step * rates[i]
             most_pressure = max(most_pressure, pressure[i])
             if status[i] == STICK:
@@ -398,9 +395,13 @@ def _advance(contact, rates, friction, weights, step):
                 slip[i] += slid
                 shear[i] = -status[i] * friction * pressure[i]
                 dissipated += weights[i] * friction * 0.5 * (old + pressure[i]) * abs(slid)
-                if sums.size > 0:
-                    sums[0, i] += abs(slid)
-                    sums[1, i] += friction * 0.5 * (old + pressure[i]) * abs(slid)
+                if tally.size > 0:
+                    tally[0, i] += abs(slid)
+                    tally[1, i] += friction * 0.5 * (old + pressure[i]) * abs(slid)
+            if tally.size > 0:
+                begin, end = begin - contact.rest_slip[i], slip[i] - contact.rest_slip[i]
+                tally[2, i] = min(tally[2, i], begin, end)
+                tally[3, i] = max(tally[3, i], begin, end)
     for i in range(3):
         contact.motion[i] += step * rates[2 * n + i]
     for i in range(n):
@@ -434,8 +435,7 @@ def _reaction_work(contact, rates, friction, load, axis, step):
 @inner
 def _work(contact, rates, friction, load, time, step):
     """Work of the loads over `step`, exact for the piecewise linear path. Call it before `_advance`."""
-    status = contact.status
-    n = status.size
+    status, n = contact.status, contact.status.size
     middle = time + 0.5 * step
     moment, moment_rate, work = 0.0, 0.0, 0.0
     for i in range(n):

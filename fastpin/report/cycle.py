@@ -31,9 +31,8 @@ def cycle_line(cycle: LoadCycle) -> str:
     """Return a line of text: the largest slip range, slip distance and friction energy of a node, with their places."""
     unit = units(cycle.states[0].problem)
     parts = [_in_words(cycle, "slip range", unit["displacement"])]
-    bound = cycle.slip_range_bound
-    most = np.inf if bound is None else float((cycle.slip_range + bound).max())
-    parts[0] += f" (at most {with_unit(most, unit['displacement'], 4)})" if np.isfinite(most) else " at the kept states"
+    if not cycle.has_exact_slip_range:
+        parts[0] += " at the kept states"
     if cycle.friction_energy is not None:
         parts.append(_in_words(cycle, "slip distance", unit["displacement"]))
         parts.append(_in_words(cycle, "friction energy", unit["energy density"]))
@@ -79,8 +78,7 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     found: dict[str, Any] = {"first": cycle.first, "last": cycle.last, "closed": cycle.is_closed}
     for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
         found[f"largest_{name}"], found[f"largest_{name}_angle"] = _largest(cycle, name)
-    bound = cycle.slip_range_bound
-    found["largest_slip_range_bound"] = None if bound is None else float(bound.max())
+    found["slip_range_is_exact"] = cycle.has_exact_slip_range
     found["dissipation"] = cycle.dissipation
     found["nodes"] = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
     found["work"] = {name: loop.work for name, loop in cycle.loops.items()}

@@ -48,8 +48,9 @@ class Configuration:
         Slip that the remote stress had caused when the pin came to rest. It is subtracted before users see the slip.
     dissipation, work : float
         Energy dissipated by friction, and work of the loads.
-    slip_sums : ndarray, shape (2, n)
-        Slip distance int |ds| and friction energy int -T ds of each node while closed, counted as ``dissipation``.
+    slip_tally : ndarray, shape (4, n)
+        Slip distance int |ds|, friction energy int -T ds, lowest and highest slip of each node while closed, counted as
+        ``dissipation``. The extremes are the slip that users see, and (inf, -inf) at a node that was never closed.
         Empty if they are not counted.
     """
 
@@ -66,7 +67,7 @@ class Configuration:
     rest_slip: np.ndarray
     dissipation: float = 0.0
     work: float = 0.0
-    slip_sums: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one."""
@@ -77,8 +78,8 @@ class Configuration:
 
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
-        sums = self.slip_sums.take(nodes, axis=1) if self.slip_sums.size else self.slip_sums
-        return replace(self.copy(), slip_sums=sums, **{name: getattr(self, name)[nodes] for name in NODAL})
+        tally = self.slip_tally.take(nodes, axis=1) if self.slip_tally.size else self.slip_tally
+        return replace(self.copy(), slip_tally=tally, **{name: getattr(self, name)[nodes] for name in NODAL})
 
     @property
     def closed(self) -> np.ndarray:
@@ -187,15 +188,39 @@ def dissipation_between(system: System, before: Configuration, after: Configurat
     return -0.5 * float((system.weights * slid) @ (before.shear + after.shear))
 
 
-def slip_sums_between(before: Configuration, after: Configuration) -> np.ndarray:
-    """The sums of `before` plus the slip between two configurations at the nodes that are closed in the second.
+def empty_slip_tally(nodes: int) -> np.ndarray:
+    """The slip tally (4, n) of so many nodes that were never closed."""
+    return np.tile([[0.0], [0.0], [np.inf], [-np.inf]], nodes)
+
+
+def joined_slip_tallies(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """The slip tally (4, n) of two parts of a history together; empty if `second` is."""
+    if not second.size:
+        return second
+    lowest, highest = np.minimum(first[2], second[2]), np.maximum(first[3], second[3])
+    return np.array([*(first[:2] + second[:2]), lowest, highest])
+
+
+def slip_tally_with(configuration: Configuration) -> np.ndarray:
+    """The slip tally of a configuration, its own slip included."""
+    tally, closed = configuration.slip_tally.copy(), configuration.closed
+    if tally.size:
+        slip = (configuration.slip - configuration.rest_slip)[closed]
+        tally[2, closed] = np.minimum(tally[2, closed], slip)
+        tally[3, closed] = np.maximum(tally[3, closed], slip)
+    return tally
+
+
+def slip_tally_between(before: Configuration, after: Configuration) -> np.ndarray:
+    """The slip tally of `before`, and the slip from there to `after` at the nodes that are closed in the second.
 
     The mean shear gives the friction energy, as in :func:`dissipation_between`.
     """
-    if not before.slip_sums.size:
-        return before.slip_sums
-    slid = np.where(after.closed, after.slip - before.slip, 0.0)
-    return before.slip_sums + np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
+    tally = slip_tally_with(replace(after, slip_tally=before.slip_tally))
+    if tally.size:
+        slid = np.where(after.closed, after.slip - before.slip, 0.0)
+        tally[:2] += np.array([np.abs(slid), -0.5 * slid * (before.shear + after.shear)])
+    return tally
 
 
 def elastic_energy(system: System, configuration: Configuration) -> float:

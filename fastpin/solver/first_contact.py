@@ -21,7 +21,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     reaches_end,
     resting_status,
-    slip_sums_between,
+    slip_tally_between,
     solve_statuses,
     worst_residual,
 )
@@ -351,7 +351,7 @@ def _first_patch(
         raise ArcError(CUT_OFF)
     dissipated = dissipation_between(system, resting, found)
     if rough:
-        found.slip_sums = slip_sums_between(resting, found)
+        found.slip_tally = slip_tally_between(resting, found)
     elif system.friction > 0.0:
         found = _with_grown_slip(system, found, before + begins * (after - before)) or found
     found.dissipation += dissipated

@@ -23,7 +23,7 @@ from fastpin.solver.configuration import (
     dissipation_between,
     reaches_end,
     resting_status,
-    slip_sums_between,
+    slip_tally_between,
     solve_statuses,
     work_between,
     worst_residual,
@@ -218,7 +218,7 @@ class IncrementStepper:
             raise ArcError(CUT_OFF)
         found.work = start.work + work_between(system, start, found)
         found.dissipation = start.dissipation + dissipation_between(system, start, found)
-        found.slip_sums = slip_sums_between(start, found)
+        found.slip_tally = slip_tally_between(start, found)
         position.now = found
         position.touched |= found.closed
         self._statistics["increments"] += 1

@@ -153,7 +153,8 @@ class PathStep:
             now.status.copy(),
             np.zeros(n, dtype=bool),
             now.motion,
-            now.slip_sums,
+            now.rest_slip,
+            now.slip_tally,
         )
         self._load = load_terms(system, self.before, self.rate)
         self._queue = exchange.Queue(
@@ -373,7 +374,7 @@ class PathStep:
 
     def _take(self, better: Configuration) -> None:
         """Continue from better values of the present configuration."""
-        for name in ("pressure", "shear", "gap", "slip", "motion", "slip_sums"):
+        for name in ("pressure", "shear", "gap", "slip", "motion", "slip_tally"):
             getattr(self.now, name)[:] = getattr(better, name)
 
     def _correct(self) -> Solution:

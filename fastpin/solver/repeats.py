@@ -60,15 +60,15 @@ class CornerEntry:
         Dissipation and work at each kept state of that step, counted from the corner before.
     cycles : list of (CycleKey, Cycle)
         The cycles that end at the corner.
-    slip_sums : ndarray, shape (2, n)
-        Slip sums of the step (dimensionless). Empty if every corner is kept, or if they are not counted.
+    slip_tally : ndarray, shape (4, n)
+        Slip tally of the step (dimensionless). Empty if every corner is kept, or if they are not counted.
     """
 
     dissipation: float = 0.0
     work: float = 0.0
     kept: list[tuple[float, float]] = field(default_factory=list)
     cycles: list[tuple[CycleKey, Cycle]] = field(default_factory=list)
-    slip_sums: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +126,9 @@ class CornerLog:
         """Open the entry of the next corner."""
         self.log.append(CornerEntry())
 
-    def close_step(self, dissipation: float, work: float, slip_sums: np.ndarray) -> None:
-        """Log the energies and the slip sums (dimensionless) of the step that has reached its corner."""
-        self.log[-1].dissipation, self.log[-1].work, self.log[-1].slip_sums = dissipation, work, slip_sums
+    def close_step(self, dissipation: float, work: float, slip_tally: np.ndarray) -> None:
+        """Log the energies and the slip tally (dimensionless) of the step that has reached its corner."""
+        self.log[-1].dissipation, self.log[-1].work, self.log[-1].slip_tally = dissipation, work, slip_tally
         for mark in self.marks.values():
             mark.dissipation += dissipation
 

@@ -50,8 +50,8 @@ class Restart:
         The latest end of each cycle.
     statistics : dict of str to float
         Statistics of the run up to the corner.
-    slip_sums : ndarray, shape (2, n)
-        Slip sums of each node from the latest kept state to the corner (dimensionless). Empty if they are not counted.
+    slip_tally : ndarray, shape (4, n)
+        Slip tally of each node from the latest kept state to the corner (dimensionless). Empty if they are not counted.
     """
 
     corner: int
@@ -63,14 +63,14 @@ class Restart:
     repeats: Repeats
     marks: dict[CycleKey, CycleEnd]
     statistics: dict[str, float]
-    slip_sums: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __repr__(self) -> str:
         return f"<Restart: corner {self.corner}>"
 
     def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
-        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_sums=np.zeros((0, 0)))
+        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=np.zeros((0, 0)))
 
 
 @dataclass(eq=False, repr=False)

@@ -15,7 +15,15 @@ from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
-from fastpin.solver.configuration import MAX_RESIDUAL, Configuration, contact_residuals, elastic_energy
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    contact_residuals,
+    elastic_energy,
+    empty_slip_tally,
+    joined_slip_tallies,
+    slip_tally_with,
+)
 from fastpin.solver.driven import force_on_pin
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
@@ -70,8 +78,7 @@ class Recorder(Protocol):
         dissipation, work : ndarray, shape (states,)
             Energies of each new state, J/m.
         slip : SlipFields
-            Slip distance and friction energy of the first new state. Empty if they are the same as before, or not
-            counted.
+            The slip fields of the first new state. Empty if they are the same as before, or not counted.
         """
 
     def corner_reached(self) -> None:
@@ -109,8 +116,8 @@ class Run:
         The configuration at the last corner.
     dissipation, work : float
         Energies from the start to the last corner (dimensionless).
-    slip_sums : ndarray, shape (2, n)
-        Slip sums of each node from the latest kept state to the last corner (dimensionless). Empty if not counted.
+    slip_tally : ndarray, shape (4, n)
+        Slip tally of each node from the latest kept state to the last corner (dimensionless). Empty if not counted.
     complete : bool
         Whether the whole history was followed.
     statistics : dict of str to float
@@ -142,10 +149,11 @@ class Run:
         self.dissipation, self.work = start.dissipation, start.work
         self.repeats, self.corner_log = start.repeats, CornerLog(history, start.marks)
         self.corner = start.corner
-        self._no_slip = np.zeros((2, system.grid.size) if options.slip_sums and recorder is not None else (0, 0))
-        self.slip_sums = start.slip_sums if start.slip_sums.shape == self._no_slip.shape else self._no_slip
-        self._counted = self._no_slip  # the slip sums of the present step up to the latest kept state
-        self.last_corner = replace(start.configuration, slip_sums=self._no_slip)
+        counts = options.slip_sums and recorder is not None
+        self._no_slip = empty_slip_tally(system.grid.size) if counts else np.zeros((0, 0))
+        self.slip_tally = start.slip_tally if start.slip_tally.shape == self._no_slip.shape else self._no_slip
+        self._counted = self._no_slip  # the slip tally of the present step up to the latest kept state
+        self.last_corner = self._at_corner(start.configuration)
         self.position = Position(self.last_corner, start.configuration.closed.copy())
         self.complete = False
         self.statistics = {**dict.fromkeys(COUNTED, 0.0), **start.statistics}
@@ -173,9 +181,9 @@ class Run:
         self.corner_log.begin_cycles(self.corner - 1, self.now)
         while self.corner < corners:
             given, ended = self.history.corner(self.corner)
-            load = complete_load(given, self.load)
-            known = self._step(load, bool(ended))
-            self._close_step(load)
+            load, kept = complete_load(given, self.load), self.keep.at_corner(self.corner, corners, bool(ended))
+            known = self._step(load, bool(ended), kept)
+            self._close_step(load, kept)
             periods = self.corner_log.end_cycles(ended, self.corner, self.now, self.system.scales)
             self._record_cycles(self.corner_log.latest)
             self.corner += 1
@@ -191,15 +199,15 @@ class Run:
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
             self.repeats.copy(same_history=True), copied_ends(self.corner_log.marks), dict(self.statistics),
-            self.slip_sums,
+            self.slip_tally,
         )  # fmt: skip
 
-    def _step(self, load: np.ndarray, ends_cycle: bool) -> KnownConfiguration | None:
-        """Follow the step to the corner with the load `load` (SI), and keep its states.
+    def _step(self, load: np.ndarray, ends_cycle: bool, kept: bool) -> KnownConfiguration | None:
+        """Follow the step to the corner with the load `load` (SI), and keep its states, at the corner if `kept`.
 
         Returns the earlier configuration that equals the configuration at the corner, or None.
         """
-        step, corners, scales, position = self.corner, len(self.history), self.system.scales, self.position
+        step, scales, position = self.corner, self.system.scales, self.position
         target, before = load / scales.loads, self.now.load
         position.reached = 0.0
         self.corner_log.begin_step()
@@ -209,9 +217,9 @@ class Run:
             self._check_resolution()
             known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
-                sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_sums")}
+                sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_tally")}
                 position.now = replace(known.configuration, **sums)
-            if self.recorder is not None and self.keep.at_corner(step, corners, ends_cycle):
+            if self.recorder is not None and kept:
                 self._keep(step, 1.0)
         except SolveError as error:
             self.stepper.leave(position)
@@ -261,6 +269,7 @@ class Run:
         before = self.now.load.copy()
         before[[P, Q, M]] = 0.0  # a contact that was released under a little load begins anew from none
         position.now, part = first_contact(self.system, self.now, before, load, self.strict)
+        position.now.slip_tally = slip_tally_with(self.now)
         position.touched |= self.now.closed
         position.reached += part * (stop - position.reached)
         if part == 1.0:
@@ -283,25 +292,37 @@ class Run:
         if problem.frictionless and problem.rotation == "free" and load[M] != 0.0:
             raise NoEquilibriumError("without friction nothing holds the pin against a moment: it spins")
 
-    def _close_step(self, load: np.ndarray) -> None:
-        """Log the energies and slip sums of the step that has reached its corner, under `load` (SI)."""
+    def _close_step(self, load: np.ndarray, kept: bool) -> None:
+        """Log the energies and the slip tally of the step that has reached its corner, under `load` (SI).
+
+        `kept` says whether the state at the corner was kept.
+        """
         now = self.now
-        self.corner_log.close_step(now.dissipation, now.work, self._no_slip if self._keeps_all else now.slip_sums)
+        tally = self._no_slip if self._keeps_all else slip_tally_with(now)
+        self.corner_log.close_step(now.dissipation, now.work, tally)
         self.dissipation += now.dissipation
         self.work += now.work
-        self.slip_sums, self._counted = self._slip_since_kept(), self._no_slip
-        self.position.now = self.last_corner = replace(now, dissipation=0.0, work=0.0, slip_sums=self._no_slip)
+        self.slip_tally, self._counted = self._no_slip if kept else self._slip_since_kept(), self._no_slip
+        self.position.now = self.last_corner = replace(self._at_corner(now), dissipation=0.0, work=0.0)
         self.load = load
+
+    def _at_corner(self, configuration: Configuration) -> Configuration:
+        """The configuration at a corner, with the slip tally of a step that begins there."""
+        return replace(configuration, slip_tally=slip_tally_with(replace(configuration, slip_tally=self._no_slip)))
 
     @property
     def _keeps_all(self) -> bool:
-        """Whether all slip sums begin at a corner or later: every corner is kept, or nothing is counted."""
+        """Whether all slip tallies begin at a corner or later: every corner is kept, or nothing is counted."""
         return self.keep.every_corner or not self._no_slip.size
 
     def _slip_since_kept(self) -> np.ndarray:
-        """Slip sums (2, n) of each node since the latest kept state, dimensionless."""
-        found: np.ndarray = self.slip_sums + (self.now.slip_sums - self._counted)
-        return found
+        """Slip tally (4, n) of each node since the latest kept state, dimensionless.
+
+        The extremes count since the latest kept corner: they can't be subtracted.
+        """
+        since = slip_tally_with(self.now)
+        since[:2] -= self._counted[:2]
+        return joined_slip_tallies(self.slip_tally, since)
 
     def _show_corner(self) -> None:
         """Tell the recorder and the progress that the run has reached a corner."""
@@ -355,28 +376,33 @@ class Run:
             self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
 
     def _count_slip_again(self, entries: list[CornerEntry]) -> np.ndarray | None:
-        """Add the slip sums of the next corners, which are known.
+        """Add the slip tallies of the next corners, which are known.
 
-        Returns the slip sums of their first kept state; None if they are the same as a period before.
+        Returns the slip tally of their first kept state; None if they are the same as a period before.
         """
         first = None
         for entry in () if self._keeps_all else entries:
-            self.slip_sums = self.slip_sums + entry.slip_sums
+            self.slip_tally = joined_slip_tallies(self.slip_tally, entry.slip_tally)
             if entry.kept:
-                first = self.slip_sums if first is None else first
-                self.slip_sums = self._no_slip
+                first = self.slip_tally if first is None else first
+                self.slip_tally = self._no_slip
         return first
 
-    def _slip_fields(self, slip_sums: np.ndarray) -> SlipFields:
-        """The fields of a state that its slip sums (2, n) give, SI; none if they are not counted."""
-        if not slip_sums.size:
+    def _slip_fields(self, slip_tally: np.ndarray) -> SlipFields:
+        """The fields of a state that its slip tally (4, n) gives, SI; none if it is not counted."""
+        if not slip_tally.size:
             return {}
         scales = self.system.scales
-        distance = slip_sums[0] * scales.displacement
-        energy = slip_sums[1] * (scales.traction * scales.displacement)
-        for array in (distance, energy):
+        lowest, highest = np.where(slip_tally[2] <= slip_tally[3], slip_tally[2:], np.nan) * scales.displacement
+        fields: SlipFields = {
+            "slip_distance": slip_tally[0] * scales.displacement,
+            "friction_energy": slip_tally[1] * (scales.traction * scales.displacement),
+            "slip_lowest": lowest,
+            "slip_highest": highest,
+        }
+        for array in (fields["slip_distance"], fields["friction_energy"], lowest, highest):
             array.setflags(write=False)
-        return {"slip_distance": distance, "friction_energy": energy}
+        return fields
 
     def _record_cycles(self, entry: CornerEntry, solved: bool = True) -> None:
         if self.recorder is not None:
@@ -394,7 +420,7 @@ class Run:
         self.corner_log.latest.kept.append((self.now.dissipation, self.now.work))
         assert self.recorder is not None
         self.recorder.add(self._state(step, fraction, residuals))
-        self.slip_sums, self._counted = self._no_slip, self.now.slip_sums
+        self.slip_tally, self._counted = self._no_slip, self.now.slip_tally
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
         """The present configuration as a state, SI. Its arrays can't be written to: steps that repeat share them."""

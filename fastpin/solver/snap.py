@@ -18,7 +18,7 @@ from fastpin.solver.configuration import (
     Configuration,
     dissipation_between,
     reaches_end,
-    slip_sums_between,
+    slip_tally_between,
     work_between,
     worst_residual,
 )
@@ -98,7 +98,7 @@ def _step(system: System, start: Configuration, load: np.ndarray) -> Configurati
             if reaches_end(system, found):
                 raise ArcError(CUT_OFF)
             found.dissipation = start.dissipation + dissipation_between(system, start, found)
-            found.slip_sums = slip_sums_between(start, found)
+            found.slip_tally = slip_tally_between(start, found)
             return found
     return None
 
@@ -114,10 +114,15 @@ def _step_on_springs(
     before = np.where(stiffness > 0.0, start.motion, 0.0)
     moved = system.motion @ before
     shifted = replace(
-        start, motion=start.motion - before, rest_gap=start.rest_gap + moved[:n], slip=start.slip - moved[n:]
+        start,
+        motion=start.motion - before,
+        rest_gap=start.rest_gap + moved[:n],
+        slip=start.slip - moved[n:],
+        rest_slip=start.rest_slip - moved[n:],
     )
     held = replace(system, motion_rows=system.motion_rows + np.diag(stiffness))
     found = _step(held, shifted, load)
     if found is None:
         return None
-    return replace(found, motion=found.motion + before, rest_gap=start.rest_gap, slip=found.slip + moved[n:])
+    rest = {"rest_gap": start.rest_gap, "rest_slip": start.rest_slip}
+    return replace(found, motion=found.motion + before, slip=found.slip + moved[n:], **rest)

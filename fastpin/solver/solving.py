@@ -198,7 +198,7 @@ class MemoryRecorder:
             load, residuals = dict(state.load), dict(state.residuals)
             self.states.append(replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals))
         given: dict[str, Any] = {**slip}
-        if any(not np.array_equal(getattr(latest[0], name), values) for name, values in given.items()):
+        if any(not np.array_equal(getattr(latest[0], name), values, equal_nan=True) for name, values in given.items()):
             self.states[-len(steps)] = replace(self.states[-len(steps)], **slip)
 
     def corner_reached(self) -> None:

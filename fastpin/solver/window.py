@@ -77,14 +77,14 @@ class Window:
         n = self._large.grid.size
         fields: dict[str, Any] = {name: np.zeros(n) for name in ("pressure", "shear")}
         fields["status"] = np.full(n, OPEN, dtype=np.int8)
-        sums = before.slip_sums.copy()
-        if sums.size:
-            sums[:, self.nodes] = inside.slip_sums
+        tally = before.slip_tally.copy()
+        if tally.size:
+            tally[:, self.nodes] = inside.slip_tally
         if not inside.closed.any():  # the pin was released: all nodes count from its new position
             last = before.copy()
             last.pressure[:], last.shear[:], last.status[:] = 0.0, 0.0, OPEN
             last = replace(last, rest=inside.rest, motion=inside.motion, origin=inside.origin)
-            last = replace(last, dissipation=inside.dissipation, work=inside.work, slip_sums=sums)
+            last = replace(last, dissipation=inside.dissipation, work=inside.work, slip_tally=tally)
             released = release(self._large, last, inside.load)
             tractions = np.zeros(2 * n)
             self._check_outside(self._large.displacement(tractions, released.motion, released.load, released.rest_gap))
@@ -97,7 +97,7 @@ class Window:
         gap, slip = np.maximum(true[:n], 0.0), true[n:].copy()
         gap[self.nodes], slip[self.nodes] = inside.gap, inside.slip
         self._check_outside(true)
-        return replace(inside, **fields, gap=gap, slip=slip, slip_sums=sums)
+        return replace(inside, **fields, gap=gap, slip=slip, slip_tally=tally)
 
     def _check_outside(self, true: np.ndarray) -> None:
         """Raise :class:`SecondPlaceError` if the pin penetrates the hole outside the window.

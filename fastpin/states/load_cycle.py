@@ -73,8 +73,9 @@ class Loop:
 class LoadCycle:
     """The part of a load history between two corners, and its quantities.
 
-    Numbers are in SI units, or in the units of a dimensionless problem. Ranges and extremes are over the states, so
-    states inside steps (``between``) make them finer. Slip distance and friction energy are exact for any states.
+    Numbers are in SI units, or in the units of a dimensionless problem. Ranges and extremes of tractions are over the
+    states, so states inside steps (``between``) make them finer. With the option ``slip_sums`` slip ranges, slip
+    distances and friction energy are exact for any states.
 
     Attributes
     ----------
@@ -124,15 +125,15 @@ class LoadCycle:
     def behaviour(self) -> np.ndarray:
         """What each node does over the cycle: values of :class:`NodeBehaviour`, int8, shape (n,).
 
-        Slip between two states counts if slip distances are known. A node that closes or opens between two states, and
-        is back at both, is not seen.
+        Slip and contact between two states count if slip distances are known. A node that opens between two states,
+        and is back at both, is not seen.
         """
         closed = self.status != OPEN
         slips = np.any(np.isin(self.status[1:], (SLIP_NEGATIVE, SLIP_POSITIVE)), axis=0)
         distance = self.slip_distance
         if distance is not None:
             slips |= distance > NEGLIGIBLE * float(distance.max())
-        ever, always = closed.any(axis=0) | slips, closed.all(axis=0)
+        ever, always = ~np.isnan(self.slip_extremes[0]), closed.all(axis=0)
         behaviours = NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.STICKS
         return np.select([~ever, always & slips, always], behaviours, NodeBehaviour.OPENS).astype(np.int8)
 
@@ -140,32 +141,31 @@ class LoadCycle:
 
     @cached_property
     def slip_range(self) -> np.ndarray:
-        """Range of the slip at the states in which the node is closed, m, shape (n,); 0 where it never is."""
-        closed = self.status != OPEN
-        slip = np.array([state.slip for state in self.states])
-        highest = np.where(closed, slip, -np.inf).max(axis=0)
-        lowest = np.where(closed, slip, np.inf).min(axis=0)
-        return np.where(closed.any(axis=0), highest - lowest, 0.0)
+        """Range of the slip of each node while closed, m, shape (n,); 0 where it never is.
+
+        It is exact, for any states, if :attr:`has_exact_slip_range`. Otherwise it is the range at the states.
+        """
+        lowest, highest = self.slip_extremes
+        return np.where(np.isnan(lowest), 0.0, highest - lowest)
+
+    @property
+    def has_exact_slip_range(self) -> bool:
+        """Whether the extremes of the slip between the states are known. They are known where slip distances are."""
+        return self.slip_distance is not None
 
     @cached_property
-    def slip_range_bound(self) -> np.ndarray | None:
-        """By how much the true range of slip may exceed :attr:`slip_range`, m, shape (n,).
+    def slip_extremes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest slip of each node while closed, m, shape (n,) each; NaN where it never is.
 
-        Between two states the slip goes at most half of its distance, less its change, beyond its values at both. The
-        bound holds for nodes that are closed from one state to the next, or at one of both. It is infinite for a node
-        that slips between two states in which it is open. None if slip distances are not known.
+        They are exact or read from the states, as :attr:`slip_range`.
         """
-        if self.slip_distance is None:
-            return None
-        beyond = []
-        for before, after in zip(self.states, self.states[1:], strict=False):
-            assert after.slip_distance is not None
-            distance, closed = after.slip_distance, np.array([before.status, after.status]) != OPEN
-            half = 0.5 * np.maximum(distance - np.abs(after.slip - before.slip), 0.0)
-            unknown = np.where(distance > 0.0, np.inf, 0.0)
-            beyond.append(np.select([closed.all(axis=0), closed.any(axis=0)], [half, distance], unknown))
-        largest: np.ndarray = np.sort(beyond, axis=0)[-2:].sum(axis=0)  # the highest and the lowest slip
-        return largest
+        if self.has_exact_slip_range:  # the states after the first count from it, or from a later corner
+            later = self.states[1:]
+            lowest = np.array([state.slip_lowest for state in later], dtype=float)
+            highest = np.array([state.slip_highest for state in later], dtype=float)
+        else:
+            lowest = highest = np.array([np.where(state.status != OPEN, state.slip, np.nan) for state in self.states])
+        return np.fmin.reduce(lowest), np.fmax.reduce(highest)
 
     @property
     def largest_slip_range(self) -> float:
@@ -265,7 +265,6 @@ class LoadCycle:
             "theta": (self.theta, "rad"),
             "behaviour": (self.behaviour, ""),
             "slip_range": (self.slip_range, unit["displacement"]),
-            "slip_range_bound": (self.slip_range_bound, unit["displacement"]),
             "slip_distance": (self.slip_distance, unit["displacement"]),
             "friction_energy": (self.friction_energy, unit["energy density"]),
             "pressure_min": (pressures[0], unit["traction"]),

@@ -27,10 +27,12 @@ if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a s
 
 
 class SlipFields(TypedDict, total=False):
-    """The fields of a :class:`State` that its slip sums give; empty without them."""
+    """The fields of a :class:`State` that the option ``slip_sums`` gives; empty without it."""
 
     slip_distance: np.ndarray
     friction_energy: np.ndarray
+    slip_lowest: np.ndarray
+    slip_highest: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,6 +91,10 @@ class State:
         Distance int |ds| of the slip, m, and friction energy int -T ds, J/m^2, at each node while it was closed. They
         count since the state before in the result, and since the beginning of the history for the first state. None
         unless ``solve(..., slip_sums=True)``.
+    slip_lowest, slip_highest : ndarray, shape (n,), or None
+        Lowest and highest slip of each node while it was closed, m; NaN where it was not. They count from the latest
+        corner before this state whose state is in the result, that corner included, or from the beginning of the
+        history. None as ``slip_distance``.
     """
 
     step: int
@@ -112,6 +118,8 @@ class State:
     error_bars: Mapping[str, float] | None = None
     slip_distance: np.ndarray | None = None
     friction_energy: np.ndarray | None = None
+    slip_lowest: np.ndarray | None = None
+    slip_highest: np.ndarray | None = None
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)

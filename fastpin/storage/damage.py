@@ -86,6 +86,12 @@ def check_between(label: str, array: np.ndarray, least: float, most: float) -> N
         raise ValueError(f"{label} has a number outside {least:g} to {most:g}")
 
 
+def check_extremes(label: str, lowest: np.ndarray, highest: np.ndarray, absent: np.ndarray) -> None:
+    """Raise :class:`ValueError` if extremes are not finite or in the wrong order. `absent` says where there are none."""
+    if not np.all(absent | (np.isfinite(lowest) & np.isfinite(highest) & (lowest <= highest))):
+        raise ValueError(f"{label} and the highest slip don't fit")
+
+
 def _first_line(error: BaseException) -> str:
     text = (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]
     return "".join(letter for letter in text[:300] if letter.isprintable())

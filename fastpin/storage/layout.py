@@ -16,7 +16,6 @@ Every array has its unit as an attribute. Dimensions are named as in netCDF, so 
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 import platform
 from collections.abc import Mapping, Sequence
@@ -29,7 +28,6 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
-from fastpin.model.checks import number, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
@@ -38,12 +36,9 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.solver.configuration import Configuration
-from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
-from fastpin.solver.result import Restart
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
-from fastpin.storage.damage import as_python, check_between, check_finite, dataset_of, numbers_of
+from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -61,7 +56,14 @@ NODE_FIELDS = {
 }
 """Kind of quantity of each field of a state with one value for each node, shape (n,)."""
 
-SLIP_FIELDS = {"slip_distance": "displacement", "friction_energy": "energy density"}
+EXTREMES = ("slip_lowest", "slip_highest")
+"""Fields of the extremes of the slip. Both are NaN at a node that was not closed."""
+
+SLIP_FIELDS = {
+    "slip_distance": "displacement",
+    "friction_energy": "energy density",
+    **dict.fromkeys(EXTREMES, "displacement"),
+}
 """Kind of quantity of each field, shape (n,), that a state has with the option ``slip_sums`` only."""
 
 NUMBER_FIELDS = {
@@ -115,9 +117,6 @@ _PROBLEM_FIELDS = (
 
 STATUS_LIMITS = (min(Status), max(Status))
 """Smallest and largest status of a node."""
-
-LEAST_FORCE = 1e-145
-"""Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 _ROWS = 128  # rows in a chunk of an array without node values
 
@@ -445,7 +444,11 @@ def read_states(
     check_states(file, grid.size)
     rows = read_rows(group, state_rows(group), picked)
     for name in (*node_fields(group), *NUMBER_FIELDS, "loads"):
-        check_finite(f"states/{name}", rows[name])
+        if name not in EXTREMES:
+            check_finite(f"states/{name}", rows[name])
+    if EXTREMES[0] in rows:
+        lowest, highest = (rows[name] for name in EXTREMES)
+        check_extremes("states/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
     check_between("states/status", rows["status"], *STATUS_LIMITS)
     check_between("states/step", rows["step"], 0, corners - 1)
     check_between("states/fraction", rows["fraction"], 0.0, 1.0)
@@ -485,116 +488,3 @@ def check_format(file: h5py.File, path: str) -> None:
     made_by = file.attrs.get("version_fastpin", "unknown")
     if file.attrs.get("format_version") != FORMAT_VERSION:
         raise InputError(path, f"was written by fastpin {made_by} in a format that this version can't read")
-
-
-_SUMS = ("dissipation", "work", "slip_sums")  # they are 0 at a corner
-_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _SUMS]
-
-
-def write_restart(group: h5py.Group, restart: Restart) -> None:
-    """Write a restart into an empty group.
-
-    Configurations are dimensionless: tractions in F/R, displacements in F beta*.
-    """
-    known, marks = list(restart.repeats), list(restart.marks.items())
-    configurations: list[Configuration] = []
-    indices: dict[int, int] = {}
-
-    def index_of(configuration: Configuration) -> int:
-        """Return the index of a configuration. Configurations that share their arrays are stored once."""
-        index = indices.setdefault(id(configuration.slip), len(configurations))
-        if index == len(configurations):
-            configurations.append(configuration)
-        return index
-
-    group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
-    group.attrs["configuration"] = index_of(restart.configuration)
-    group["load"] = restart.load
-    if restart.slip_sums.any():
-        group["slip_sums"] = restart.slip_sums
-    group["met"] = np.array(
-        [(index_of(item.configuration), item.ends_cycle, item.last, item.period, item.since) for item in known],
-        dtype=np.int64,
-    ).reshape(-1, 5)
-    group["marks"] = np.array(
-        [(*key, index_of(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
-    ).reshape(-1, 5)
-    group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
-    for name in _ARRAYS:
-        group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
-    group.create_group("statistics").attrs.update(restart.statistics)
-
-
-def read_restart(group: h5py.Group, nodes: int) -> Restart:
-    """Read a restart, on a grid of so many nodes, from a group of :func:`write_restart`.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range, or the arrays don't fit each other.
-    """
-    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in _ARRAYS}
-    size = len(arrays["load"])
-    if any(len(array) != size for array in arrays.values()):
-        raise ValueError(f"{group.name[1:]}/configurations has arrays of different lengths")
-    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(size)]
-    met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
-    dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
-    check_between("met", met[:, 0], 0, size - 1)
-    check_between("marks", marks[:, 2], 0, size - 1)
-    check_finite("marks_dissipation", dissipations)
-    load = all_loads(group["load"][()], 0.0)
-    if load.shape != (len(LOADS),):
-        raise ValueError(f"the load of {group.name[1:]} has the shape {load.shape}")
-    check_finite("load", load)
-    return Restart(
-        corner=whole_number("corner", as_python(group.attrs["corner"]), 0),
-        load=load,
-        force=number("force", group.attrs["force"], LEAST_FORCE, 1.0 / LEAST_FORCE),
-        configuration=configurations[whole_number("configuration", as_python(group.attrs["configuration"]), 0)],
-        dissipation=number("dissipation", group.attrs["dissipation"]),
-        work=number("work", group.attrs["work"]),
-        repeats=Repeats(
-            [
-                KnownConfiguration(configurations[index], bool(ends), last, period, since)
-                for index, ends, last, period, since in met.tolist()
-            ]
-        ),
-        marks={
-            (block, inner): CycleEnd(corner, times, configurations[index], dissipation)
-            for (block, inner, index, corner, times), dissipation in zip(
-                marks.tolist(), dissipations.tolist(), strict=True
-            )
-        },
-        statistics=numbers_of(group["statistics"]),
-        slip_sums=_read_slip_sums(group, nodes),
-    )
-
-
-def _read_slip_sums(group: h5py.Group, nodes: int) -> np.ndarray:
-    """Read the slip sums of a restart, shape (2, n). Without any they are empty."""
-    if "slip_sums" not in group:
-        return np.zeros((0, 0))
-    sums: np.ndarray = dataset_of(group, "slip_sums", float, (nodes,))[()]
-    if len(sums) != 2:
-        raise ValueError(f"slip_sums has the shape {sums.shape}")
-    check_finite("slip_sums", sums)
-    return sums
-
-
-def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
-    """Read one array of all configurations of a restart, shape (configurations, ...)."""
-    size = {"motion": 3, "origin": 2, "rest": 2}.get(name, nodes)
-    if name == "load":
-        array = all_loads(dataset_of(group, name, float)[()], 0.0)
-        size = len(LOADS)
-    else:
-        array = dataset_of(group, name, np.int8 if name == "status" else float, (size,))[()]
-    label = f"configurations/{name}"
-    if array.shape[1:] != (size,):
-        raise ValueError(f"{label} has the shape {array.shape}")
-    if name == "status":
-        check_between(label, array, *STATUS_LIMITS)
-    elif name != "origin":  # The origin is NaN before the pin has come to rest.
-        check_finite(label, array)
-    return array

@@ -26,6 +26,7 @@ from fastpin.storage.damage import reading
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import check_free, consistent_view, open_h5
 from fastpin.storage.layout import (
+    SLIP_FIELDS,
     append,
     check_format,
     count,
@@ -36,14 +37,13 @@ from fastpin.storage.layout import (
     read_history,
     read_options,
     read_problem,
-    read_restart,
     read_states,
     read_statistics,
     rows_of,
     write_head,
-    write_restart,
     write_statistics,
 )
+from fastpin.storage.restarts import read_restart, write_restart
 
 ALL = slice(None)
 """All states of a file."""
@@ -158,10 +158,11 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
 
 
 def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
-    """The states of some places in a file. States that don't follow on the one before lose their slip sums."""
+    """The states of some places in a file. States that don't follow on the one before lose their slip fields."""
     follow = [True, *(before + 1 == place for before, place in pairwise(places))]
+    lost: dict[str, Any] = dict.fromkeys(SLIP_FIELDS)
     return [
-        state if follows else replace(state, slip_distance=None, friction_energy=None)
+        state if follows else replace(state, **lost)
         for state, follows in zip(states, follow, strict=False)
     ]
 

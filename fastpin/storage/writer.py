@@ -35,15 +35,14 @@ from fastpin.storage.layout import (
     count,
     cycle_rows,
     option_attributes,
-    read_restart,
     read_rows,
     read_statistics,
     rows_of,
     state_rows,
     write_head,
-    write_restart,
     write_statistics,
 )
+from fastpin.storage.restarts import read_restart, write_restart
 from fastpin.storage.store import is_unfinished, load, stored_task
 
 log = logging.getLogger(__name__)

@@ -1,0 +1,132 @@
+"""Restarts in an HDF5 file: the groups of ``/restart`` in a result, and checkpoints."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import h5py
+import numpy as np
+
+from fastpin.model.checks import number, whole_number
+from fastpin.model.loads import LOADS
+from fastpin.solver.configuration import Configuration
+from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
+from fastpin.solver.result import Restart
+from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
+from fastpin.storage.layout import STATUS_LIMITS, all_loads
+
+LEAST_FORCE = 1e-145
+"""Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
+
+_SUMS = ("dissipation", "work", "slip_tally")  # they begin anew at a corner
+_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _SUMS]
+
+
+def write_restart(group: h5py.Group, restart: Restart) -> None:
+    """Write a restart into an empty group.
+
+    Configurations are dimensionless: tractions in F/R, displacements in F beta*.
+    """
+    known, marks = list(restart.repeats), list(restart.marks.items())
+    configurations: list[Configuration] = []
+    indices: dict[int, int] = {}
+
+    def index_of(configuration: Configuration) -> int:
+        """Return the index of a configuration. Configurations that share their arrays are stored once."""
+        index = indices.setdefault(id(configuration.slip), len(configurations))
+        if index == len(configurations):
+            configurations.append(configuration)
+        return index
+
+    group.attrs.update(corner=restart.corner, force=restart.force, dissipation=restart.dissipation, work=restart.work)
+    group.attrs["configuration"] = index_of(restart.configuration)
+    group["load"] = restart.load
+    if np.isfinite(restart.slip_tally).all(axis=0).any():  # a node was closed since the latest kept state
+        group["slip_tally"] = restart.slip_tally
+    group["met"] = np.array(
+        [(index_of(item.configuration), item.ends_cycle, item.last, item.period, item.since) for item in known],
+        dtype=np.int64,
+    ).reshape(-1, 5)
+    group["marks"] = np.array(
+        [(*key, index_of(mark.configuration), mark.corner, mark.number) for key, mark in marks], dtype=np.int64
+    ).reshape(-1, 5)
+    group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
+    for name in _ARRAYS:
+        group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
+    group.create_group("statistics").attrs.update(restart.statistics)
+
+
+def read_restart(group: h5py.Group, nodes: int) -> Restart:
+    """Read a restart, on a grid of so many nodes, from a group of :func:`write_restart`.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range, or the arrays don't fit each other.
+    """
+    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in _ARRAYS}
+    size = len(arrays["load"])
+    if any(len(array) != size for array in arrays.values()):
+        raise ValueError(f"{group.name[1:]}/configurations has arrays of different lengths")
+    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(size)]
+    met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
+    dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
+    check_between("met", met[:, 0], 0, size - 1)
+    check_between("marks", marks[:, 2], 0, size - 1)
+    check_finite("marks_dissipation", dissipations)
+    load = all_loads(group["load"][()], 0.0)
+    if load.shape != (len(LOADS),):
+        raise ValueError(f"the load of {group.name[1:]} has the shape {load.shape}")
+    check_finite("load", load)
+    return Restart(
+        corner=whole_number("corner", as_python(group.attrs["corner"]), 0),
+        load=load,
+        force=number("force", group.attrs["force"], LEAST_FORCE, 1.0 / LEAST_FORCE),
+        configuration=configurations[whole_number("configuration", as_python(group.attrs["configuration"]), 0)],
+        dissipation=number("dissipation", group.attrs["dissipation"]),
+        work=number("work", group.attrs["work"]),
+        repeats=Repeats(
+            [
+                KnownConfiguration(configurations[index], bool(ends), last, period, since)
+                for index, ends, last, period, since in met.tolist()
+            ]
+        ),
+        marks={
+            (block, inner): CycleEnd(corner, times, configurations[index], dissipation)
+            for (block, inner, index, corner, times), dissipation in zip(
+                marks.tolist(), dissipations.tolist(), strict=True
+            )
+        },
+        statistics=numbers_of(group["statistics"]),
+        slip_tally=_read_slip_tally(group, nodes),
+    )
+
+
+def _read_slip_tally(group: h5py.Group, nodes: int) -> np.ndarray:
+    """Read the slip tally of a restart, shape (4, n). Without any it is empty."""
+    if "slip_tally" not in group:
+        return np.zeros((0, 0))
+    tally: np.ndarray = dataset_of(group, "slip_tally", float, (nodes,))[()]
+    if len(tally) != 4:
+        raise ValueError(f"slip_tally has the shape {tally.shape}")
+    check_finite("slip_tally", tally[:2])
+    check_extremes("slip_tally", tally[2], tally[3], (tally[2] == np.inf) & (tally[3] == -np.inf))
+    return tally
+
+
+def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
+    """Read one array of all configurations of a restart, shape (configurations, ...)."""
+    size = {"motion": 3, "origin": 2, "rest": 2}.get(name, nodes)
+    if name == "load":
+        array = all_loads(dataset_of(group, name, float)[()], 0.0)
+        size = len(LOADS)
+    else:
+        array = dataset_of(group, name, np.int8 if name == "status" else float, (size,))[()]
+    label = f"configurations/{name}"
+    if array.shape[1:] != (size,):
+        raise ValueError(f"{label} has the shape {array.shape}")
+    if name == "status":
+        check_between(label, array, *STATUS_LIMITS)
+    elif name != "origin":  # The origin is NaN before the pin has come to rest.
+        check_finite(label, array)
+    return array
