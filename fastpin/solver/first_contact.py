@@ -22,6 +22,7 @@ from fastpin.solver.configuration import (
     reaches_end,
     resting_status,
     slip_tally_between,
+    slip_tally_with,
     solve_statuses,
     worst_residual,
 )
@@ -351,7 +352,8 @@ def _first_patch(
         raise ArcError(CUT_OFF)
     dissipated = dissipation_between(system, resting, found)
     if rough:
-        found.slip_tally = slip_tally_between(resting, found)
+        begun = slip_tally_with(replace(resting, status=found.status))  # its nodes slip from there on
+        found.slip_tally = slip_tally_between(replace(resting, slip_tally=begun), found)
     elif system.friction > 0.0:
         found = _with_grown_slip(system, found, before + begins * (after - before)) or found
     found.dissipation += dissipated
