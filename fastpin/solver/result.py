@@ -70,7 +70,9 @@ class Restart:
 
     def for_new_history(self) -> Restart:
         """The restart for another history that begins here."""
-        return replace(self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=np.zeros((0, 0)))
+        return replace(
+            self, corner=0, repeats=self.repeats.copy(), marks={}, statistics={}, slip_tally=np.zeros((0, 0))
+        )
 
 
 @dataclass(eq=False, repr=False)

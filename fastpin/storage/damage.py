@@ -87,7 +87,7 @@ def check_between(label: str, array: np.ndarray, least: float, most: float) -> N
 
 
 def check_extremes(label: str, lowest: np.ndarray, highest: np.ndarray, absent: np.ndarray) -> None:
-    """Raise :class:`ValueError` if extremes are not finite or in the wrong order. `absent` says where there are none."""
+    """Raise :class:`ValueError` if extremes are not finite, or in the wrong order. `absent`: where there are none."""
     if not np.all(absent | (np.isfinite(lowest) & np.isfinite(highest) & (lowest <= highest))):
         raise ValueError(f"{label} and the highest slip don't fit")
 

@@ -161,10 +161,7 @@ def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
     """The states of some places in a file. States that don't follow on the one before lose their slip fields."""
     follow = [True, *(before + 1 == place for before, place in pairwise(places))]
     lost: dict[str, Any] = dict.fromkeys(SLIP_FIELDS)
-    return [
-        state if follows else replace(state, **lost)
-        for state, follows in zip(states, follow, strict=False)
-    ]
+    return [state if follows else replace(state, **lost) for state, follows in zip(states, follow, strict=False)]
 
 
 def is_unfinished(path: Path) -> bool:

@@ -20,7 +20,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import unknowns as solver_unknowns
-from fastpin.solver.configuration import solve_statuses, worst_residual
+from fastpin.solver.configuration import empty_slip_tally, solve_statuses, worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.rest import unloaded_configuration
@@ -129,9 +129,8 @@ def at_rest_on(system, status):
     """A contact with given statuses; its values do not matter."""
     n = status.size
     zeros = [np.zeros(n) for _ in range(4)]
-    return Contact(
-        *zeros, status.copy(), np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool), np.zeros(3), np.zeros((2, n))
-    )
+    tie, touched = np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool)
+    return Contact(*zeros, status.copy(), tie, touched, np.zeros(3), np.zeros(n), empty_slip_tally(n))
 
 
 def whole(columns):
@@ -303,11 +302,15 @@ def naive_path(system, start, after):
                 inside = stick & (room > 1e-13) & (shrink > 1e-10)
                 steps.append(np.where(inside, room / shrink, np.inf))
         step = min(np.min(steps), 1.0 - time)
-        old = now.shear.copy()
+        old, begin = now.shear.copy(), now.slip.copy()
         for name in ("pressure", "shear", "gap", "slip"):
             setattr(now, name, getattr(now, name) + step * getattr(r, name))
         slid = np.where(closed & ~stick, step * r.slip, 0.0)
-        now.slip_sums = now.slip_sums + np.array([np.abs(slid), -0.5 * (old + now.shear) * slid])
+        distance, energy, lowest, highest = now.slip_tally
+        ends = np.array([begin, now.slip]) - now.rest_slip
+        lowest = np.where(closed, np.minimum(lowest, ends.min(axis=0)), lowest)
+        highest = np.where(closed, np.maximum(highest, ends.max(axis=0)), highest)
+        now.slip_tally = np.array([distance + np.abs(slid), energy - 0.5 * (old + now.shear) * slid, lowest, highest])
         now.gap[closed | (now.gap < 1e-15)] = 0.0
         now.pressure[~closed | (now.pressure < 1e-15)] = 0.0
         now.shear[now.pressure == 0.0] = 0.0
@@ -319,7 +322,7 @@ def naive_path(system, start, after):
 
 def test_path_agrees_with_the_naive_solver(system):
     first, _ = first_contact(system, unloaded_configuration(system), loads(), loads(P=1.0))
-    fast = naive = replace(first, slip_sums=np.zeros((2, 41)))
+    fast = naive = replace(first, rest_slip=np.linspace(-0.1, 0.2, 41), slip_tally=empty_slip_tally(41))
     for target in (loads(P=1.0), loads(P=1.0, Q=0.35), loads(P=1.0, Q=-0.35)):
         step = PathStep(system, fast, target)
         naive = naive_path(system, naive, target)
@@ -329,9 +332,13 @@ def test_path_agrees_with_the_naive_solver(system):
         assert np.array_equal(fast.status, naive.status)
         for name in ("pressure", "shear", "gap", "slip"):
             assert np.abs(getattr(fast, name) - getattr(naive, name)).max() < 1e-9
-        assert np.abs(fast.slip_sums - naive.slip_sums).max() < 1e-9 * naive.slip_sums.max()
-    assert np.all(naive.slip_sums.max(axis=1) > 0.005)
-    assert system.weights @ fast.slip_sums[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
+        assert np.abs(fast.slip_tally[:2] - naive.slip_tally[:2]).max() < 1e-9 * naive.slip_tally[:2].max()
+        met = np.isfinite(naive.slip_tally[2])
+        assert np.array_equal(np.isfinite(fast.slip_tally[2:]), [met, met])
+        assert np.abs(fast.slip_tally[2:, met] - naive.slip_tally[2:, met]).max() < 1e-9
+    assert np.all(naive.slip_tally[:2].max(axis=1) > 0.005)
+    assert np.ptp(naive.slip_tally[2:, met], axis=0).max() > 0.005
+    assert system.weights @ fast.slip_tally[1] == pytest.approx(fast.dissipation - first.dissipation, rel=1e-13)
 
 
 PLAIN = """
@@ -341,7 +348,8 @@ pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 problem = Problem.from_load_parameter(pair, 0.1, 0.4, "body")
 result = solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=31, arc=(-3.2, 0.1), slip_sums=True)
 for state in result:
-    values = *state.pressure, *state.shear, *state.slip_distance, *state.friction_energy
+    extremes = np.nan_to_num(state.slip_lowest), np.nan_to_num(state.slip_highest)
+    values = *state.pressure, *state.shear, *state.slip_distance, *state.friction_energy, *extremes[0], *extremes[1]
     print(*[f"{value:.12e}" for value in (*values, state.rotation, state.dissipation)])
 """
 
@@ -355,7 +363,7 @@ def test_compiled_and_plain_python_give_the_same_states():
         return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 
     compiled, plain = run("0"), run("1")
-    assert compiled.shape == (3, 126)
+    assert compiled.shape == (3, 188)
     assert np.abs(compiled - plain).max() < 1e-10
 
 

@@ -12,46 +12,14 @@ import pytest
 from fastpin.elasticity import large
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, save
 from scripts.histories import random_case
-from tests.support.programs import FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, known, q
-from tests.support.snap_cases import GRIPPED, TURNED
-
-LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
-UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
-FRETTING = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}, {"Q": 0.2}]
-CIRCLE = {"grid": Grid.circle(160, 0.3)}
-DRIVEN = [{"P": 1.0}, {"ux": 0.2}, {"ux": -0.2}, {"ux": 0.1}]
-
-
-def unitless(pair: MaterialPair, load_parameter: float, friction: float, *kind: str, **more: Any) -> Problem:
-    return Problem.from_load_parameter(pair, load_parameter, friction, *kind, **more)
-
-
-CASES: dict[str, tuple[Problem, Any, dict[str, Any]]] = {
-    "unlike bodies": (unitless(UNLIKE, 0.1, 0.4, "body"), FRETTING, {"nodes": 101}),
-    "in SI units": (Problem(UNLIKE, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"Q": 5e5}, {"Q": -5e5}], {"nodes": 81}),
-    "normal unloading": (unitless(UNLIKE, 0.1, 0.3), [{"P": 1.0}, {"P": 0.1}, {"P": 0.6}], {"nodes": 101}),
-    "separation": (unitless(LIKE, 0.5, 0.5), [{"P": 1.0, "Q": 0.3}, {"P": 0.0, "Q": 0.0}, {"P": -1.0}], CIRCLE),
-    "neat fit": (unitless(UNLIKE, 0.0, 0.4), [{"P": 1.0, "Q": 0.2}, {"Q": -0.2}], {"nodes": 101}),
-    "interference": (unitless(UNLIKE, -0.01, 0.3), FRETTING, CIRCLE),
-    "moment": (unitless(LIKE, 0.2, 0.5), [{"P": 1.0, "M": 0.1}, {"M": -0.1}], {"nodes": 101}),
-    "remote stress": (
-        unitless(UNLIKE, 0.2, 0.5, "centre", "fixed"),
-        [{"P": 1.0}, {"Q": 0.1, "sxx": 0.2, "sxy": -0.1}, {"Q": -0.1, "sxx": -0.2, "sxy": 0.1}],
-        CIRCLE,
-    ),
-    "driven": (unitless(UNLIKE, 0.2, 0.5, "centre", "fixed", drive="ux"), DRIVEN, {"nodes": 101}),
-    "snap": (*GRIPPED, {"nodes": 101}),
-    "snap under a moment": (*TURNED, {"nodes": 101}),
-    "much friction": (unitless(LIKE, 0.3, 2.0, "centre", "fixed"), FRETTING, {"nodes": 101}),
-}
-METHODS: dict[str, dict[str, Any]] = {"path": {}, "increment": {"method": "increment", "increments": 12}}
+from tests.support.programs import EXTREMES, FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, known, q
+from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
 
 
 def energies(result: Result) -> np.ndarray:
@@ -89,7 +57,7 @@ def test_nothing_else_changes(name: str) -> None:
     problem, history, options = CASES[name]
     plain, summed = (solve(problem, history, slip_sums=sums, **options) for sums in (False, True))
     for one, two in zip(plain, summed, strict=True):
-        assert one.slip_distance is one.friction_energy is None
+        assert all(getattr(one, field) is None for field in (*SLIP, *EXTREMES))
         assert all(np.array_equal(getattr(one, field), getattr(two, field)) for field in FIELDS)
         assert all(getattr(one, field) == getattr(two, field) for field in NUMBERS)
     assert {**plain.statistics, "seconds": 0.0} == {**summed.statistics, "seconds": 0.0}
@@ -176,6 +144,7 @@ def test_repeated_states_share_their_sums(held: Problem) -> None:
         last, before = (found[-1], found[-2]) if keep == "cycles" else (found[-1], found[-3])
         assert last.friction_energy is before.friction_energy
         assert last.slip_distance is before.slip_distance
+        assert last.slip_lowest is before.slip_lowest
         with pytest.raises(ValueError, match="read-only"):
             last.slip_distance[0] = 1.0
 
@@ -190,6 +159,7 @@ def test_a_split_history_has_the_sums_of_the_whole(held: Problem, program: str) 
         for parts, states in ((first, whole[:cut]), (second, whole[cut:])):
             for one, two in zip(parts, states, strict=True):
                 assert all(np.array_equal(getattr(one, name), getattr(two, name)) for name in SLIP)
+                assert all(np.array_equal(getattr(one, name), getattr(two, name), equal_nan=True) for name in EXTREMES)
 
 
 def test_a_branch_may_begin_to_sum_up(held: Problem) -> None:

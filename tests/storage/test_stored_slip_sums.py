@@ -70,8 +70,8 @@ def test_a_restart_holds_the_sums_since_the_latest_kept_state(problem: Problem, 
     options: dict[str, Any] = {"nodes": 61, "keep": "every 9", "slip_sums": True}
     record(problem, RANDOM, path, save_after=[9, 13], **options)
     with h5py.File(path) as file:
-        assert "slip_sums" not in file["restart/9"]
-        assert file["restart/13/slip_sums"].shape == (2, 61)
+        assert "slip_tally" not in file["restart/9"]
+        assert file["restart/13/slip_tally"].shape == (4, 61)
         assert "slip_distance" not in "".join(file["restart/13/configurations"])
     branch = solve(problem, RANDOM[13:], start=load(path, after=13), slip_sums=True)
     straight = solve(problem, RANDOM, nodes=61, slip_sums=True)
@@ -91,7 +91,7 @@ def test_files_without_the_option_have_nothing_new(problem: Problem, path: Path)
     record(problem, RANDOM, path, nodes=61, keep="every 9", save_after=[13])
     with h5py.File(path) as file:
         assert not set(SLIP_FIELDS) & set(file["states"])
-        assert "slip_sums" not in file["restart/13"]
+        assert "slip_tally" not in file["restart/13"]
         assert "slip_sums" not in file["solver"].attrs
     assert load(path)[-1].slip_distance is None
 
@@ -110,13 +110,14 @@ def test_states_that_do_not_follow_on_one_another_lose_their_sums(problem: Probl
 def test_datasets_have_the_sums_with_units(problem: Problem, path: Path) -> None:
     record(problem, RANDOM, path, nodes=61, slip_sums=True)
     from_file, from_memory = to_xarray(path), to_xarray(load(path))
-    for name, unit in (("slip_distance", "F beta*"), ("friction_energy", "F^2 beta*/R")):
+    lengths = dict.fromkeys(("slip_distance", "slip_lowest", "slip_highest"), "F beta*")
+    for name, unit in {**lengths, "friction_energy": "F^2 beta*/R"}.items():
         assert from_file[name].dims == ("state", "theta")
         assert from_file[name].attrs["units"] == unit
-        assert np.array_equal(from_file[name], from_memory[name])
+        assert np.array_equal(from_file[name], from_memory[name], equal_nan=True)
 
 
-@pytest.mark.parametrize("damage", ["missing", "shape", "restart"])
+@pytest.mark.parametrize("damage", ["missing", "shape", "restart", "order", "half"])
 def test_damaged_sums_are_told(problem: Problem, path: Path, damage: str) -> None:
     with pytest.raises(Interrupted):
         record(problem, RANDOM, path, nodes=61, keep="every 9", slip_sums=True, arc=(-3.0, -0.1), progress=StopAt(13.0))
@@ -126,8 +127,23 @@ def test_damaged_sums_are_told(problem: Problem, path: Path, damage: str) -> Non
         elif damage == "shape":
             del file["states/slip_distance"]
             file["states/slip_distance"] = np.zeros((1, 7))
+        elif damage == "restart":
+            del file["restart/latest/slip_tally"]
+            file["restart/latest/slip_tally"] = np.zeros((3, 61))
+        elif damage == "order":
+            file["restart/latest/slip_tally"][2] += 1.0
         else:
-            del file["restart/latest/slip_sums"]
-            file["restart/latest/slip_sums"] = np.zeros((3, 61))
+            file["restart/latest/slip_tally"][3, 30] = -np.inf
     with pytest.raises(InputError, match="damaged"):
         resume(path)
+
+
+@pytest.mark.parametrize("damage", ["order", "half", "infinite"])
+def test_damaged_extremes_of_a_state_are_told(problem: Problem, path: Path, damage: str) -> None:
+    record(problem, RANDOM, path, nodes=61, keep="every 9", slip_sums=True)
+    with h5py.File(path, "a") as file:
+        closed = int(np.flatnonzero(file["states/status"][2] != 2)[0])
+        value = {"order": file["states/slip_highest"][2, closed] + 1.0, "half": np.nan, "infinite": -np.inf}[damage]
+        file["states/slip_lowest"][2, closed] = value
+    with pytest.raises(InputError, match="damaged: states/slip_lowest and the highest slip don't fit"):
+        load(path)

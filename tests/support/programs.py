@@ -9,7 +9,8 @@ from fastpin.solver.result import Result
 
 CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
 FIELDS = ("pressure", "shear", "gap", "slip", "status")
-SLIP = ("slip_distance", "friction_energy")  # None without the option slip_sums
+SLIP = ("slip_distance", "friction_energy")  # None without the option slip_sums, like the next two
+EXTREMES = ("slip_lowest", "slip_highest")
 NUMBERS = ("step", "fraction", "load", "dx", "dy", "rotation", "dissipation", "work", "energy", "residuals")
 
 
@@ -39,8 +40,9 @@ def assert_same(one: Result, other: Result) -> None:
     """Two results have the same states, to the last bit."""
     assert len(one) == len(other)
     for first, second in zip(one, other, strict=True):
-        for name in (*FIELDS, *SLIP):
-            assert np.array_equal(getattr(first, name), getattr(second, name)), (name, first.step)
+        for name in (*FIELDS, *SLIP, *EXTREMES):
+            mine, others = getattr(first, name), getattr(second, name)
+            assert mine is others is None or np.array_equal(mine, others, equal_nan=True), (name, first.step)
         for name in NUMBERS:
             assert getattr(first, name) == getattr(second, name), (name, first.step)
 

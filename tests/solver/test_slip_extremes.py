@@ -1,0 +1,175 @@
+"""The lowest and the highest slip of each node while closed, exact along every piece of a history."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity import large
+from fastpin.kernels.status import OPEN
+from fastpin.model.grid import Grid
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from scripts.histories import random_case
+from tests.support.programs import EXTREMES, RANDOM, P, q
+from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
+
+PATHS = ["unlike bodies", "normal unloading", "neat fit", "interference", "remote stress", "driven"]
+
+
+def solved(name: str, **options: Any) -> list[State]:
+    problem, history, given = CASES[name]
+    given = {} if "grid" in options else given
+    return list(solve(problem, history, slip_sums=True, **{**given, **options}))
+
+
+def extremes(states: Sequence[State]) -> np.ndarray:
+    """Lowest and highest slip over some states, from their own extremes, shape (2, n)."""
+    lowest, highest = (np.array([getattr(state, name) for state in states]) for name in EXTREMES)
+    return np.array([np.fmin.reduce(lowest), np.fmax.reduce(highest)])
+
+
+def read(states: Sequence[State]) -> np.ndarray:
+    """Lowest and highest slip of the states in which a node is closed, shape (2, n)."""
+    slip = np.array([np.where(state.status == OPEN, np.nan, state.slip) for state in states])
+    return np.array([np.fmin.reduce(slip), np.fmax.reduce(slip)])
+
+
+def size_of(states: Sequence[State]) -> float:
+    return max(float(np.abs(state.slip).max()) for state in states)
+
+
+def assert_contains(states: Sequence[State]) -> None:
+    """The extremes of each state contain its slip, and the slip at the kept corner before."""
+    corner: list[State] = []
+    for state in states:
+        for one in (*corner, state):
+            closed = one.status != OPEN
+            assert np.all(state.slip_lowest[closed] <= one.slip[closed])
+            assert np.all(one.slip[closed] <= state.slip_highest[closed])
+        assert np.array_equal(np.isnan(state.slip_lowest), np.isnan(state.slip_highest))
+        corner = [state] if state.fraction == 1.0 else corner
+
+
+@pytest.mark.parametrize(  # increments end at a snap
+    ("name", "method"),
+    [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name],
+)
+def test_extremes_contain_the_states(name: str, method: str) -> None:
+    assert_contains(solved(name, between=4, **METHODS[method]))
+
+
+@pytest.mark.parametrize("seed", range(100, 130))
+def test_extremes_of_random_histories_contain_the_states(seed: int) -> None:
+    problem, history = random_case(seed)
+    assert_contains(list(solve(problem, history, nodes=81, slip_sums=True, between=2)))
+
+
+@pytest.mark.parametrize("name", PATHS)
+def test_readings_from_states_converge_to_the_exact_extremes(name: str) -> None:
+    missed = []
+    for between in (15, 127, 1023):
+        states = solved(name, between=between)
+        exact, found = extremes(states), read(states)
+        missed.append(float(np.nanmax(np.abs(found - exact))) / size_of(states))
+    assert missed[1] < 0.3 * missed[0]
+    assert missed[2] < 0.3 * missed[1]
+    assert missed[2] < 2e-3
+    assert np.array_equal(np.isnan(found), np.isnan(exact))
+
+
+@pytest.mark.parametrize("name", ["snap", "snap under a moment"])
+def test_readings_across_snaps_approach_the_extremes(name: str) -> None:
+    """What happens at one instant of the load is in the extremes; the states see a part of it only."""
+    missed = []
+    for between in (3, 511):
+        states = solved(name, between=between)
+        assert_contains(states)
+        missed.append(float(np.nanmax(np.abs(read(states) - extremes(states)))) / size_of(states))
+    assert missed[1] < 0.3 * missed[0]
+
+
+@pytest.mark.parametrize("name", list(CASES))
+def test_extremes_do_not_depend_on_the_states_between(name: str) -> None:
+    first = solved(name)
+    expected, rounding = extremes(first), (1e-10 if "snap" in name else 1e-13) * size_of(first)
+    for between in (19, [0.1, 0.35, 0.7]):
+        states = solved(name, between=between, grid=first[0].grid)
+        found = extremes(states)
+        assert np.array_equal(np.isnan(found), np.isnan(expected))
+        assert np.nanmax(np.abs(found - expected)) <= rounding
+
+
+@pytest.mark.parametrize("name", ["unlike bodies", "remote stress", "driven", "interference"])
+def test_increments_converge_to_the_extremes_of_the_path(name: str) -> None:
+    path = solved(name)
+    exact, errors = extremes(path), []
+    for increments in (20, 160):
+        found = extremes(solved(name, method="increment", increments=increments, grid=path[0].grid))
+        errors.append(float(np.nanmax(np.abs(found - exact))) / size_of(path))
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[1] < 0.02
+
+
+@pytest.mark.parametrize("keep", ["every 2", "every 7", "every 100"])
+def test_extremes_have_the_same_bits_whatever_is_kept(keep: str) -> None:
+    problem, history = unitless(LIKE, 0.5, 0.55, "centre", "fixed"), P + q(*RANDOM)
+    every = solve(problem, history, nodes=61, slip_sums=True)
+    before = -1
+    for state in solve(problem, history, nodes=61, keep=keep, slip_sums=True):
+        expected = extremes(every[before + 1 : state.step + 1])
+        assert np.array_equal(extremes([state]), expected, equal_nan=True)
+        before = state.step
+
+
+def test_states_between_count_from_the_corner() -> None:
+    states = solved("unlike bodies", between=3)
+    for begin in range(0, len(states), 4):
+        for earlier, later in zip(states[begin : begin + 3], states[begin + 1 : begin + 4], strict=True):
+            assert not np.any(later.slip_lowest > earlier.slip_lowest)
+            assert not np.any(later.slip_highest < earlier.slip_highest)
+    assert np.nanmax(states[4].slip_lowest - states[3].slip_lowest) > 0.0  # a new corner: they begin anew
+
+
+def test_a_new_resting_place_keeps_what_the_states_have_shown() -> None:
+    """After a complete unloading slip counts from a new place. The extremes hold each slip as its state had it."""
+    problem = unitless(LIKE, 0.5, 0.5)
+    history = [{"P": 1.0, "Q": 0.3}, {"P": 0.0, "Q": 0.0}, {"P": -1.0}]
+    grid = Grid.circle(160, 0.3)
+    every = list(solve(problem, history, grid=grid, slip_sums=True))
+    last = solve(problem, history, grid=grid, slip_sums=True, keep="every 9")
+    assert len(last) == 1
+    assert np.array_equal(extremes(list(last)), extremes(every), equal_nan=True)
+    assert_contains(list(solve(problem, history, grid=grid, slip_sums=True, between=20)))
+    below, above = every[0].status != OPEN, every[2].status != OPEN
+    assert below.any()
+    assert above.any()
+    assert np.all(every[0].slip[below] >= last[0].slip_lowest[below])
+    assert np.all(every[2].slip[above] <= last[0].slip_highest[above])
+    assert np.all(np.isfinite(last[0].slip_lowest[below | above]))
+
+
+def test_nodes_that_stick_have_one_slip() -> None:
+    states = solved("much friction")
+    moved = (states[1].status == 0) & (states[2].status == 0) & (states[2].slip_distance == 0.0)
+    still = moved & np.isfinite(states[2].slip_lowest) & (states[2].slip_lowest == states[2].slip_highest)
+    assert moved.any()
+    assert np.array_equal(still, moved)
+
+
+def test_windows_give_the_extremes_of_the_whole_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = unitless(UNLIKE, 20.0, 0.4, "centre", "fixed")
+    sheared = [{"P": 1.0}, {"P": 0.8, "Q": 0.7}, {"P": 0.8, "Q": -0.7}]
+    history = [*sheared, {"P": 0.02, "Q": 0.01}, {"P": 0.0, "Q": 0.0}, {"P": 1.0}]
+    grid = Grid.graded([(-0.5 * np.pi, 0.3), (-1.0, 0.3), (-2.1, 0.3)], 260, -0.5 * np.pi)
+    whole = solve(problem, history, grid=grid, slip_sums=True)
+    monkeypatch.setattr(large, "MOST_DENSE", 100)
+    on_windows = list(solve(problem, history, grid=grid, slip_sums=True, between=2))
+    assert_contains(on_windows)
+    for place, expected in enumerate(whole):
+        found, wanted = extremes(on_windows[3 * place : 3 * place + 3]), extremes([expected])
+        assert np.array_equal(np.isnan(found), np.isnan(wanted))
+        assert np.nanmax(np.abs(found - wanted), initial=0.0) <= 1e-7 * size_of(list(whole))
