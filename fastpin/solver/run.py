@@ -352,7 +352,7 @@ class Run:
         in_period = [known for known in self.repeats if known.last > last - length]
         for time in range(1, period.times + 1):
             entries = self.corner_log.again(period, time, self.corner)
-            self._book_again(entries)
+            self._book_again(entries, time)
             for known in in_period:
                 known.last += length
             self.corner += length
@@ -361,9 +361,9 @@ class Run:
                 self._keep(self.corner - 1, 1.0)  # the last state of a history is always kept
             self._show_corner()
 
-    def _book_again(self, entries: list[CornerEntry]) -> None:
-        """Add the energies, states and cycles of the next corners, which are known."""
-        energy, rows, first = self.system.scales.energy, [], self._count_slip_again(entries)
+    def _book_again(self, entries: list[CornerEntry], time: int) -> None:
+        """Add the energies, states and cycles of the next corners, which are known: repetition `time` of a period."""
+        energy, rows, first = self.system.scales.energy, [], self._count_slip_again(entries, time)
         for step, entry in enumerate(entries, start=self.corner):
             for dissipation, work in entry.kept:
                 rows.append((step, (self.dissipation + dissipation) * energy, (self.work + work) * energy))
@@ -375,13 +375,15 @@ class Run:
             slip = SlipFields() if first is None else self._slip_fields(first)
             self.recorder.add_again(np.array(steps), np.array(dissipations), np.array(works), slip)
 
-    def _count_slip_again(self, entries: list[CornerEntry]) -> np.ndarray | None:
+    def _count_slip_again(self, entries: list[CornerEntry], time: int) -> np.ndarray | None:
         """Add the slip tallies of the next corners, which are known.
 
         Returns the slip tally of their first kept state; None if they are the same as a period before.
         """
+        if self._keeps_all or (time > 2 and any(entry.kept for entry in entries)):
+            return None  # the repetition before began with the same slip tally, and ended with it
         first = None
-        for entry in () if self._keeps_all else entries:
+        for entry in entries:
             self.slip_tally = joined_slip_tallies(self.slip_tally, entry.slip_tally)
             if entry.kept:
                 first = self.slip_tally if first is None else first

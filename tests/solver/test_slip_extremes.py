@@ -107,7 +107,7 @@ def test_extremes_do_not_depend_on_the_states_between(name: str) -> None:
 def test_increments_converge_to_the_extremes_of_the_path(name: str) -> None:
     path = solved(name)
     exact, errors = extremes(path), []
-    for increments in (20, 160):
+    for increments in (10, 160):
         found = extremes(solved(name, method="increment", increments=increments, grid=path[0].grid))
         errors.append(float(np.nanmax(np.abs(found - exact))) / size_of(path))
     assert errors[1] < 0.3 * errors[0]
