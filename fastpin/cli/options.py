@@ -300,7 +300,7 @@ def _add_solver_options(run: argparse.ArgumentParser) -> None:
         "--slip-sums",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="sum up slip distance and friction energy of each node, also in the last cycle",
+        help="count slip distance, friction energy and exact slip range of each node, also in the last cycle",
     )
 
 

@@ -130,8 +130,8 @@ class SolveOptions:
     error_bars : bool
         Whether to follow the history also on a grid with half the intervals. Every state then has ``error_bars``.
     slip_sums : bool
-        Whether to sum up the slip distance and the friction energy of each node. Every state then has
-        ``slip_distance`` and ``friction_energy``.
+        Whether to sum up the slip distance and the friction energy of each node, and to note its extremes of slip.
+        Every state then has ``slip_distance``, ``friction_energy``, ``slip_lowest`` and ``slip_highest``.
 
     Raises
     ------

@@ -124,5 +124,5 @@ def _step_on_springs(
     found = _step(held, shifted, load)
     if found is None:
         return None
-    rest = {"rest_gap": start.rest_gap, "rest_slip": start.rest_slip}
-    return replace(found, motion=found.motion + before, slip=found.slip + moved[n:], **rest)
+    found = replace(found, rest_gap=start.rest_gap, rest_slip=start.rest_slip)
+    return replace(found, motion=found.motion + before, slip=found.slip + moved[n:])

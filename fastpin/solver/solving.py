@@ -71,7 +71,8 @@ def solve(
     error_bars : bool
         Also solve on a grid with half the intervals. Every state then has error bars.
     slip_sums : bool
-        Sum up the slip distance and the friction energy of each node since the state before, see :class:`State`.
+        Sum up the slip distance and the friction energy of each node, and note its extremes of slip, see
+        :class:`State`.
     grid : Grid, optional
         A ready grid, for example a graded one. `nodes` is then not used, and `arc` is not allowed.
     start : Result, optional

@@ -100,7 +100,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
     path : path
     states : slice or sequence of int
         States to read, by their place in the file from 0; negative places count from the end. All states by default.
-        Slip sums count since the state before in the file. A state that does not follow on the one before loses them.
+        Slip fields count since states before in the file. A state that does not follow on the one before loses them.
     after : int, optional
         Read the result only up to this corner, counted from 1. ``solve(..., start=result)`` then continues from the
         corner. If the corner has no restart in the file, the steps from the last restart before it are solved again.
