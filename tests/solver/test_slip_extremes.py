@@ -173,3 +173,15 @@ def test_windows_give_the_extremes_of_the_whole_grid(monkeypatch: pytest.MonkeyP
         found, wanted = extremes(on_windows[3 * place : 3 * place + 3]), extremes([expected])
         assert np.array_equal(np.isnan(found), np.isnan(wanted))
         assert np.nanmax(np.abs(found - wanted), initial=0.0) <= 1e-7 * size_of(list(whole))
+
+
+def test_increments_count_from_the_first_contact() -> None:
+    """Without friction the first nodes slip one way from their first contact on, whatever the size of increments."""
+    problem, grid = unitless(UNLIKE, 0.1, 0.0, "centre", "fixed"), Grid.arc(-np.pi, 0.0, 101)
+    options: dict[str, Any] = {"grid": grid, "slip_sums": True}
+    exact = solve(problem, [{"P": 1.0}], **options)[0]
+    found = solve(problem, [{"P": 1.0}], method="increment", increments=2, **options)[0]
+    beside = 51
+    expected = exact.slip_highest[beside] - exact.slip_lowest[beside]
+    assert found.slip_highest[beside] - found.slip_lowest[beside] == pytest.approx(expected, rel=5e-3)
+    assert expected > 1e-6 * np.abs(exact.slip).max()
