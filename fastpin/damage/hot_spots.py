@@ -22,6 +22,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.states.stress import check_body
 
 Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
 
@@ -154,8 +155,9 @@ def fatigue(
         points = Points.at_depth(0.0 if depth is None else depth, edge_angles(stops))
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
-    history = stress_history(stops, points, body)
+    check_body(stops[0].problem, body)
     place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
+    history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
 
 

@@ -91,7 +91,7 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     run(project, "run", "x")
     log(project)
     assert run(project, "test", "-k", "a b").returncode == 0
-    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -n auto -k a b"]
+    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -n auto -m not slow -k a b"]
     run(project, "run", "x")
     assert log(project) == ["/> -P -m fastpin run x"]
 
