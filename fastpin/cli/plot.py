@@ -24,7 +24,11 @@ def run(options: argparse.Namespace) -> int:
     """Draw one kind of figure of a stored result."""
     _check(options)
     figure = Path(f"{options.kind}.png") if options.output is None else options.output
-    check_outputs({"--output": figure, "--csv": options.csv}, None, figures=("--output",))
+    outputs = {"--output": figure, "--csv": options.csv}
+    for option, path in outputs.items():
+        if path is not None and path.resolve() == options.result.resolve():
+            raise InputError(option, f"won't overwrite the result {path}")
+    check_outputs(outputs, None, figures=("--output",))
     title = storage.stored_case(options.result).title
     try:
         draw, write = KINDS[options.kind](options, title)
@@ -128,7 +132,9 @@ def _result(options: argparse.Namespace) -> solver.Result:
 
 def _cycles(options: argparse.Namespace, title: str) -> Made:
     result = storage.load(options.result, states=[])
-    fields = [name for name in (result.cycles[0]._fields if result.cycles else ()) if name != "solved"]
+    if not result.cycles:
+        raise InputError("result", "the history has no cycle that has ended")
+    fields = [name for name in result.cycles[0]._fields if name != "solved"]
     columns = {name: np.array([getattr(cycle, name) for cycle in result.cycles], dtype=float) for name in fields}
     return lambda path: figures.plot_cycles(result, path, title=title), _curves([Curve({}, columns)])
 
@@ -144,9 +150,10 @@ def _loops(options: argparse.Namespace, title: str) -> Made:
 
 
 def _fatigue(options: argparse.Namespace, title: str) -> Made:
-    states = list(_result(options))
+    result = _result(options)
+    cycle = damage.cycle_states(result, result.cycles[-1])
     criterion: Any = "smith-watson-topper" if options.criterion is None else options.criterion
-    found = damage.fatigue(states, criterion, **_given(options, "body", "depth"))
+    found = damage.fatigue(cycle, criterion, **_given(options, "body", "depth"))
     return lambda path: figures.plot_fatigue(found, path, title), _curves([report.fatigue.fatigue_curve(found)])
 
 

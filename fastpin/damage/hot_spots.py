@@ -156,6 +156,7 @@ def fatigue(
     elif depth is not None:
         raise InputError("depth", "can't be given together with points")
     check_body(stops[0].problem, body)
+    instance("points", points, Points, "fastpin.Points")
     place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
@@ -201,13 +202,15 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     Raises
     ------
     InputError
-        If the states at some corners of the cycle were not kept.
+        If the states at some corners of the cycle were not kept, or if the cycle begins without load.
     """
     end = instance("cycle", cycle, Cycle, "a cycle of a result").corner
     begin = end - cycle.length
+    if begin < 0:
+        raise InputError("cycle", f"the cycle to corner {end + 1} begins without load: choose a later one")
     found = [state for state in states if begin <= state.step + state.fraction - 1.0 <= end]
-    if not {state.step for state in found if state.fraction == 1.0}.issuperset(range(max(begin, 0), end + 1)):
-        raise InputError("states", f"must hold all corners of the cycle, {max(begin, 0)} to {end}")
+    if not {state.step for state in found if state.fraction == 1.0}.issuperset(range(begin, end + 1)):
+        raise InputError("states", f"must hold all corners of the cycle, {begin + 1} to {end + 1}")
     return found
 
 
@@ -266,7 +269,7 @@ def damage_sum(
     chosen = [cycle_states(states, cycle) for cycle in items("cycles", cycles, "cycles of a result")]
     if not chosen:
         raise InputError("cycles", "must be at least one")
-    points = Points.at_depth(depth, edge_angles(cycle_stops(states)))
+    points = Points.at_depth(depth, edge_angles(cycle_stops([state for one in chosen for state in one])))
     found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
     known = [life for life in found if life is not None]
     if len(known) < len(found):

@@ -11,7 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.damage import Fatigue
+from fastpin.errors import InputError
 from fastpin.figures.style import COLOURS, angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
+from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance
 from fastpin.model.units import scaled, units, with_unit
 
@@ -43,6 +45,8 @@ def plot_fatigue(
         If `found` is no fatigue of points at one depth. Also see :func:`fastpin.plot_tractions`.
     """
     instance("found", found, Fatigue, "a fatigue result, such as result.fatigue(...)")
+    if np.ptp(found.depth) > 0.0:
+        raise InputError("found", "must be of points at one depth")
     inches = check_figure_text(title, width)
     return draw_and_save(lambda: _draw(found, title, inches), path, dpi)
 
@@ -52,18 +56,19 @@ def _draw(found: Fatigue, title: str, width: float) -> Figure:
     figure, axes = panels(rows, 1, 2.2, width)
     figure.set_figheight(2.2 * rows + 0.9)
     theta, parameter = found.theta.ravel(), found.parameter.ravel()
-    angle = np.degrees(theta) + 90.0
+    angle = np.array([from_bottom(place) for place in theta.tolist()])
     order, spot = np.argsort(angle), found.hot_spot
     angle, parameter = angle[order], parameter[order]
     top = axes[0, 0]
     factor, unit = scaled([spot.parameter], found.unit)
     parameter = factor * parameter
     top.plot(angle, parameter, **line(0))
-    top.plot(math.degrees(spot.theta) + 90.0, factor * spot.parameter, "o", markersize=4.5, color=COLOURS[1])
+    top.plot(from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=COLOURS[1])
     top.set_ylabel(f"{found.criterion}  [{unit}]")
-    top.set_ylim(0.0, 1.15 * float(parameter.max()) or 1.0)
+    lowest, highest = float(parameter.min()), float(parameter.max())
+    top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0) or 1.0)
     handles = [
-        Line2D([], [], label=f"hot spot at {math.degrees(spot.theta) + 90.0:.2f} deg", linestyle="none", marker="o",
+        Line2D([], [], label=f"hot spot at {from_bottom(spot.theta):.2f} deg", linestyle="none", marker="o",
                markersize=4.5, color=COLOURS[1]),
     ]  # fmt: skip
     if found.plane is not None:

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
+from fastpin.figures.states import Frame
 from fastpin.figures.style import angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
@@ -59,30 +60,28 @@ def _draw_slip(cycle: LoadCycle, title: str, width: float) -> Figure:
     figure, axes = panels(2, 1, 2.0, width)
     figure.set_figheight(5.2)
     unit = units(cycle.states[0].problem)
-    angle = np.degrees(cycle.theta) + 90.0
+    frame = Frame(cycle.states)
+    angle, order = frame.angle, frame.order
     upper, lower = axes[:, 0]
     curves = [("slip range", cycle.slip_range), *([("slip distance", cycle.slip_distance)] if known else [])]
     factor, label = scaled([float(np.max(values)) for _, values in curves if values is not None], unit["displacement"])
     for k, (_, values) in enumerate(curves):
-        upper.plot(angle, factor * np.asarray(values), **line(k, k))
+        upper.plot(angle, factor * np.asarray(values)[order], **line(k, k))
     upper.set_ylabel(f"slip  [{label}]")
     if cycle.friction_energy is not None:
         factor, label = scaled([float(cycle.friction_energy.max())], unit["energy density"])
-        lower.plot(angle, factor * cycle.friction_energy, **line(2, 2))
+        lower.plot(angle, factor * cycle.friction_energy[order], **line(2, 2))
         lower.set_ylabel(f"friction energy  [{label}]")
     else:
         factor, label = scaled([float(cycle.shear_range.max())], unit["traction"])
-        lower.plot(angle, factor * cycle.shear_range, **line(2, 2))
+        lower.plot(angle, factor * cycle.shear_range[order], **line(2, 2))
         lower.set_ylabel(f"range of shear traction  [{label}]")
-    _shade(lower, cycle, angle)
-    shades = _shade(upper, cycle, angle)
-    inside = angle[cycle.behaviour != NodeBehaviour.NO_CONTACT]
+    _shade(lower, cycle, frame)
+    shades = _shade(upper, cycle, frame)
     for panel in (upper, lower):
         panel.set_ylim(bottom=0.0)
         angle_axis(panel)
-        if inside.size:
-            margin = 0.04 * (inside[-1] - inside[0]) + 1.0
-            panel.set_xlim(inside[0] - margin, inside[-1] + margin)
+        panel.set_xlim(*frame.limits)
     lower.set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
     handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, (name, _) in enumerate(curves)]
     fitted_legend(figure, [*handles, *shades], len(handles) + len(shades))
@@ -91,16 +90,16 @@ def _draw_slip(cycle: LoadCycle, title: str, width: float) -> Figure:
     return figure
 
 
-def _shade(panel: Axes, cycle: LoadCycle, angle: np.ndarray) -> list[Artist]:
+def _shade(panel: Axes, cycle: LoadCycle, frame: Frame) -> list[Artist]:
     """Shade the nodes that slip or open at some time, and return the entries of the legend."""
-    left, right = (np.degrees(knots) + 90.0 for knots in cycle.states[0].grid.knots())
+    middles = 0.5 * (frame.angle[1:] + frame.angle[:-1])
+    ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
     entries: list[Artist] = []
     for behaviour, (shade, label) in SHADES.items():
-        mask = cycle.behaviour == behaviour
-        if mask.any():
-            for k in np.flatnonzero(mask):
-                first, last = 0.5 * (left[k] + angle[k]), 0.5 * (angle[k] + right[k])
-                panel.axvspan(first, last, color=shade, linewidth=0, zorder=-1)
+        shaded = np.flatnonzero(cycle.behaviour[frame.order] == behaviour)
+        for k in shaded:
+            panel.axvspan(ends[k], ends[k + 1], color=shade, linewidth=0, zorder=-1)
+        if shaded.size:
             entries.append(Patch(color=shade, linewidth=0, label=label))
     return entries
 

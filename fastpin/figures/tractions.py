@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -15,14 +13,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.figures.states import drawn_states, name_states, state_lines
+from fastpin.figures.states import Frame, drawn_states, name_states, state_lines
 from fastpin.figures.style import MAX_NAMED, Line, check_figure_text, draw_and_save
-from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
-from fastpin.model.angles import AT_TOP, turns_from_bottom
+from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.units import scaled, units
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.zones import ALL_ROUND
 
 _SHADE = "0.93"
 
@@ -84,7 +80,7 @@ def _draw(states: list[State], title: str, width: float) -> Figure:
     FigureCanvasAgg(figure)
     axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
 
-    frame = _Frame(states)
+    frame = Frame(states)
     unit = units(problem)["traction"]
     factor, label = scaled([float(state.pressure.max()) for state in states], unit)
     label = label.replace("beta*", "β*")
@@ -130,84 +126,14 @@ def _styles(states: list[State]) -> list[Artist]:
     return styles
 
 
-class _Frame:
-    """The angle axis of a figure. It spans all nodes that touch in some state, and a little more.
-
-    Attributes
-    ----------
-    order : ndarray of int
-        Nodes in the order in which they are drawn. A circle is cut open; its first node then stands at both ends.
-    angle : ndarray
-        Angles of these nodes, degrees from the bottom, increasing.
-    limits : (float, float)
-        Ends of the axis, degrees.
-    """
-
-    def __init__(self, states: list[State]) -> None:
-        grid = states[0].grid
-        touched = np.any([state.status != OPEN for state in states], axis=0)
-        self.order = np.arange(grid.size)
-        if grid.closed and not touched.all():
-            # The circle is cut open in the middle of the longest stretch that is open in all states.
-            self.order = np.roll(self.order, -_middle_of_longest_gap(touched))
-        elif grid.closed:  # cut open at the top
-            self.order = np.roll(self.order, -int(np.argmin(np.mod(grid.theta - ALL_ROUND[0] + AT_TOP, 2.0 * math.pi))))
-        angle = np.degrees(np.unwrap(grid.theta[self.order])) + 90.0
-        if grid.closed:
-            self.order = np.append(self.order, self.order[0])
-            angle = np.append(angle, angle[0] + 360.0)
-        inside = angle[touched[self.order]]
-        first, last = (inside[0], inside[-1]) if inside.size else (angle[0], angle[-1])
-        turn = 360.0 * turns_from_bottom(math.radians(0.5 * (first + last) - 90.0))
-        self.angle = angle - turn
-        margin = 0.04 * (last - first) + 1.0
-        self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
-
-    def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return angle, pressure and shear in the order of drawing; NaN at open nodes without a closed neighbour."""
-        closed = state.status != OPEN
-        drawn = closed.copy()
-        drawn[1:] |= closed[:-1]
-        drawn[:-1] |= closed[1:]
-        if state.grid.closed:
-            drawn[0] |= closed[-1]
-            drawn[-1] |= closed[0]
-        pressure = np.where(drawn, state.pressure, np.nan)
-        shear = np.where(drawn, state.shear, np.nan)
-        return self.angle, pressure[self.order], shear[self.order]
-
-    def place(self, start: float, stop: float) -> list[tuple[float, float]]:
-        """Return the parts of an interval, given in rad, that lie on the axis: (first angle, width) in degrees."""
-        length = math.degrees(stop - start)
-        first = math.degrees(start) + 90.0
-        first += 360.0 * math.ceil((self.limits[0] - first - length) / 360.0)
-        parts = []
-        while first < self.limits[1]:
-            left, right = max(first, self.limits[0]), min(first + length, self.limits[1])
-            if right > left:
-                parts.append((left, right - left))
-            first += 360.0
-        return parts
-
-
-def _middle_of_longest_gap(touched: np.ndarray) -> int:
-    size = touched.size
-    best, middle, run = 0, 0, 0
-    for k in range(2 * size):  # twice round: a stretch may cross the seam of the circle
-        run = 0 if touched[k % size] else run + 1
-        if run > best:
-            best, middle = run, k - run // 2
-    return middle % size
-
-
-def _shade_slip(axes: Sequence[Axes], state: State, frame: _Frame) -> None:
+def _shade_slip(axes: Sequence[Axes], state: State, frame: Frame) -> None:
     for start, stop, _ in state.slip_zones:
         for left, width in frame.place(start, stop):
             for panel in axes:
                 panel.axvspan(left, left + width, color=_SHADE, linewidth=0, zorder=-1)
 
 
-def _draw_zones(panel: Axes, states: list[State], lines: Sequence[Line], frame: _Frame) -> None:
+def _draw_zones(panel: Axes, states: list[State], lines: Sequence[Line], frame: Frame) -> None:
     """Draw one row for each state: solid where it sticks, shaded where it slips. Arrows show the pin's direction."""
     for row, state in enumerate(states):
         colour = lines[row]["color"]

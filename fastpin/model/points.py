@@ -14,6 +14,9 @@ from fastpin.model.problem import Problem
 
 Body = Literal["plate", "pin"]
 
+ROUNDING = 1e-14
+"""Distance from the edge that is rounding, in units of the hole's radius."""
+
 BODIES = ("plate", "pin")
 """The bodies in contact."""
 
@@ -78,6 +81,7 @@ class Points:
         else:
             assert self.radius is not None
             depth = (self.radius - radius) / radius * (1.0 if body == "plate" else -1.0)
+            depth = np.where(np.abs(depth) < ROUNDING, 0.0, depth)
             if np.any(depth < 0.0):
                 side = "at least" if body == "plate" else "at most"
                 raise InputError("radius", f"must be {side} the hole's radius of {radius:g} in the {body}")

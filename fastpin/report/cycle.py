@@ -73,7 +73,8 @@ def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:
 def document(cycle: LoadCycle) -> dict[str, Any]:
     """Return the largest values of a cycle with their places, and its energies, as a dict.
 
-    A value that is not known is None. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load.
+    A value that is not known is None. ``nodes`` counts the nodes of each behaviour. ``work`` is the work of each load;
+    it is not known if only the ends of the cycle were kept.
     """
     found: dict[str, Any] = {"first": cycle.first, "last": cycle.last, "closed": cycle.is_closed}
     for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
@@ -81,7 +82,8 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     found["slip_range_is_exact"] = cycle.has_exact_slip_range
     found["dissipation"] = cycle.dissipation
     found["nodes"] = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
-    found["work"] = {name: loop.work for name, loop in cycle.loops.items()}
+    inside = len(cycle.states) > 2
+    found["work"] = {name: loop.work if inside else None for name, loop in cycle.loops.items()}
     return found
 
 

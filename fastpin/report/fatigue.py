@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fastpin.damage import Fatigue
+from fastpin.model.angles import from_bottom
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 
@@ -15,8 +16,9 @@ def fatigue_curve(found: Fatigue) -> Curve:
     Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
     """
     length = units(found.problem)["length"]
+    angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
     columns = {
-        "angle [deg]": np.degrees(found.theta) + 90.0,
+        "angle [deg]": angles,
         f"depth [{length}]": found.depth,
         f"{found.criterion} [{found.unit}]": found.parameter,
     }
@@ -24,5 +26,5 @@ def fatigue_curve(found: Fatigue) -> Curve:
         columns["plane [deg]"] = np.degrees(found.plane)
     if found.life is not None:
         columns["life [cycles]"] = found.life
-    order = np.argsort(found.theta.ravel(), kind="stable")
+    order = np.argsort(angles, kind="stable")
     return Curve({"body": found.body}, {name: np.ravel(values)[order] for name, values in columns.items()})

@@ -24,6 +24,9 @@ TRIED = 4
 ZOOMS, ZOOMED = 3, 21
 """Rounds of the search beside a local maximum, and the number of angles in each."""
 
+LEAST_NODES = 40
+"""Least number of nodes in contact of a resolved peak. With less, errors of 3 % were found."""
+
 NEAR = 2.0
 """Distance from an unresolved place, in node distances, within which a peak belongs to it."""
 
@@ -50,6 +53,7 @@ def hoop_peak(state: State, body: Body) -> HoopPeak:
     found = [_highest(state, body, angles, int(top)) for top in tops[np.argsort(-values[tops])[:TRIED]]]
     largest = max(value for value, _ in found)
     value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
+    resolved = _is_resolved(state, body, value, angle)
     force = math.hypot(state.resultants["P"], state.resultants["Q"])
     bearing, gross, bypass = force / (2.0 * state.problem.hole_radius), 0.0, 0.0
     if body == "plate":
@@ -57,7 +61,8 @@ def hoop_peak(state: State, body: Body) -> HoopPeak:
         mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
         gross = mean + math.copysign(radius, mean)
         bypass = 2.0 * mean - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
-    return HoopPeak(value, angle, _is_resolved(state, body, value, angle), bearing, gross, bypass)
+    place = angle if state.in_contact or value != 0.0 else math.nan
+    return HoopPeak(value, place, resolved, bearing, gross, bypass)
 
 
 def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[float, float]:
@@ -70,13 +75,17 @@ def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[fl
         values = state.hoop_stress(body, tried)
         if values.max() > value:
             value, angle = float(values.max()), float(tried[np.argmax(values)])
-        low, high = 2.0 / ZOOMED * low, 2.0 / ZOOMED * high
+        step = (high - low) / (ZOOMED - 1)
+        low, high = -step, step
     return value, near_bottom(angle)
 
 
 def _is_resolved(state: State, body: Body, value: float, angle: float) -> bool:
     """Whether power laws describe the peak, and no place without a law may have a higher one."""
-    spacing = float(state.grid.weights.max())
+    closed = state.status != OPEN
+    if 0 < np.count_nonzero(closed) < LEAST_NODES:
+        return False
+    spacing = float(state.grid.weights[closed].max(initial=0.0))
     refined = state.refined
     if refined.unresolved:
         places = np.array(refined.unresolved)

@@ -143,10 +143,12 @@ class LoadCycle:
     def slip_range(self) -> np.ndarray:
         """Range of the slip of each node while closed, m, shape (n,); 0 where it never is.
 
-        It is exact, for any states, if :attr:`has_exact_slip_range`. Otherwise it is the range at the states.
+        It is exact, for any states, if :attr:`has_exact_slip_range`. Otherwise it is the range at the states. A node
+        that opens may close again at another slip. Its range is then at most the slip distance, if that is known.
         """
         lowest, highest = self.slip_extremes
-        return np.where(np.isnan(lowest), 0.0, highest - lowest)
+        spread = np.where(np.isnan(lowest), 0.0, highest - lowest)
+        return spread if self.slip_distance is None else np.minimum(spread, self.slip_distance)
 
     @property
     def has_exact_slip_range(self) -> bool:
@@ -157,7 +159,7 @@ class LoadCycle:
     def slip_extremes(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest slip of each node while closed, m, shape (n,) each; NaN where it never is.
 
-        They are exact or read from the states, as :attr:`slip_range`.
+        They are exact if :attr:`has_exact_slip_range`, and otherwise read from the states.
         """
         if self.has_exact_slip_range:  # the states after the first count from it, or from a later corner
             later = self.states[1:]

@@ -325,7 +325,8 @@ def _graded(law: Law) -> np.ndarray:
 def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Angles and tractions (2, n + k) of the nodes and of the ends of the patch, where the tractions are zero.
 
-    An end without a law is the open node beyond the edge. All round, the first node follows once more.
+    An end without a law is the open node beyond the edge. The fit of an edge may put it a little inside the outermost
+    node, which is then left out. All round, the first node follows once more.
     """
     values = np.array([patch.pressure, patch.shear])
     if patch.exponents is None:
@@ -334,7 +335,8 @@ def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarr
         edge if law is not None else outside
         for edge, outside, law in zip(patch.edges, patch.outside, pressure, strict=True)
     )
-    return np.r_[start, patch.theta, stop], np.pad(values, ((0, 0), (1, 1)))
+    inside = (patch.theta > start) & (patch.theta < stop)
+    return np.r_[start, patch.theta[inside], stop], np.pad(values[:, inside], ((0, 0), (1, 1)))
 
 
 def _pressure_cusp(law: Law, coupling: float, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -120,6 +120,10 @@ class State:
     friction_energy: np.ndarray | None = None
     slip_lowest: np.ndarray | None = None
     slip_highest: np.ndarray | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields alone: everything else is computed from them."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -349,7 +353,11 @@ class State:
             If the body is rigid.
         """
         states.check_body(self.problem, body)
-        return self._plate_peak if body == "plate" else self._pin_peak
+        is_kept = "refined" in self.__dict__
+        peak = self._plate_peak if body == "plate" else self._pin_peak
+        if not is_kept:  # the refined tractions of many states would fill the memory
+            self.__dict__.pop("refined", None)
+        return peak
 
     @cached_property
     def _plate_peak(self) -> HoopPeak:

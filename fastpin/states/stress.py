@@ -98,10 +98,11 @@ class HoopPeak:
     value : float
         Pa; tension is positive.
     angle : float
-        Its place, rad.
+        Its place, rad; NaN without any stress.
     resolved : bool
         False if the peak is, or may be, at a place that the nodes do not resolve: at an edge or a border beside an
-        earlier border, or at an earlier border itself. The value may then be some percent too low.
+        earlier border, or at an earlier border itself; also if less than 40 nodes are in contact. The value may then be
+        off by some 10 %.
     bearing_stress : float
         Force on the pin over the projected area, F/(2 R), Pa.
     gross_stress : float

@@ -295,10 +295,11 @@ def _states_of_cycle(result: Result) -> list[State]:
 def _slip_range(result: Result) -> tuple[float, float]:
     """The largest slip range of a node, m, and its angle, rad; 0 and NaN where all slip is rounding.
 
-    All corners of the cycle must be kept: the ranges are those of the kept states.
+    Unless slip sums are counted, the ranges are those of the kept states, and all corners of the cycle must be kept.
     """
-    _states_of_cycle(result)
     cycle = result.cycle()
+    if not cycle.has_exact_slip_range:
+        _states_of_cycle(result)
     if cycle.largest_slip_range <= ROUNDING * size("dx", cycle.states[-1]):
         return 0.0, math.nan
     return cycle.largest_slip_range, cycle.largest_slip_range_angle

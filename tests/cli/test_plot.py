@@ -72,6 +72,23 @@ def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
+def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
+    path = tmp_path / "ends.h5"
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
+    history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(3)
+    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=61, keep="cycles")
+    assert main(["plot", str(path), "fatigue", "-o", str(tmp_path / "a.png")]) == 2
+    assert "must hold all corners of the cycle, 5 to 7" in capsys.readouterr().err
+
+
+def test_the_result_is_not_overwritten(stored, capsys):
+    before = stored.read_bytes()
+    for option in ("--csv", "-o"):
+        assert main(["plot", str(stored), "hoop", option, str(stored)]) == 2
+        assert f"won't overwrite the result {stored}" in capsys.readouterr().err
+    assert stored.read_bytes() == before
+
+
 def test_a_result_without_cycles(tmp_path, capsys):
     path = tmp_path / "one.h5"
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])

@@ -30,7 +30,7 @@ def test_the_states_of_a_cycle(fretting):
 
 def test_a_cycle_without_its_corners_is_refused(fretting):
     states = [state for state in fretting if state.step != 5]
-    with pytest.raises(InputError, match=r"^states: must hold all corners of the cycle, 4 to 6$"):
+    with pytest.raises(InputError, match=r"^states: must hold all corners of the cycle, 5 to 7$"):
         damage.cycle_states(states, fretting.cycles[-1])
 
 

@@ -236,3 +236,26 @@ def test_the_cusp_of_an_earlier_edge_inside_the_contact():
     assert any(abs(place - edge) < 1e-4 for place in two.refined.resolved)
     assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401)).max() == pytest.approx(0.57639, abs=5e-5)
     assert two.hoop_stress("plate", edge + np.linspace(-0.01, 0.01, 401), True).max() < 0.57632
+
+
+def test_peaks_turn_with_the_grid():
+    """The same problem on a circle, turned by an angle: the search must not lose the peak."""
+    pair = MaterialPair(Material(116e9, 0.32), Material(69e9, 0.33))
+    case = Problem.from_load_parameter(pair, 0.1, 0.4, "body")
+    values = []
+    for turned in (0.0, -2.0):
+        cos, sin = math.cos(turned), math.sin(turned)
+        loads = [(1.0, 0.0), (1.0, 0.25), (1.0, -0.25)]
+        history = [{"P": p * cos - q * sin, "Q": q * cos + p * sin} for p, q in loads]
+        state = solve(case, history, grid=Grid.circle(120, 0.3 + turned))[-1]
+        values.append(state.peak_hoop_stress().value)
+    assert values[0] == pytest.approx(values[1], rel=1e-7)
+
+
+def test_an_edge_a_little_inside_the_outermost_node():
+    """The tractions fall to zero at the edge, and Coulomb's law holds there."""
+    for state in solve(problem(UNLIKE), [{"P": 1.0}, {"Q": 0.35}, {"Q": -0.1}], nodes=101, between=9):
+        for patch in state.refined.tractions.patches:
+            theta, pressure, shear = patch.T
+            assert np.all(np.diff(theta) > 0.0)
+            assert np.all(np.abs(shear) <= 0.55 * pressure + 0.02 * state.peak_pressure)
