@@ -22,7 +22,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import fastpin
-from fastpin.kernels.products import in_one_thread
+from fastpin.kernels.threads import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan

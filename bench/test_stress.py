@@ -8,7 +8,6 @@ A copy of the state has no power laws and no tree of blocks yet. The times of th
 from __future__ import annotations
 
 import dataclasses
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +17,7 @@ import pytest
 
 import fastpin
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
+from fastpin.kernels import threads as work
 
 Timed = Callable[..., Any]
 
@@ -45,10 +45,10 @@ def test_points(benchmark: Any, request: pytest.FixtureRequest, monkeypatch: Any
     theta, depth = places(FEW if request.config.getoption("benchmark_disable") else POINTS)
     points = fastpin.Points.at_depth(depth, theta)
     assert state.stress(points).hoop.size == theta.size  # makes power laws and blocks
-    monkeypatch.setattr(os, "cpu_count", lambda: threads)
+    monkeypatch.setattr(work, "cores", lambda: threads)
     found = benchmark.pedantic(lambda: state.stress(points), rounds=3)
     benchmark.extra_info.update(nodes=nodes, points=theta.size, threads=threads)
-    monkeypatch.setattr(os, "cpu_count", lambda: 3 - threads)
+    monkeypatch.setattr(work, "cores", lambda: 3 - threads)
     other = state.stress(points)
     for name in ("radial", "hoop", "shear"):
         assert np.array_equal(getattr(found, name), getattr(other, name))

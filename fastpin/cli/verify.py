@@ -8,9 +8,10 @@ import json
 import sys
 import time
 
-from fastpin import report, storage, studies, verification
+from fastpin import report, storage, verification
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_files, write_text
+from fastpin.kernels.threads import cores
 from fastpin.version import __version__
 
 
@@ -26,12 +27,12 @@ def run(options: argparse.Namespace) -> int:
     if options.json != "-":
         libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
         print(report.checks.table(checks))
-        print(f"\n{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {studies.cores()} cores")
+        print(f"\n{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
     if options.json is not None:
         document = {
             "fastpin": __version__,
             "versions": storage.versions(),
-            "cores": studies.cores(),
+            "cores": cores(),
             "seconds": seconds,
             "passed": code == EXIT_OK,
             "checks": [{**dataclasses.asdict(check), "passed": check.passed} for check in checks],

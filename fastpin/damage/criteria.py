@@ -12,9 +12,6 @@ Van, Sci. Tech. Armement 47 (1973); Papadopoulos et al., Int. J. Fatigue 19 (199
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.kernels import planes, spheres
+from fastpin.kernels.threads import in_chunks
 from fastpin.model.checks import number, numbers, positive
 
 COMPONENTS = ("sxx", "syy", "szz", "sxy")
@@ -225,7 +223,7 @@ def smallest_spheres(paths: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     shift = int(np.frexp(np.abs(array).max())[1])
     scaled = np.ldexp(np.ascontiguousarray(array.transpose(1, 0, 2)), -shift)
     out = np.empty((scaled.shape[0], scaled.shape[2] + 1))
-    _in_threads(scaled.shape[0], lambda part: spheres.enclosing_spheres(scaled[part], out[part]))
+    in_chunks(scaled.shape[0], CHUNK, lambda part: spheres.enclosing_spheres(scaled[part], out[part]))
     out = np.ldexp(out, shift)
     return out[:, :-1], out[:, -1]
 
@@ -262,15 +260,5 @@ def _worst(swung: np.ndarray, push: np.ndarray, form: int) -> Planes:
     """The worst planes, from the coefficients of both components, each of shape (stops, points, 3)."""
     paths = np.ascontiguousarray(np.concatenate([swung, push], axis=-1).transpose(1, 0, 2))
     out = np.empty((paths.shape[0], 2))
-    _in_threads(paths.shape[0], lambda part: planes.worst_planes(paths[part], form, out[part]))
+    in_chunks(paths.shape[0], CHUNK, lambda part: planes.worst_planes(paths[part], form, out[part]))
     return Planes(out[:, 0], out[:, 1])
-
-
-def _in_threads(count: int, compute: Callable[[slice], None]) -> None:
-    """Compute all points, chunk by chunk. Each point is computed by itself: no bit depends on the threads."""
-    parts = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
-    if len(parts) == 1:
-        compute(parts[0])
-    else:
-        with ThreadPoolExecutor(min(len(parts), os.cpu_count() or 1)) as threads:
-            list(threads.map(compute, parts))

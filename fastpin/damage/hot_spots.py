@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -13,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from fastpin.damage import criteria, lives
 from fastpin.errors import InputError
+from fastpin.kernels.threads import in_threads
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import choice, instance, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
@@ -175,8 +174,7 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
         stress = state.stress(points, body)
         return np.stack([stress.sxx, stress.syy, stress.axial, stress.sxy], axis=-1).reshape(-1, 4)
 
-    with ThreadPoolExecutor(os.cpu_count() or 1) as threads:  # each state by itself: the bits are the same
-        return np.array(list(threads.map(components, states)))
+    return np.array(in_threads(components, states))
 
 
 def edge_angles(states: Sequence[State]) -> np.ndarray:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 
 from fastpin.kernels import cauchy
+from fastpin.kernels.threads import in_chunks
 
 LEAF = 8
 """Linear pieces in a leaf of the tree of blocks."""
@@ -182,10 +181,5 @@ def cauchy_integrals(tractions: Tractions, theta: np.ndarray, away: np.ndarray, 
     def compute(part: slice) -> None:
         cauchy.cauchy(theta[part], away[part], outside, *given, out[part])
 
-    parts = [slice(first, first + CHUNK) for first in range(0, theta.size, CHUNK)]
-    if len(parts) == 1:
-        compute(parts[0])
-    elif parts:  # each point is computed by itself: no bit depends on the threads
-        with ThreadPoolExecutor(min(len(parts), os.cpu_count() or 1)) as threads:
-            list(threads.map(compute, parts))
+    in_chunks(theta.size, CHUNK, compute)
     return out

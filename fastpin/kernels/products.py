@@ -1,23 +1,21 @@
 """Matrix products in two threads. Their bits are the same for any number of cores.
 
-A product is always cut into the same two halves. If every core has other work, :func:`in_one_thread` computes the
-halves one after the other. BLAS runs on one thread for each half. BLAS's own threads wait in loops. The loops cost more
-than they give as soon as another process wants a core. The bits of BLAS's results may also depend on its number of
-threads.
+A product is always cut into the same two halves. If every core has other work
+(:func:`fastpin.kernels.threads.in_one_thread`), the halves are computed one after the other. BLAS runs on one thread
+for each half. BLAS's own threads wait in loops. The loops cost more than they give as soon as another process wants a
+core. The bits of BLAS's results may also depend on its number of threads.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
-from contextvars import ContextVar
 
 import numpy as np
 
 from fastpin.kernels.jit import blas_address
+from fastpin.kernels.threads import works_alone
 
 WORTHWHILE = 4_000_000
 """Least number of multiplications of a product in two threads."""
@@ -27,17 +25,6 @@ _POINTER = ctypes.c_void_p
 # Called by its address, dgemm leaves the interpreter free, and works on parts of arrays in place.
 _dgemm = ctypes.CFUNCTYPE(None, *[_POINTER] * 13)(blas_address("dgemm"))
 _second: ThreadPoolExecutor | None = None
-_alone = ContextVar("_alone", default=False)
-
-
-@contextmanager
-def in_one_thread() -> Iterator[None]:
-    """Let the calling thread compute its products alone inside the block. Their bits stay the same."""
-    before = _alone.set(True)
-    try:
-        yield
-    finally:
-        _alone.reset(before)
 
 
 def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
@@ -58,7 +45,7 @@ def add_product(out: np.ndarray, left: np.ndarray, right: np.ndarray) -> None:
         return
     half = m // 2
     lower = out[half:], left[half:], right
-    other = None if _alone.get() else _start(*lower)
+    other = None if works_alone() else _start(*lower)
     try:
         if other is None:
             _add(*lower)

@@ -6,4 +6,3 @@ from .convergence import converge as converge
 from .outcome_tables import read_outcomes as read_outcomes
 from .plan import parse_plan as parse_plan
 from .plan import read_plan as read_plan
-from .workers import cores as cores

@@ -23,13 +23,14 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
+from fastpin.kernels.threads import cores
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.storage.files import replacing
 from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.outcomes import OutcomeValue, pickled
 from fastpin.studies.plan import Plan, Point
 from fastpin.studies.run_end import RunEnd
-from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, Submit, cores, read_run, run_tasks, solve_run
+from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, Submit, read_run, run_tasks, solve_run
 from fastpin.version import __version__
 
 RESULTS = "results"

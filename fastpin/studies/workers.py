@@ -23,7 +23,7 @@ from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError
 from fastpin.kernels.jit import limit_to_one_thread
-from fastpin.kernels.products import in_one_thread
+from fastpin.kernels.threads import in_one_thread
 from fastpin.model.case import Case
 from fastpin.solver.errors import SolveError
 from fastpin.solver.result import Result
@@ -45,11 +45,6 @@ MOST_SUBMITTED = 1_000
 
 Submit = Callable[[Executor, K], "Future[T]"]
 """Submits one task to an executor."""
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class WorkerDiedError(Exception):

@@ -11,7 +11,7 @@ from scipy.special import spence
 
 from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
-from fastpin.kernels import cauchy
+from fastpin.kernels import cauchy, threads
 
 KERNELS = ("cauchy", "moments", "shift_moments")
 INNER = ("_log_one_minus", "_dilogarithm", "_reduced", "_stretch", "_expansion", "_opposite")
@@ -221,7 +221,7 @@ def test_one_thread_and_two_give_the_same_bits(monkeypatch, outside):
             exact(*given)
 
         monkeypatch.setattr(cauchy, "cauchy", watched)
-        monkeypatch.setattr(module.os, "cpu_count", lambda cores=cores: cores)
+        monkeypatch.setattr(threads, "cores", lambda cores=cores: cores)
         found.append(cauchy_integrals(tractions, theta, away, outside))
         assert len(used) == cores
     monkeypatch.setattr(cauchy, "cauchy", exact)

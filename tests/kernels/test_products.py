@@ -12,6 +12,7 @@ import pytest
 
 from fastpin.kernels import products
 from fastpin.kernels.products import add_product
+from fastpin.kernels.threads import in_one_thread
 
 
 def arrays(m, k, n):
@@ -123,7 +124,7 @@ def test_one_thread_makes_the_same_bits(monkeypatch):
     alone, expected = out.copy(order="F"), out.copy(order="F")
     add_product(expected, left, right)
     monkeypatch.setattr(products, "_second", None)
-    with products.in_one_thread():
+    with in_one_thread():
         add_product(alone, left, right)
     assert products._second is None
     assert np.array_equal(alone, expected)

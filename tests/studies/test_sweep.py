@@ -16,8 +16,8 @@ from distributed.scheduler import KilledWorker
 
 import fastpin
 from fastpin.errors import FastpinError, InputError
-from fastpin.kernels import products
 from fastpin.kernels.status import OPEN
+from fastpin.kernels.threads import works_alone
 from fastpin.model.angles import interval_from_bottom
 from fastpin.storage import store
 from fastpin.studies import run_end, sweep, workers
@@ -215,13 +215,13 @@ def test_a_run_makes_its_products_in_one_thread(plan: Plan, tmp_path: Path, monk
     solve, seen = workers.solve, []
 
     def watched(*arguments: Any, **options: Any) -> Any:
-        seen.append(products._alone.get())
+        seen.append(works_alone())
         return solve(*arguments, **options)
 
     monkeypatch.setattr(workers, "solve", watched)
     sweep.run(plan, tmp_path, Inline())
     assert seen == [True] * 6
-    assert not products._alone.get()
+    assert not works_alone()
 
 
 def test_whatever_goes_wrong_in_a_run_is_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
