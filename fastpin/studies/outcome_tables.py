@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import inspect
 import json
+import marshal
 import pickle
 import re
 from collections.abc import Callable, Mapping
@@ -251,12 +252,15 @@ def _of_file(path: Path, text: str, function: str) -> Outcome:
 
 
 def _of_callable(function: Callable[..., Any]) -> Outcome:
-    """An outcome of a function in Python. Its definition changes with the text of its module, as far as it is known."""
+    """An outcome of a function in Python. Its definition changes with its code, and with the text of its module."""
     module, content = "", b""
+    code = marshal.dumps(function.__code__) if inspect.isfunction(function) else b""
     with contextlib.suppress(Exception):  # The function may be anything that can be called.
         content = pickle.dumps(function)
         module = inspect.getsource(inspect.getmodule(function))  # type: ignore[arg-type]
-    definition = json.dumps({"function": getattr(function, "__qualname__", ""), "file": digest(f"{content!r}{module}")})
+    definition = json.dumps(
+        {"function": getattr(function, "__qualname__", ""), "file": digest(f"{code!r}{content!r}{module}")}
+    )
     return Outcome("", _unit(function), definition, function)
 
 

@@ -357,3 +357,11 @@ def test_outcomes_change_no_run(tmp_path: Path) -> None:
     assert list(more.outcomes) == ["shear", "swing", "loss", "work"]
     with pytest.raises(InputError, match="loss: the plan has another outcome of this name"):
         full.with_outcomes({"loss": {"cycle": "rotation_change"}})
+
+
+def test_another_body_of_a_function_is_another_definition() -> None:
+    """Also where the text is not known, as in a notebook."""
+    definitions = set()
+    for text in ("lambda result: 1.0", "lambda result: 2.0", "lambda result: len(result)"):
+        definitions.add(outcomes_from({"mine": eval(text)})["mine"].definition)
+    assert len(definitions) == 3
