@@ -9,6 +9,7 @@ from fastpin import Grid, InputError, Material, MaterialPair, Points, Problem, s
 from fastpin.elasticity.stress import pin_stress, plate_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN
+from fastpin.states.quantities import QUANTITIES
 from fastpin.states.stress import tractions_of
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
@@ -375,3 +376,27 @@ def test_infinite_and_undetermined_stresses_are_refused():
     rigid = Problem.from_load_parameter(MaterialPair(Material.rigid(), Material(1.0, 0.3)), 0.1, 0.3)
     with pytest.raises(InputError, match="the pin is rigid"):
         solve(rigid, [{"P": 1.0}], nodes=61)[-1].hoop_stress("pin")
+
+
+@pytest.mark.parametrize(
+    ("step", "contact", "pressure", "largest", "smallest"),
+    [
+        (0, (-74.0976, 74.0976), 0.979002, (0.76075, -74.1148), (-0.49372, 65.0)),
+        (1, (-58.7178, 89.4704), 1.062404, (0.78681, -58.7407), (-0.6345, 73.5)),
+        (2, (-89.1229, 58.3706), 1.102576, (0.79088, 58.3878), (-0.7322, -58.5)),
+        (3, (-58.3935, 89.1477), 1.099672, (0.74277, -57.8378), (-0.7220, 58.0)),
+    ],
+)
+def test_extremes_of_straight_lines_against_stored_values(states, step, contact, pressure, largest, smallest):
+    """The largest hoop stress of the plate and the smallest of the pin, with straight lines between 1,601 nodes."""
+    state = states[step]
+    assert np.degrees(state.contact[0]) + 90.0 == pytest.approx(contact, abs=2e-3)
+    assert QUANTITIES["pressure_integral"].of(state) == pytest.approx(pressure, abs=1e-6)
+    value, angle = largest
+    around = np.radians(angle - 90.0) + np.linspace(-2e-3, 2e-3, 4001)
+    assert state.hoop_stress("plate", around, straight=True).max() == pytest.approx(value, abs=1e-5)
+    grid = np.radians(np.arange(-180.0, 180.0, 0.5) - 90.0)
+    hoop = state.hoop_stress("pin", grid, straight=True)
+    value, angle = smallest
+    assert hoop.min() == pytest.approx(value, abs=6e-5 if step else 1e-5)
+    assert hoop[np.isclose(np.degrees(grid) + 90.0, angle)] == pytest.approx(value, abs=6e-5)
