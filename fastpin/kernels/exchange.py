@@ -377,8 +377,8 @@ def _advance(contact, rates, friction, weights, step):
     Returns the energy that friction dissipates.
     """
     status, pressure, shear, gap, slip = contact.status, contact.pressure, contact.shear, contact.gap, contact.slip
-    n, tally = status.size, contact.slip_tally
-    most_pressure, most_gap, dissipated = 0.0, 0.0, 0.0
+    n, tally, rest_slip = status.size, contact.slip_tally, contact.rest_slip
+    counts, most_pressure, most_gap, dissipated = tally.size > 0, 0.0, 0.0, 0.0
     for i in range(n):
         if status[i] == OPEN:
             gap[i] += step * rates[i]
@@ -395,11 +395,11 @@ def _advance(contact, rates, friction, weights, step):
                 slip[i] += slid
                 shear[i] = -status[i] * friction * pressure[i]
                 dissipated += weights[i] * friction * 0.5 * (old + pressure[i]) * abs(slid)
-                if tally.size > 0:
+                if counts:
                     tally[0, i] += abs(slid)
                     tally[1, i] += friction * 0.5 * (old + pressure[i]) * abs(slid)
-            if tally.size > 0:
-                begin, end = begin - contact.rest_slip[i], slip[i] - contact.rest_slip[i]
+            if counts:
+                begin, end = begin - rest_slip[i], slip[i] - rest_slip[i]
                 tally[2, i] = min(tally[2, i], begin, end)
                 tally[3, i] = max(tally[3, i], begin, end)
     for i in range(3):
