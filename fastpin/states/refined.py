@@ -40,7 +40,7 @@ EXCESS = 1.1
 """Least |T| / (mu N) at a sticking edge that shows a slip zone between the edge and the outermost node."""
 
 CUSP_ROOM = 7
-"""Least number of nodes between the cusp of an earlier border and the ends of its stick zone, but for two."""
+"""Nodes on either side beside which a kink of T must be the largest. A cusp is sought only so far inside its zone."""
 
 KINK = 15.0
 """Least change of the slope of T at a node, over the median beside it, at which a cusp is looked for."""
