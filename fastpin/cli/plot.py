@@ -14,6 +14,7 @@ from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.terminal import check_outputs, write_files
 from fastpin.errors import InputError
 from fastpin.report.curves import Curve, write_csv
+from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 
 Made = tuple[Callable[[Path], object], Callable[[Path], object]]
@@ -65,8 +66,7 @@ def _states(options: argparse.Namespace, usual: str) -> list[State]:
     if chosen == "cycle":
         cycles = storage.load(path, states=[]).cycles
         if cycles:
-            end = cycles[-1].corner + 1
-            places = storage.places_between(path, end - cycles[-1].length, end)
+            places = _places_of(cycles[-1], path)
         elif options.states is not None:
             raise InputError("states", "the history has no cycle that has ended")
         else:
@@ -120,20 +120,27 @@ def _map(options: argparse.Namespace, title: str) -> Made:
     return lambda path: figures.plot_stress_field(state, path, title=title, **given), _curves(curves)
 
 
-def _result(options: argparse.Namespace) -> solver.Result:
-    """The stored result with the states of its last cycle."""
-    result = storage.load(options.result, states=[])
+def _with_cycles(path: Path) -> solver.Result:
+    """The stored result without its states. It has at least one cycle."""
+    result = storage.load(path, states=[])
     if not result.cycles:
         raise InputError("result", "the history has no cycle that has ended")
-    end = result.cycles[-1].corner + 1
-    places = storage.places_between(options.result, end - result.cycles[-1].length, end)
-    return storage.load(options.result, states=places)
+    return result
+
+
+def _places_of(cycle: Cycle, path: Path) -> slice:
+    """The places in a file of the states of a cycle."""
+    return storage.places_between(path, cycle.corner + 1 - cycle.length, cycle.corner + 1)
+
+
+def _result(options: argparse.Namespace) -> solver.Result:
+    """The stored result with the states of its last cycle."""
+    cycle = _with_cycles(options.result).cycles[-1]
+    return storage.load(options.result, states=_places_of(cycle, options.result))
 
 
 def _cycles(options: argparse.Namespace, title: str) -> Made:
-    result = storage.load(options.result, states=[])
-    if not result.cycles:
-        raise InputError("result", "the history has no cycle that has ended")
+    result = _with_cycles(options.result)
     fields = [name for name in result.cycles[0]._fields if name != "solved"]
     columns = {name: np.array([getattr(cycle, name) for cycle in result.cycles], dtype=float) for name in fields}
     return lambda path: figures.plot_cycles(result, path, title=title), _curves([Curve({}, columns)])

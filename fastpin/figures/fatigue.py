@@ -12,7 +12,16 @@ from matplotlib.lines import Line2D
 
 from fastpin.damage import Fatigue
 from fastpin.errors import InputError
-from fastpin.figures.style import COLOURS, angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
+from fastpin.figures.style import (
+    COLOURS,
+    add_heading,
+    angle_axis,
+    check_figure_text,
+    draw_and_save,
+    fitted_legend,
+    line,
+    panels,
+)
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance
 from fastpin.model.units import scaled, units, with_unit
@@ -92,7 +101,7 @@ def _draw(found: Fatigue, title: str, width: float) -> Figure:
     depth = float(found.depth.ravel()[0])
     place = "on the edge" if depth == 0.0 else f"{with_unit(depth, units(found.problem)['length'], 4)} below the edge"
     heading = f"{found.body}, {place}"
-    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    add_heading(figure, title, heading)
     return figure
 
 

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
 from fastpin.figures.states import Frame
-from fastpin.figures.style import angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
+from fastpin.figures.style import add_heading, angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import scaled, units, with_unit
@@ -86,7 +86,7 @@ def _draw_slip(cycle: LoadCycle, title: str, width: float) -> Figure:
     handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, (name, _) in enumerate(curves)]
     fitted_legend(figure, [*handles, *shades], len(handles) + len(shades))
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}"
-    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    add_heading(figure, title, heading)
     return figure
 
 
@@ -163,5 +163,5 @@ def _draw_loops(cycle: LoadCycle, title: str, width: float) -> Figure:
         panel.set_ylabel(f"{name}  [{load_unit}]")
         panel.set_title(f"area {with_unit(loop.work, unit['energy'], 4)}", fontsize=8.5)
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}"
-    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    add_heading(figure, title, heading)
     return figure

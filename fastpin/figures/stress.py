@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fastpin.figures.states import drawn_states, name_states, state_lines
-from fastpin.figures.style import angle_axis, check_figure_text, draw_and_save, line, panels
+from fastpin.figures.style import add_heading, angle_axis, check_figure_text, draw_and_save, line, panels
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
 from fastpin.model.units import named_loads, scaled, units
@@ -216,7 +216,7 @@ def _draw_field(state: State, curves: list[Curve], component: str, title: str, w
     panel.set_xlabel("x / R")
     panel.set_ylabel("y / R")
     heading = f"load point {load_point(state):.4g}: {named_loads(state.problem, state.load)}"
-    figure.suptitle("\n".join(part for part in (title, heading) if part), fontsize=9.5, parse_math=False)
+    add_heading(figure, title, heading)
     return figure
 
 

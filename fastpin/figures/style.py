@@ -147,6 +147,11 @@ def add_legend(figure: Figure, *rows: Sequence[tuple[str, Line]]) -> None:
     fitted_legend(figure, filled, columns)
 
 
+def add_heading(figure: Figure, *lines: str) -> None:
+    """Add the lines that are not empty above the panels."""
+    figure.suptitle("\n".join(line for line in lines if line), fontsize=9.5, parse_math=False)
+
+
 def _check_format(path: Path) -> None:
     formats = FigureCanvasAgg.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:

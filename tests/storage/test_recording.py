@@ -26,6 +26,7 @@ from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of
+from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,18 +41,6 @@ def problem(similar):
 @pytest.fixture
 def path(tmp_path):
     return tmp_path / "a.h5"
-
-
-class StopAt:
-    """Progress that asks to stop where a history has come to a corner, as Ctrl-C would."""
-
-    def __init__(self, corner: float) -> None:
-        self.corner = corner
-
-    def __call__(self, done: float, total: int) -> None:
-        if total > 1 and done >= self.corner:
-            self.corner = np.inf
-            os.kill(os.getpid(), signal.SIGINT)
 
 
 def assert_file(path: Path, expected) -> None:

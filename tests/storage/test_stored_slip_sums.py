@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,7 @@ from fastpin.storage.export import to_xarray
 from fastpin.storage.layout import SLIP_FIELDS
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load, places_between
+from tests.support.interrupts import StopAt
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
@@ -33,18 +32,6 @@ def problem(similar) -> Problem:
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
     return tmp_path / "a.h5"
-
-
-class StopAt:
-    """Progress that asks to stop where a history has come to a corner, as Ctrl-C would."""
-
-    def __init__(self, corner: float) -> None:
-        self.corner = corner
-
-    def __call__(self, done: float, total: int) -> None:
-        if total > 1 and done >= self.corner:
-            self.corner = np.inf
-            os.kill(os.getpid(), signal.SIGINT)
 
 
 @pytest.mark.parametrize("keep", ["all", "every 7", "cycles"])
