@@ -9,6 +9,7 @@ import numpy as np
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.points import Body
+from fastpin.states.error_bars import UNRESOLVED
 from fastpin.states.state import State
 from fastpin.states.stress import HoopPeak
 
@@ -29,9 +30,6 @@ LEAST_NODES = 40
 
 NEAR = 2.0
 """Distance from an unresolved place, in node distances, within which a peak belongs to it."""
-
-MISSED = 0.13
-"""Largest part of the hoop stress at an edge that straight lines between the nodes miss, with 101 nodes or more."""
 
 SHARP = 0.45
 """Drop beside a peak over two node distances, in parts of the drop over four, from which on the peak is a cusp.
@@ -89,7 +87,7 @@ def _is_resolved(state: State, body: Body, value: float, angle: float) -> bool:
     refined = state.refined
     if refined.unresolved:
         places = np.array(refined.unresolved)
-        missed = state.hoop_stress(body, places) >= (1.0 - MISSED) * value
+        missed = state.hoop_stress(body, places) >= (1.0 - UNRESOLVED) * value
         if np.any(missed | (np.abs(angle_between(places, angle)) < NEAR * spacing)):
             return False
     if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):

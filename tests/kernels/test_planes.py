@@ -109,7 +109,7 @@ def test_planes_that_are_hardly_pushed_are_found(excess):
 
 
 def test_planes_that_are_all_alike_end_the_search():
-    """A component that turns with time: every plane is as bad as any other, but for the number of stops."""
+    """A component that turns with time: all planes are alike, up to the number of stops."""
     turn = np.linspace(0.0, 2.0 * np.pi, 721)[:-1]
     ones = np.ones_like(turn)
     path = np.stack([0.0 * ones, np.cos(turn), np.sin(turn), ones, 0.5 * np.cos(turn), 0.5 * np.sin(turn)], axis=-1)

@@ -117,7 +117,7 @@ def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any
         row |= {"mass": 2e6 + place, "walk": 2e3, "loss": 0.5 * place}
     table = [line.split() for line in text(with_outcomes, rows).splitlines()]
     assert table[0][-4:] == ["mass", "walk", "loss", "status"]
-    assert table[1][-3:] == ["$/kg_{2", "deg", "J/m"]  # without a prefix, but for J/m, whose values are near 1
+    assert table[1][-3:] == ["$/kg_{2", "deg", "J/m"]  # no prefixes; the values in J/m are near 1
     assert table[-1][-4:-1] == ["2e+06", "2000", "5.5"]
     write_csv(with_outcomes, rows, tmp_path / "a.csv")
     lines = (tmp_path / "a.csv").read_text().splitlines()

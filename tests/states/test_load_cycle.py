@@ -158,7 +158,7 @@ def test_closed_loops_enclose_the_dissipation_up_to_the_discretisation(name: str
 
 
 def test_the_displacement_of_a_small_hub_does_the_work_of_the_force() -> None:
-    """Betti's theorem: the hub's displacement of (T29) is the one of the loop, but for terms of the loads alone."""
+    """Betti's theorem: the hub's displacement of (T29) is the loop's, up to terms of the loads alone."""
     problem = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "centre", "fixed", hub_radius=1e-3)
     cycle = solve(problem, FRETTING, nodes=161, between=3).cycle()
     for name, component, sense in (("Q", "ux", 1.0), ("P", "uy", -1.0)):
@@ -207,7 +207,7 @@ def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
         assert fine.slip_range == pytest.approx(np.minimum(spread, fine.slip_distance), abs=0.0)
         assert np.all(read.slip_range <= spread)
         missed.append(np.abs(read.slip_range - spread).max() / size)
-    if name == "body":  # the nodes stick, but for some 1e-9
+    if name == "body":  # the nodes stick; their slip is some 1e-9
         assert missed == pytest.approx([0.0] * 3, abs=1e-8)
         return
     assert missed[1] < 0.3 * missed[0]
