@@ -107,6 +107,10 @@ class Material:
         """G = E / (2 (1 + nu)), Pa."""
         return self.E / (2.0 * (1.0 + self.nu))
 
+    def scaled(self, factor: float) -> Material:
+        """The same material with another modulus, E times `factor`, without fatigue constants: it is another one."""
+        return Material(self.E * factor, self.nu, self.name)
+
     def kolosov(self, plane: Plane) -> float:
         """Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress.
 
@@ -260,9 +264,7 @@ class MaterialPair:
         A `beta_star` beyond :data:`LEAST_BETA_STAR` and :data:`MOST_BETA_STAR` raises :class:`InputError`.
         """
         factor = self.beta_star / number("beta_star", beta_star, LEAST_BETA_STAR, MOST_BETA_STAR)
-        pin = Material(self.pin.E * factor, self.pin.nu, self.pin.name)
-        plate = Material(self.plate.E * factor, self.plate.nu, self.plate.name)
-        return MaterialPair(pin, plate, self.plane)
+        return MaterialPair(self.pin.scaled(factor), self.plate.scaled(factor), self.plane)
 
     @property
     def pin_compliance(self) -> float:
@@ -314,12 +316,6 @@ class MaterialPair:
     def gamma_body_prime(self) -> float:
         """Constant gamma'_B of Eq. (56), for a body load, 1/Pa."""
         return self.beta_star + 0.5 * self.alpha_star + self.pin_compliance
-
-    @property
-    def is_incompressible(self) -> bool:
-        """Whether uniform pressure changes neither the pin nor the hole: the pin has nu = 0.5, the plate is rigid."""
-        squeeze = 0.5 * self.plate_compliance + 0.25 * (self.pin_kolosov - 1.0) * self.pin_compliance
-        return squeeze <= LEAST_SQUEEZE * self.beta_star
 
     def dundurs(self, convention: Convention = "usual") -> tuple[float, float]:
         """Dundurs' parameters (alpha, beta) in the given sign convention (see the module's docstring)."""

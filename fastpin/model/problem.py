@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube, check_pin_body, check_plate_body
 from fastpin.model.checks import as_toml, choice, instance, number, true_or_false
-from fastpin.model.materials import MaterialPair
-
-PinLoad = Literal["centre", "body"]
-"""Kinds of pin load."""
+from fastpin.model.compliance import Compliance
+from fastpin.model.joint import Joint, PinLoad
+from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -40,11 +41,14 @@ Drive = Literal["force", "ux", "uy", "both"]
 
 @dataclass(frozen=True, repr=False)
 class Problem:
-    """An elastic pin in the hole of an infinite elastic plate, with Coulomb friction.
+    """An elastic pin in the hole of an elastic plate, with Coulomb friction.
+
+    The pin is solid and the plate infinite, unless ``pin_body`` and ``plate_body`` say otherwise.
 
     Parameters
     ----------
     pair : MaterialPair
+        Materials of pin and plate. The material of a bush stands in the :class:`fastpin.model.Bushing`.
     hole_radius : float
         R, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`.
     clearance : float
@@ -52,7 +56,8 @@ class Problem:
     friction : float
         Coefficient of friction, 0 to :data:`MOST_FRICTION`.
     pin_load : {"centre", "body"}
-        The pin's load acts at its centre, or as a uniform body force (section 4 of the paper).
+        The load of a solid pin acts at its centre, or as a uniform body force (section 4 of the paper). The load of a
+        hollow pin is a field of its :class:`fastpin.model.Tube`.
     rotation : {"free", "fixed", "spring"}
         A free pin carries the moment M (0 unless given). A fixed pin has a prescribed rotation (0 unless given). A
         spring holds the pin at its hub; the load ``rotation`` then turns the far end of the spring. A body-loaded pin
@@ -61,8 +66,9 @@ class Problem:
         Radius, m, of the hub: the circle in the pin whose mean rotation is held, by a fixed hub or a spring, and whose
         mean displacement is prescribed. Only with one of these. Rotation and displacement of a pin under loads at its
         centre depend on where they are measured. The default is the paper's datum of the rotation,
-        R / sqrt(kappa_I + 1). For the whole rim give ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R. The
-        displacement of a body-loaded pin is its mean over the pin, and takes no hub.
+        R / sqrt(kappa_I + 1); of a hollow pin it is the bore. For the whole rim give
+        ``hub_radius=hole_radius``. The least is :data:`LEAST_HUB` R. The displacement of a body-loaded pin is its mean
+        over the pin, and takes no hub.
     dimensionless : bool
         Set by :meth:`from_load_parameter`. It lifts the check that the clearance is smaller than the hole.
     hub_stiffness : float, optional
@@ -77,7 +83,12 @@ class Problem:
     gauge_radius : float, optional
         Radius, m, of the gauge circle round the hole, in the plate, from the hole radius R, which is the default, to
         :data:`MOST_GAUGE` R. Only with a prescribed displacement. Far away the plate's displacement under a force grows
-        like the logarithm of the distance. So a displacement relative to the plate needs a radius.
+        like the logarithm of the distance. So a displacement relative to the plate needs a radius. The default of a
+        ring, also round a bush, is its outer rim.
+    pin_body : Disk or Tube
+        A solid or a hollow pin.
+    plate_body : Plate, Ring, Bushing or Compliance
+        An infinite plate, a ring lug, a bush in either of them, or any finite plate.
 
     Raises
     ------
@@ -96,6 +107,8 @@ class Problem:
     hub_stiffness: float | None = field(default=None, kw_only=True)
     drive: Drive = field(default="force", kw_only=True)
     gauge_radius: float | None = field(default=None, kw_only=True)
+    pin_body: PinBody = field(default=Disk(), kw_only=True)
+    plate_body: PlateBody = field(default=Plate(), kw_only=True)
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, MaterialPair, "a MaterialPair")
@@ -113,7 +126,9 @@ class Problem:
         if friction < 0.0:
             raise InputError("friction", f"must not be negative, not {friction:g}")
         number("friction", friction, 0.0, MOST_FRICTION)
-        if clearance < 0.0 and self.pair.is_incompressible:
+        self._check_bodies(radius)
+        object.__setattr__(self, "hole_radius", radius)
+        if clearance < 0.0 and self.is_incompressible:
             raise InputError(
                 "clearance",
                 "a pin with nu = 0.5 in a rigid plate keeps its area in plane strain: it fits into no smaller hole; "
@@ -128,12 +143,38 @@ class Problem:
                 'a body-loaded pin must rotate freely (rotation = "free"): holding it takes a moment, and uniform body '
                 "forces leave that moment's singularity at the centre (section 4 of the paper)",
             )
-        object.__setattr__(self, "hole_radius", radius)
         self._check_hub(radius)
         self._check_drive(radius)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
+
+    def _check_bodies(self, radius: float) -> None:
+        """Check pin and plate body. `radius` is the radius of the hole."""
+        check_pin_body(self.pin_body, radius)
+        check_plate_body(self.plate_body, radius)
+        if isinstance(self.pin_body, Tube) and self.pin_load == "body":
+            raise InputError("pin_load", 'the load of a hollow pin is a field of its body: load = "body" of the tube')
+        if isinstance(self.plate_body, Bushing):
+            self.surfaces  # noqa: B018 - the pair of pin and bush checks the ratio of their moduli
+        elif isinstance(self.plate_body, Compliance):
+            self._check_compliance(self.plate_body, radius)
+
+    def _check_compliance(self, body: Compliance, radius: float) -> None:
+        """Check that a compliance belongs to the plate's material and to the hole."""
+        given = body.nu, body.plane
+        wanted = self.pair.plate.nu, self.pair.plane
+        if not math.isclose(given[0], wanted[0], abs_tol=1e-9) or given[1] != wanted[1]:
+            raise InputError(
+                "plate_body",
+                f"the compliance was made for nu = {given[0]:g}, plane {given[1]}; the plate has nu = {wanted[0]:g}, "
+                f"plane {wanted[1]}",
+            )
+        if not self.dimensionless and not body.scaled_to(radius):
+            raise InputError(
+                "plate_body",
+                f"the compliance was made for a hole of radius {body.hole_radius:g}; the hole radius is {radius:g}",
+            )
 
     def _check_hub(self, radius: float) -> None:
         """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
@@ -146,6 +187,9 @@ class Problem:
             if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
+            if isinstance(self.pin_body, Tube) and hub < (1.0 - 1e-9) * self.pin_body.bore_radius:
+                bore = self.pin_body.bore_radius
+                raise InputError("hub_radius", f"must be at least the bore radius {bore:g}, not {hub:g}")
             object.__setattr__(self, "hub_radius", hub)
         if self.hub_stiffness is not None:
             stiffness = number("hub_stiffness", self.hub_stiffness)
@@ -168,7 +212,18 @@ class Problem:
             if gauge < radius:
                 raise InputError("gauge_radius", f"must be at least the hole radius {radius:g}, not {gauge:g}")
             number("gauge_radius", gauge, radius, MOST_GAUGE * radius)
+            self._check_gauge(gauge)
             object.__setattr__(self, "gauge_radius", gauge)
+
+    def _check_gauge(self, gauge: float) -> None:
+        """Check that the gauge circle lies in the plate's body."""
+        if isinstance(self.plate_body, Compliance):
+            raise InputError("gauge_radius", "a compliance knows the edge of the hole only: leave the gauge out")
+        body = self.joint.lug
+        if isinstance(body, Plate) and body.reaction is not None:
+            raise InputError("gauge_radius", "a plate with a reaction at a point has no gauge circle: leave it out")
+        if isinstance(body, Ring) and gauge > (1.0 + 1e-9) * body.outer_radius:
+            raise InputError("gauge_radius", f"must be at most the outer radius {body.outer_radius:g}, not {gauge:g}")
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
@@ -178,10 +233,13 @@ class Problem:
         hub += "" if self.hub_radius is None else f" at radius {self.hub_radius:.6g}"
         driven = "" if self.drive == "force" else f", driven by {self.drive.replace('both', 'ux and uy')}"
         driven += "" if self.gauge_radius is None else f" over radius {self.gauge_radius:.6g}"
+        load = {"centre": "load at the centre", "body": "body load"}[self.pin_load]
+        load = load if isinstance(self.pin_body, Disk) else repr(self.pin_body)
+        plate = "" if self.plate_body == Plate() else f"\n {self.plate_body!r}"
         return (
             f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
-            f" load at the {self.pin_load}, rotation {self.rotation}{hub}{driven}>"
-        ).replace("load at the body", "body load")
+            f" {load}, rotation {self.rotation}{hub}{driven}{plate}>"
+        )
 
     @classmethod
     def from_load_parameter(
@@ -196,19 +254,59 @@ class Problem:
         hub_stiffness: float | None = None,
         drive: Drive = "force",
         gauge_radius: float | None = None,
+        pin_body: PinBody = Disk(),  # noqa: B008 - frozen
+        plate_body: PlateBody = Plate(),  # noqa: B008 - frozen
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
         With a load P = 1 the load parameter (R - R_D)/(F beta*) is `load_parameter`. The units of results are F/R for
         tractions, F beta* for displacements and F beta*/R for rotations. Remote stresses are given in F/R, and a hub's
-        stiffness in R^2/beta*.
+        stiffness in R^2/beta*. Radii of bodies are in units of R, and the interference of a bush in F beta*. beta* is
+        that of the two surfaces in contact: of pin and bush if there is a bush.
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
+        if isinstance(plate_body, Bushing):
+            factor = MaterialPair(pair.pin, plate_body.material, pair.plane).beta_star
+            plate_body = replace(plate_body, material=plate_body.material.scaled(factor))
+            pair = pair.scaled(pair.beta_star / factor)
+        else:
+            pair = pair.scaled(1.0)
         return cls(
-            pair.scaled(1.0), 1.0, value, friction, pin_load, rotation, hub_radius, True,
-            hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius,
+            pair, 1.0, value, friction, pin_load, rotation, hub_radius, True,
+            hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, pin_body=pin_body,
+            plate_body=plate_body,
         )  # fmt: skip
+
+    @cached_property
+    def joint(self) -> Joint:
+        """Pin and plate with their materials."""
+        return Joint(self.pair, self.hole_radius, self.pin_body, self.plate_body, self.pin_load)
+
+    @property
+    def surfaces(self) -> MaterialPair:
+        """The materials of the two surfaces in contact: those of ``pair``, or pin and bush."""
+        return self.joint.surfaces
+
+    @property
+    def has_bodies(self) -> bool:
+        """Whether the pin is hollow or the plate is no infinite plate."""
+        return self.pin_body != Disk() or self.plate_body != Plate()
+
+    @property
+    def assembled_clearance(self) -> float:
+        """Radial clearance, m, after the bush was pressed in; the given clearance without a bush."""
+        return self.clearance + self.joint.press_fit[1]
+
+    @property
+    def press_fit_pressure(self) -> float:
+        """Pressure between bush and plate after the bush was pressed in, Pa; 0 without a bush."""
+        return self.joint.press_fit[0]
+
+    @property
+    def is_incompressible(self) -> bool:
+        """Whether uniform pressure changes neither the pin nor the hole."""
+        return self.joint.uniform_compliance <= LEAST_SQUEEZE * self.surfaces.beta_star
 
     @property
     def held(self) -> bool:
@@ -227,17 +325,8 @@ class Problem:
         The displacement of the hub over the gauge circle is c + g F - k (int of the tractions), where c is the mean
         displacement of the pin's rim over that of the hole, and F the force on the pin.
         """
-        kolosov, pin = self.pair.pin_kolosov, self.pair.pin_compliance / (4.0 * math.pi * self.pair.beta_star)
-        if self.pin_load == "body":
-            own = coupling = 0.5 * pin
-        else:
-            part = 1.0 / math.sqrt(kolosov + 1.0) if self.hub_radius is None else self.hub_radius / self.hole_radius
-            coupling = (1.0 - part**2) * pin
-            own = 2.0 * (1.0 - part**2 - kolosov * math.log(part)) / (kolosov + 1.0) * pin
-        if self.gauge_radius is not None:
-            kolosov, plate = self.pair.plate_kolosov, self.pair.plate_compliance / (2.0 * math.pi * self.pair.beta_star)
-            own += kolosov * math.log(self.gauge_radius / self.hole_radius) / (kolosov + 1.0) * plate
-        return own, coupling
+        radii = (None if r is None else r / self.hole_radius for r in (self.hub_radius, self.gauge_radius))
+        return self.joint.displacement_compliances(*radii)
 
     @property
     def frictionless(self) -> bool:
@@ -246,15 +335,15 @@ class Problem:
 
     def load_parameter(self, force: float) -> float:
         """Load parameter L_p = (R - R_D) / (F beta*) for a force F, N/m."""
-        displacement = number("force", force) * self.pair.beta_star
-        parameter = self.clearance / displacement if displacement else math.inf
+        displacement = number("force", force) * self.surfaces.beta_star
+        parameter = self.assembled_clearance / displacement if displacement else math.inf
         if not math.isfinite(parameter):
             raise InputError("force", f"is too small for a load parameter: {as_toml(force)}")
         return parameter
 
     def natural_loads(self) -> dict[str, float]:
         """The load of each kind that strains the bodies by about 1, SI, by the kinds of ``LOAD_KIND``."""
-        radius, stress = self.hole_radius, 1.0 / self.pair.beta_star
+        radius, stress = self.hole_radius, 1.0 / self.surfaces.beta_star
         return {
             "force": radius * stress,
             "moment": radius * radius * stress,
@@ -267,13 +356,15 @@ class Problem:
     def hub_compliance(self) -> float:
         """Rotation of a held pin per int T dtheta, in units of beta*: C_omega = hub_compliance * int T dtheta.
 
-        It is zero for the paper's datum, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of radius r. A
-        spring of stiffness k adds R^2 / (k beta*).
+        It is zero for the paper's datum of a solid pin, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of
+        radius r. The hub of a hollow pin is its bore by default. A spring of stiffness k adds R^2 / (k beta*).
         """
-        compliance = 0.0
-        if self.hub_radius is not None:
-            ratio = (self.hole_radius / self.hub_radius) ** 2
-            stiffness = 4.0 * math.pi * self.pair.beta_star
+        compliance, hub = 0.0, self.hub_radius
+        if hub is None and isinstance(self.pin_body, Tube):
+            hub = self.pin_body.bore_radius
+        if hub is not None and self.held:
+            ratio = (self.hole_radius / hub) ** 2
+            stiffness = 4.0 * math.pi * self.surfaces.beta_star
             compliance = (ratio - (self.pair.pin_kolosov + 1.0)) * self.pair.pin_compliance / stiffness
         return compliance + self.spring_compliance
 
@@ -282,4 +373,4 @@ class Problem:
         """The part of the hub's spring in :attr:`hub_compliance`; 0 without a spring."""
         if self.hub_stiffness is None:
             return 0.0
-        return self.hole_radius**2 / (self.hub_stiffness * self.pair.beta_star)
+        return self.hole_radius**2 / (self.hub_stiffness * self.surfaces.beta_star)

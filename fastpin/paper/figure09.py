@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.model.problem import PinLoad
+from fastpin.model.joint import PinLoad
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import Panel, pushed, traction_figure
 from fastpin.report.curves import Curve

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.model.problem import PinLoad, Problem, Rotation
+from fastpin.model.joint import PinLoad
+from fastpin.model.problem import Problem, Rotation
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
 from fastpin.report.curves import Curve

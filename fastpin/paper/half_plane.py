@@ -33,8 +33,9 @@ from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 from fastpin.figures.style import Line, line, panels
+from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
-from fastpin.model.problem import PinLoad, Problem
+from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.tractions import BOTTOM
 from fastpin.report.curves import Curve

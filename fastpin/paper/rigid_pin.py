@@ -14,8 +14,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, angle_axis, line, panels
+from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
-from fastpin.model.problem import PinLoad, Problem
+from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import BOTTOM
 from fastpin.report.curves import Curve

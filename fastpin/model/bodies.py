@@ -1,0 +1,244 @@
+"""Bodies other than a solid pin and an infinite plate: hollow pins, ring lugs, bushings and any finite plate.
+
+A body says its shape and how its load enters or leaves it. The materials stand in the problem's pair. Lengths are in m,
+or in units of R for a dimensionless problem. docs/bodies.md explains the choices.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, instance, number, positive
+from fastpin.model.compliance import Compliance
+from fastpin.model.materials import Material
+
+TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
+"""Kinds of load in the bore of a hollow pin."""
+
+TUBE_LOADS = ("uniform", "normal", "shear", "held", "body")
+
+Support = Literal["held", "uniform", "normal", "shear", "half", "body"]
+"""Kinds of support of a ring's outer rim."""
+
+SUPPORTS = ("held", "uniform", "normal", "shear", "half", "body")
+
+THINNEST = 0.01
+"""Least wall of a tube, ring or bushing, in parts of the radius of its contact or outer rim.
+
+A thinner wall is a shell: it bends over several widths of its wall, and 600 harmonics do not describe it.
+"""
+
+WIDEST = 1e6
+"""Largest outer radius, in parts of the hole radius. A larger body is an infinite plate."""
+
+NEAREST = 1.05
+"""Least distance of a point reaction from the centre, in parts of the hole radius."""
+
+
+@dataclass(frozen=True)
+class Disk:
+    """A solid pin. Its load enters as the problem's ``pin_load`` says."""
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A hollow pin. The forces on the pin enter at its bore.
+
+    Parameters
+    ----------
+    bore_radius : float
+        Radius of the bore, m, less than the hole radius.
+    load : {"uniform", "normal", "shear", "held", "body"}
+        "uniform": a traction of one size and direction all round the bore. "normal": normal traction alone, like the
+        cosine of the angle from the force. "shear": shear traction alone, like the sine. "held": a rigid core is bonded
+        to the bore. "body": a uniform body force; the bore is free. A moment enters by a uniform shear traction.
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive, or the load is unknown.
+    """
+
+    bore_radius: float
+    load: TubeLoad = "uniform"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bore_radius", positive("bore_radius", self.bore_radius))
+        choice("load", self.load, TUBE_LOADS)
+
+    @property
+    def held(self) -> bool:
+        """Whether a rigid core holds the bore."""
+        return self.load == "held"
+
+
+@dataclass(frozen=True)
+class Plate:
+    """An infinite plate.
+
+    Parameters
+    ----------
+    reaction : (float, float), optional
+        Point (x, y), m from the centre of the hole, at which a force balances P and Q, such as a bolt in the shank. By
+        default the forces are balanced far away.
+
+    Raises
+    ------
+    InputError
+        If the point is no pair of numbers.
+    """
+
+    reaction: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.reaction is None:
+            return
+        if not isinstance(self.reaction, (tuple, list)) or len(self.reaction) != 2:
+            raise InputError("reaction", "must be a point [x, y]")
+        x, y = (number("reaction", value) for value in self.reaction)
+        object.__setattr__(self, "reaction", (x, y))
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A ring lug: a plate with a circular outer rim round the hole.
+
+    Parameters
+    ----------
+    outer_radius : float
+        Radius of the outer rim, m, more than the hole radius.
+    support : {"held", "uniform", "normal", "shear", "half", "body"}
+        How the forces on the pin leave the ring. "held": the rim is clamped. "uniform": a traction of one size and
+        direction all round the rim. "normal": normal traction alone, like the cosine of the angle from the force.
+        "shear": shear traction alone, like the sine. "half": normal pressure like the cosine, on the half of the rim
+        that a positive force pushes towards: below for P, on the right for Q. "body": a uniform body force. A moment
+        leaves by a uniform shear traction.
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive, or the support is unknown.
+    """
+
+    outer_radius: float
+    support: Support = "held"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
+        choice("support", self.support, SUPPORTS)
+
+    @property
+    def held(self) -> bool:
+        """Whether the outer rim is clamped."""
+        return self.support == "held"
+
+
+@dataclass(frozen=True)
+class Bushing:
+    """A bush in the hole of the plate, bonded to it. The pin touches the bush.
+
+    Parameters
+    ----------
+    material : Material
+        The bush. The plate of the problem's pair is the body round it.
+    outer_radius : float
+        Outer radius of the bush, m, more than the hole radius. The hole radius is the inner radius of the bush.
+    interference : float
+        Radial interference of the bush in the plate before it is pressed in, m, at least 0. The press fit makes the
+        clearance of the pin smaller.
+    inside : Plate or Ring
+        The body round the bush.
+    friction : float, optional
+        Coefficient of friction between bush and plate. It changes no state; it tells whether the bush would slip.
+
+    Raises
+    ------
+    InputError
+        If a field is out of range or of another class.
+    """
+
+    material: Material
+    outer_radius: float
+    interference: float = 0.0
+    inside: Plate | Ring = field(default_factory=Plate)
+    friction: float | None = None
+
+    def __post_init__(self) -> None:
+        instance("material", self.material, Material, "a Material")
+        if self.material.is_rigid:
+            raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
+        object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
+        object.__setattr__(self, "interference", number("interference", self.interference, 0.0))
+        if not isinstance(self.inside, (Plate, Ring)):
+            raise InputError("inside", "must be a Plate or a Ring")
+        if self.friction is not None:
+            object.__setattr__(self, "friction", number("friction", self.friction, 0.0))
+
+
+PinBody = Disk | Tube
+PlateBody = Plate | Ring | Bushing | Compliance
+
+
+def check_pin_body(body: PinBody, radius: float) -> None:
+    """Check that a pin's body fits a hole of this radius, m.
+
+    Raises
+    ------
+    InputError
+        If the body is of another class, or the wall of a tube is too thin.
+    """
+    if not isinstance(body, (Disk, Tube)):
+        raise InputError("pin_body", "must be a Disk or a Tube")
+    if isinstance(body, Tube) and not body.bore_radius <= (1.0 - THINNEST) * radius:
+        raise InputError(
+            "bore_radius",
+            f"must be at most {(1.0 - THINNEST) * radius:g}, {1.0 - THINNEST:g} of the hole radius, "
+            f"not {body.bore_radius:g}",
+        )
+
+
+def check_plate_body(body: PlateBody, radius: float) -> None:
+    """Check that a plate's body fits round a hole of this radius, m.
+
+    Raises
+    ------
+    InputError
+        If the body is of another class, or a wall is too thin.
+    """
+    if isinstance(body, Plate):
+        _check_reaction(body, radius)
+    elif isinstance(body, Ring):
+        _check_outer(body.outer_radius, radius, "hole radius")
+    elif isinstance(body, Bushing):
+        _check_outer(body.outer_radius, radius, "hole radius")
+        if isinstance(body.inside, Ring):
+            _check_outer(body.inside.outer_radius, body.outer_radius, "outer radius of the bush")
+        else:
+            _check_reaction(body.inside, body.outer_radius)
+        if body.interference >= body.outer_radius:
+            raise InputError(
+                "interference",
+                f"must be smaller than the outer radius {body.outer_radius:g} of the bush, not {body.interference:g}",
+            )
+    elif not isinstance(body, Compliance):
+        raise InputError("plate_body", "must be a Plate, a Ring, a Bushing or a Compliance")
+
+
+def _check_outer(outer: float, inner: float, name: str) -> None:
+    least, most = inner / (1.0 - THINNEST), WIDEST * inner
+    if not least <= outer <= most:
+        raise InputError(
+            "outer_radius", f"must lie between {least:g} and {most:g} for the {name} {inner:g}, not {outer:g}"
+        )
+
+
+def _check_reaction(plate: Plate, radius: float) -> None:
+    if plate.reaction is not None and not NEAREST * radius <= math.hypot(*plate.reaction) <= WIDEST * radius:
+        raise InputError(
+            "reaction",
+            f"must be a point from {NEAREST * radius:g} to {WIDEST * radius:g} from the centre, "
+            f"not {math.hypot(*plate.reaction):g}",
+        )
