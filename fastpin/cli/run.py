@@ -322,7 +322,7 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     print(state_table(case.problem, list(result), hidden))
     if line := hoop_line(case.problem, [result[place] for place in visible_rows(len(result))]):
         print(line)
-    strain = case.problem.pair.beta_star * max(state.peak_pressure for state in result)
+    strain = case.problem.surfaces.beta_star * max(state.peak_pressure for state in result)
     if strain > LARGE_STRAIN and not case.problem.dimensionless:
         print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
     for line in cycle_lines(case.problem, result.cycles):

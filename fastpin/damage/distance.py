@@ -97,7 +97,7 @@ def fatigue_at_distance(
     if theta is None:
         theta = fatigue(stops, criterion, body, constants=constants).hot_spot.theta
     angles, problem = numbers("theta", theta), stops[0].problem
-    given = getattr(problem.pair, body).fatigue if constants is None else constants
+    given = getattr(problem.surfaces, body).fatigue if constants is None else constants
     if length is None:
         given = given or FatigueConstants()
         length = critical_distance(*given.required(("threshold_range", "limit_range"), f'method "{method}"', body))

@@ -285,7 +285,7 @@ def evaluated(
     constants: FatigueConstants | None,
 ) -> Fatigue:
     """The criterion on a history of stresses; `place` holds angles and depths of its points, in their shape."""
-    material = getattr(state.problem.pair, body)
+    material = getattr(state.problem.surfaces, body)
     given = (
         material.fatigue
         if constants is None

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fastpin.elasticity.bodies import BodyTerms
 from fastpin.elasticity.system import System
-from fastpin.kernels import influence
+from fastpin.kernels import fourier, influence
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 
@@ -27,7 +28,7 @@ class LargeSystem(System):
 
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
-        grid, pair = self.grid, self.problem.pair
+        grid, pair = self.grid, self.problem.surfaces
         n, scale = grid.size, 1.0 / (4.0 * np.pi)
         pressure, shear = tractions[:n], tractions[n:]
         loaded = np.flatnonzero((pressure != 0.0) | (shear != 0.0))
@@ -45,6 +46,11 @@ class LargeSystem(System):
             gap += direct @ pressure[nodes] + cross @ shear[nodes]
             slip += direct @ shear[nodes] - cross @ pressure[nodes]
         found = np.r_[gap, slip]
+        if self.bodies is not None:
+            given = np.array([pressure, shear])
+            found += fourier.product(grid.theta, grid.theta, h_left, h_right, self.bodies.coefficients, given).ravel()
+            if self.bodies.matrix.size:
+                found += self.bodies.matrix_product(grid, tractions)
         return found if self.drive is None else found + self.drive.translation @ (self.drive.coupling @ tractions)
 
     def window(self, nodes: np.ndarray) -> System:
@@ -52,7 +58,7 @@ class LargeSystem(System):
         return System.build(self.problem, self.grid.part(nodes), self.scales.force)
 
     @staticmethod
-    def _filled_operator(grid: Grid, ratio: float, uniform_part: float) -> np.ndarray:
+    def _filled_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None) -> np.ndarray:
         return np.empty((0, 0))
 
 

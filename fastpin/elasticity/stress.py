@@ -33,7 +33,7 @@ def plate_stress(
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the hole, in units of R; at least 0.
     """
-    kolosov = problem.pair.plate_kolosov
+    kolosov = problem.surfaces.plate_kolosov
     (pressure, shear), away = tractions.low_coefficients, np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
@@ -85,7 +85,7 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     mean = -4.0 * np.real(whole) + 2.0 * pressure[0].real
     radial = -2.0 * np.real(whole) + pressure[0].real + first
     if problem.pin_load == "centre":
-        share = 1.0 / (math.pi * (1.0 + problem.pair.pin_kolosov))
+        share = 1.0 / (math.pi * (1.0 + problem.surfaces.pin_kolosov))
         mean = mean + 4.0 * share * np.real(np.conj(force) * zeta - 0.5 * force / zeta)
         radial = radial + share * force * (np.conj(zeta) - 1.0 / zeta)
         radial[near] -= np.conj(force) / (2.0 * math.pi * np.conj(zeta[near]))

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fastpin.elasticity.bodies import BodyTerms, body_terms
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
 from fastpin.kernels import influence
 from fastpin.model.grid import Grid
@@ -39,7 +40,7 @@ class Scales:
     @classmethod
     def of(cls, problem: Problem, force: float) -> Scales:
         """The units of `problem` with reference force `force`, N/m."""
-        radius, beta = problem.hole_radius, problem.pair.beta_star
+        radius, beta = problem.hole_radius, problem.surfaces.beta_star
         traction, rotation = force / radius, force * beta / radius
         unit = {"force": force, "moment": force * radius, "traction": traction, "rotation": rotation}
         unit["displacement"] = force * beta
@@ -83,7 +84,9 @@ class System:
     weights : ndarray, shape (n,)
         Integrals of the hat functions of the nodes, rad.
     plate : float
-        Size R kappa'/(2 G) of the hole's displacement per remote stress, Eq. (42).
+        Size R kappa'/(2 G) of the displacement of the hole in an infinite plate per remote stress, Eq. (42).
+    bodies : BodyTerms or None
+        The smooth terms of hollow pins and finite plates. None for a solid pin in an infinite plate.
     drive : Drive or None
         The prescribed displacements. Then the first two components of the motion are the reactions of the driven axes;
         see :mod:`fastpin.elasticity.drive`. None if forces push the pin.
@@ -102,21 +105,20 @@ class System:
     forces: np.ndarray
     weights: np.ndarray
     plate: float
+    bodies: BodyTerms | None = None
     drive: Drive | None = None
 
     @classmethod
     def build(cls, problem: Problem, grid: Grid, force: float) -> System:
         """Fill the matrices of `problem` on `grid` with reference force `force`, N/m."""
-        pair = problem.pair
         n, theta = grid.size, grid.theta
         weights = grid.weights
-        ratio = pair.alpha_star / pair.beta_star
-        uniform_part = _uniform_part(problem)
-        operator = cls._filled_operator(grid, ratio, uniform_part)
+        bodies = body_terms(problem)
+        operator = cls._filled_operator(problem, grid, bodies)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
-        plate, loads = load_columns(problem, theta)
+        plate, loads = load_columns(problem, theta, bodies)
 
         cos_moment, sin_moment = grid.trig_moments()
         equilibrium = np.zeros((3, 2 * n))
@@ -139,17 +141,27 @@ class System:
             forces[:2] *= ~drive.axes[:, None]
         scales = Scales.of(problem, force)
         return cls(
-            problem, grid, scales, problem.clearance / scales.displacement, problem.friction,
-            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, drive,
+            problem, grid, scales, problem.assembled_clearance / scales.displacement, problem.friction,
+            operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, bodies, drive,
         )  # fmt: skip
 
     @staticmethod
-    def _filled_operator(grid: Grid, ratio: float, uniform_part: float) -> np.ndarray:
-        n = grid.size
+    def _filled_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None) -> np.ndarray:
+        n, pair = grid.size, problem.surfaces
         operator = np.empty((2 * n, 2 * n), order="F")
         left, right = grid.knots()
-        influence.fill_operator(grid.theta, left, right, grid.uniform, grid.closed, ratio, uniform_part, operator)
+        influence.fill_operator(
+            grid.theta, left, right, grid.uniform, grid.closed, pair.alpha_star / pair.beta_star,
+            _uniform_part(problem), operator, None if bodies is None else bodies.coefficients,
+        )  # fmt: skip
+        if bodies is not None:
+            bodies.add_matrix(grid, operator)
         return operator
+
+    @property
+    def is_toeplitz(self) -> bool:
+        """Whether the operator's entries depend on the distance of two nodes only, but for halves of hats."""
+        return self.grid.uniform and self.drive is None and (self.bodies is None or not self.bodies.matrix.size)
 
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
@@ -230,24 +242,28 @@ class System:
 
 def _uniform_part(problem: Problem) -> float:
     """The part of the operator that a uniform pressure has in the pin, per beta*."""
-    pair = problem.pair
+    pair = problem.surfaces
     return (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
 
 
-def load_columns(problem: Problem, theta: np.ndarray) -> tuple[float, np.ndarray]:
+def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:
     """The size R kappa'/(2 G) of the hole's displacement per remote stress, and the columns of all loads.
 
     The columns, shape (2n, loads), map forces and remote stresses to gap and slip at the angles `theta` (n,),
-    dimensionless. Those of the other loads are 0.
+    dimensionless. Those of the other loads are 0. `bodies` are the :func:`fastpin.elasticity.bodies.body_terms`.
     """
-    pair = problem.pair
+    pair = problem.surfaces
     cos, sin, cos_double, sin_double = np.cos(theta), np.sin(theta), np.cos(2 * theta), np.sin(2 * theta)
     share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
-    point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
+    point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star) if bodies is None else bodies.force_factor
     plate = 0.5 * (1.0 - _uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
     loads = np.zeros((2 * theta.size, len(LOADS)))
     loads[:, P] = point * np.r_[sin, cos]
     loads[:, Q] = point * np.r_[-cos, sin]
+    if bodies is not None:
+        for place, column in bodies.load_columns(theta).items():
+            loads[:, place] += column
+        return plate, loads
     loads[:, SXX] = plate * np.r_[0.5 + cos_double, sin_double]
     loads[:, SYY] = plate * np.r_[0.5 - cos_double, -sin_double]
     loads[:, SXY] = 2.0 * plate * np.r_[sin_double, -cos_double]

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.special import zeta
 
+from fastpin.kernels import fourier
 from fastpin.kernels.jit import compiled
 
 TWO_PI = 2.0 * math.pi
@@ -326,6 +327,7 @@ def fill_operator(
     ratio: float,
     uniform_part: float,
     operator: np.ndarray,
+    smooth: np.ndarray | None = None,
 ) -> None:
     """Fill the symmetric part of the displacements (30), (31). It maps tractions (N, T) to (gap, slip).
 
@@ -347,6 +349,9 @@ def fill_operator(
     operator : ndarray, shape (2n, 2n), Fortran order, output
         The matrix [[direct - uniform_part, cross], [-cross, direct]] / (4 pi). Here direct[i, j] is the integral of
         ratio S A - C L at theta_i - xi over hat j, and cross[i, j] is the integral of ratio C A + S L.
+    smooth : ndarray, shape (3, N + 1), optional
+        Coefficients of smooth kernels that are added to the gap of N, the slip of T, and the gap of T, see
+        :func:`fastpin.kernels.fourier.hat_columns`. The slip of N gets the opposite of the third.
     """
     n = theta.size
     blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
@@ -356,6 +361,12 @@ def fill_operator(
     log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross)
     np.subtract(direct, 0.5 * scale * uniform_part * (h_left + h_right), out=expanded)
     np.negative(cross, out=mirrored)
+    if smooth is not None:
+        first, second, odd = fourier.hat_columns(seen, nodes, h_left, h_right, smooth)
+        expanded += first
+        direct += second
+        cross += odd
+        mirrored -= odd
     if uniform:
         _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
 

@@ -43,7 +43,7 @@ class Case:
 
 def check_arc(problem: Problem, options: SolveOptions) -> None:
     """Raise :class:`InputError` if the arc is too short for an interference fit."""
-    if problem.clearance < 0.0 and options.arc is not None and not options.is_full_turn:
+    if problem.assembled_clearance < 0.0 and options.arc is not None and not options.is_full_turn:
         raise InputError("arc", "an interference fit is in contact all round: the arc must span 2 pi, or be left out")
 
 

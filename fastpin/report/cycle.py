@@ -50,7 +50,7 @@ def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
     except InputError:
         return ""
     problem = stops[0].problem
-    if problem.pair.plate.is_rigid or problem.pair.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
+    if problem.surfaces.plate.is_rigid or problem.surfaces.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
         return ""
     spot = fatigue(stops, "smith-watson-topper").hot_spot
     parts = [

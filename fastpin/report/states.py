@@ -63,7 +63,7 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     def angles(name: str) -> tuple[str, str, list[str]]:
         return "at", "deg", [_angle(QUANTITIES[name].of(state)) + _bar(state, _DEGREE, name) for state in states]
 
-    strain = problem.pair.beta_star * max((state.peak_pressure for state in states), default=0.0)
+    strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
     columns = [("load point", "", [_point(state) for state in states])]
     columns += load_columns(problem, [state.load for state in states])
@@ -87,7 +87,7 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
 
     It is empty for a rigid plate, and if no state is in contact.
     """
-    if problem.pair.plate.is_rigid or not any(state.in_contact for state in states):
+    if problem.surfaces.plate.is_rigid or not any(state.in_contact for state in states):
         return ""
     distinct: dict[tuple[object, ...], State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.

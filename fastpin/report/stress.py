@@ -62,7 +62,7 @@ def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
     """
     if choice("body", body, (*BODIES, "both")) != "both":
         return (body,)  # type: ignore[return-value]
-    return tuple(each for each in BODIES if not getattr(state.problem.pair, each).is_rigid)  # type: ignore[misc]
+    return tuple(each for each in BODIES if not getattr(state.problem.surfaces, each).is_rigid)  # type: ignore[misc]
 
 
 def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:

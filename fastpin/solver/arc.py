@@ -74,7 +74,7 @@ def candidate_grids(
         If the number of nodes is out of range.
     """
     Grid.circle(nodes)  # checks the number of nodes before anything is computed
-    arc = None if problem.clearance < 0.0 else _touched_arc(problem, values, force, progress)
+    arc = None if problem.assembled_clearance < 0.0 else _touched_arc(problem, values, force, progress)
     while arc is not None and arc[1] - arc[0] < WHOLE:
         shift = _shift_to_node(problem, arc[0], (arc[1] - arc[0]) / (nodes - 1), values)
         yield Grid.arc(arc[0] + shift, arc[1] + shift, nodes)
@@ -178,9 +178,9 @@ def _estimated_arc(problem: Problem, values: np.ndarray) -> tuple[float, float] 
     """
     force = pushes(problem, values)
     pin = np.hypot(force[:, 1], force[:, 0])
-    remote = 0.5 * problem.pair.plate_compliance * (problem.pair.plate_kolosov + 1.0)
+    remote = 0.5 * problem.surfaces.plate_compliance * (problem.surfaces.plate_kolosov + 1.0)
     ovality = problem.hole_radius * remote * float(np.abs(values[:, REMOTE]).max())
-    if not pin.any() or ovality > 0.2 * problem.clearance:
+    if not pin.any() or ovality > 0.2 * problem.assembled_clearance:
         return None
     loaded = pin > 0.0
     angles = np.unwrap(np.arctan2(force[loaded, 1], force[loaded, 0]))

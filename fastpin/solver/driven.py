@@ -207,14 +207,16 @@ def pushes(problem: Problem, values: np.ndarray) -> np.ndarray:
     axes = np.array(problem.driven)
     given = np.where(axes, values[:, [UX, UY]], 0.0)
     reach = np.hypot(given[:, 0], given[:, 1])
-    overlap = np.maximum(reach - max(problem.clearance, 0.0), 0.0) / problem.pair.beta_star
+    overlap = np.maximum(reach - max(problem.assembled_clearance, 0.0), 0.0) / problem.surfaces.beta_star
     way = np.divide(given, reach[:, None], out=np.zeros_like(given), where=reach[:, None] > 0.0)
     if axes.all():
         return overlap[:, None] * way
     # The force pushes the pin along the hole's wall: at a part of the clearance the normal of the wall has turned.
     size = np.abs(forces).max(axis=1)
     part = (
-        np.minimum(reach, problem.clearance) / problem.clearance if problem.clearance > 0.0 else np.zeros(len(values))
+        np.minimum(reach, problem.assembled_clearance) / problem.assembled_clearance
+        if problem.assembled_clearance > 0.0
+        else np.zeros(len(values))
     )
     turned = np.sign(forces) * np.sqrt(1.0 - part**2)[:, None] + way * part[:, None]
     return np.where(size[:, None] > 0.0, size[:, None] * turned, overlap[:, None] * way)

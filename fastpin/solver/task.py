@@ -70,7 +70,7 @@ class Task:
         object.__setattr__(self, "history", as_history(self.history))
         if self.grid is not None:
             instance("grid", self.grid, Grid, "a Grid")
-            if self.problem.clearance < 0.0 and not self.grid.closed:
+            if self.problem.assembled_clearance < 0.0 and not self.grid.closed:
                 raise InputError("grid", "an interference fit is in contact all round: it needs the whole circle")
         check_callable("progress", self.progress)
         check_loads(self.problem, self.history)
@@ -302,7 +302,7 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     pin = float(np.hypot(force[:, 1], force[:, 0]).max())
     moment = float(np.abs(values[:, M]).max()) / radius
     remote = float(np.abs(values[:, REMOTE]).max()) * radius
-    unit = radius / problem.pair.beta_star
+    unit = radius / problem.surfaces.beta_star
     largest = max(pin, moment) or remote or unit
     if largest < LEAST_LOAD * unit:
         raise InputError(

@@ -182,12 +182,12 @@ class StickingRun(Unknowns):
 
         It takes friction, a uniform grid, and at least :data:`LEAST_NEIGHBOURS` closed nodes. They must lie side by
         side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open. Under a
-        prescribed displacement the operator is no Toeplitz matrix.
+        prescribed displacement, or with a compliance of any plate, the operator is no Toeplitz matrix.
         """
         closed, n = np.flatnonzero(status != OPEN), system.grid.size
         if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
             return None
-        if not system.grid.uniform or system.friction == 0.0 or system.drive is not None:
+        if not system.is_toeplitz or system.friction == 0.0:
             return None
         low, last = closed[0], closed[-1]
         if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):

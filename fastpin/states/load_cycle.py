@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fastpin.elasticity.bodies import body_terms
 from fastpin.elasticity.system import load_columns
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
@@ -234,10 +235,10 @@ class LoadCycle:
         Over a closed cycle of a settled contact, the sum of their works is the dissipation, up to the discretisation.
         """
         states, problem = self.states, self.states[0].problem
-        _, columns = load_columns(problem, self.theta)
+        _, columns = load_columns(problem, self.theta, body_terms(problem))
         weights = np.r_[states[0].grid.weights, states[0].grid.weights]
         tractions = np.array([np.r_[state.pressure, state.shear] for state in states])
-        moved = problem.pair.beta_star * problem.hole_radius * (tractions @ (weights[:, None] * columns))
+        moved = problem.surfaces.beta_star * problem.hole_radius * (tractions @ (weights[:, None] * columns))
         motion = {
             "P": np.array([-state.dy for state in states]),
             "Q": np.array([state.dx for state in states]),

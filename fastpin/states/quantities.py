@@ -51,7 +51,7 @@ def _hoop(read: Callable[[HoopPeak], float]) -> Callable[[State], float]:
     """A reading of the largest hoop stress of the plate; NaN for a rigid plate."""
 
     def of(state: State) -> float:
-        return math.nan if state.problem.pair.plate.is_rigid else read(state.peak_hoop_stress())
+        return math.nan if state.problem.surfaces.plate.is_rigid else read(state.peak_hoop_stress())
 
     return of
 
@@ -153,7 +153,7 @@ def sizes(state: State) -> dict[str, float]:
     """The natural size of each kind of quantity."""
     problem, pressure = state.problem, state.peak_pressure
     force = QUANTITIES["pressure_integral"].of(state)
-    strain = problem.pair.beta_star * pressure or abs(problem.clearance) / problem.hole_radius
+    strain = problem.surfaces.beta_star * pressure or abs(problem.assembled_clearance) / problem.hole_radius
     return {
         "traction": pressure,
         "angle": width(state.contact),

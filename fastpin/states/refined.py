@@ -388,7 +388,7 @@ def _patches(state: State) -> Iterator[Patch]:
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
             theta, state.pressure[run], state.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(state, run, theta), state.problem.friction, state.problem.pair.dundurs()[1], state.tilt,
+            _zones(state, run, theta), state.problem.friction, state.problem.surfaces.dundurs()[1], state.tilt,
         )  # fmt: skip
 
 

@@ -239,7 +239,7 @@ class State:
     @cached_property
     def tilt(self) -> float:
         """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
-        return math.atan(self.problem.friction * self.problem.pair.dundurs()[1]) / math.pi
+        return math.atan(self.problem.friction * self.problem.surfaces.dundurs()[1]) / math.pi
 
     def contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
@@ -373,7 +373,7 @@ class State:
 
         It counts as dx and dy do. Where it is prescribed, it is the load of the same name.
         """
-        (cos, sin), pair = self.grid.trig_moments(), self.problem.pair
+        (cos, sin), pair = self.grid.trig_moments(), self.problem.surfaces
         own, coupling = self.problem.drive_compliances
         own, coupling = own * pair.beta_star, coupling * pair.beta_star * self.problem.hole_radius
         force = self.resultants

@@ -167,7 +167,7 @@ def check_body(problem: Problem, body: Body) -> Material:
     InputError
         If `body` is no body, or the body is rigid.
     """
-    material: Material = getattr(problem.pair, choice("body", body, BODIES))
+    material: Material = getattr(problem.surfaces, choice("body", body, BODIES))
     if material.is_rigid:
         raise InputError("body", f"the {body} is rigid: its stress is not determined")
     return material
@@ -189,5 +189,5 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     else:
         components = pin_stress(problem, tractions, theta, depth)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
-    axial = material.nu * (radial + hoop) if problem.pair.plane == "strain" else np.zeros(points.shape)
+    axial = material.nu * (radial + hoop) if problem.surfaces.plane == "strain" else np.zeros(points.shape)
     return Stress(points.theta, radial, hoop, shear, axial)

@@ -137,7 +137,7 @@ def strain_slip_difference(state: State) -> float:
     state : State
         Its pin first rested at the bottom of the hole, where slip and gap count from.
     """
-    theta, clearance = state.theta, state.problem.clearance
+    theta, clearance = state.theta, state.problem.assembled_clearance
     points, weights = np.polynomial.legendre.leggauss(4)
     steps = np.diff(theta)
     between = theta[:-1, None] + 0.5 * steps[:, None] * (points + 1.0)
@@ -148,7 +148,7 @@ def strain_slip_difference(state: State) -> float:
 
 
 def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
-    pair = state.problem.pair
+    pair = state.problem.surfaces
     material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
     found = state.stress(Points.at_depth(0.0, theta), body, straight=True)
     return (found.hoop - 0.25 * (3.0 - kolosov) * (found.hoop + found.radial)) / (2.0 * material.shear_modulus)

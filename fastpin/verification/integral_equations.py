@@ -81,13 +81,13 @@ def residuals(
     unit = number("force", force)
     if unit <= 0.0:
         raise InputError("force", f"must be positive, not {unit:g}")
-    pair, radius = problem.pair, problem.hole_radius
+    pair, radius = problem.surfaces, problem.hole_radius
     length = unit * pair.beta_star
     N = _nodal("pressure", pressure, grid) * radius / unit
     T = _nodal("shear", shear, grid) * radius / unit
     s = _nodal("total_slip", total_slip, grid) / length
     C_omega = number("rotation", rotation) * radius / length
-    clearance = problem.clearance / length
+    clearance = problem.assembled_clearance / length
     A = (number("sxx", sxx) + number("syy", syy)) * radius / unit
     D = (number("sxx", sxx) - number("syy", syy) + 2j * number("sxy", sxy)) * radius / unit
 

@@ -227,7 +227,7 @@ class _Case:
 
     @classmethod
     def of(cls, problem: Problem, load: dict[str, float], sign: float) -> _Case:
-        pair, size = problem.pair, math.hypot(load["P"], load["Q"])
+        pair, size = problem.surfaces, math.hypot(load["P"], load["Q"])
         stress = problem.hole_radius / size
         return cls(
             size,

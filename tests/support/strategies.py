@@ -56,7 +56,7 @@ def problems(draw: st.DrawFn) -> fastpin.Problem:
     pin_load = draw(st.sampled_from(["centre", "body"]))
     rotation = "free" if pin_load == "body" else draw(st.sampled_from(["free", "fixed", "spring"]))
     drive = draw(st.sampled_from(["force", "force", "ux", "uy", "both"]))
-    least, whole = 0.0 if Problem(pair, 1.0, 0.0, 0.1).is_incompressible else -0.01, draw(st.booleans())
+    least, whole = 0.0 if fastpin.Problem(pair, 1.0, 0.0, 0.1).is_incompressible else -0.01, draw(st.booleans())
     radius, unit = (1.0, 1.0) if whole else (draw(scale(-5, 2)), pair.beta_star)
     has_hub = rotation != "free" or (drive != "force" and pin_load == "centre")
     sizes = {

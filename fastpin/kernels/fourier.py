@@ -1,0 +1,107 @@
+"""Fourier series of smooth kernels, integrated over hat functions.
+
+The compliance of a finite body differs from that of a solid pin in an infinite plate by smooth kernels of the distance
+of two angles, sum c_n cos n(theta - xi) or sum c_n sin n(theta - xi). A hat is two half hats of the lengths h_left and
+h_right. About its node
+
+    int_0^h exp(-i n t) (1 - t/h) dt = h [exp(-z) - 1 + z]/z^2,      z = i n h.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+SERIES_BELOW, SERIES_TERMS = 0.5, 12
+"""Size of z below which the quotient is summed by its series, and the terms of the series."""
+
+BLOCK = 256
+"""Harmonics that are summed together. It bounds the memory of thin walls, which need thousands of them."""
+
+
+def hat_moments(order: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> np.ndarray:
+    """Integrals of exp(-i n t) over hats, t from the node, for the harmonics `order` (m,); shape (k, m).
+
+    `h_left` and `h_right`, shape (k,), are the distances to the outer knots, rad; 0 for a half hat.
+    """
+    right = _half_moments(order, h_right)
+    left = right if h_left is h_right else _half_moments(order, h_left)
+    return right + np.conj(left)
+
+
+def _half_moments(order: np.ndarray, length: np.ndarray) -> np.ndarray:
+    z = np.multiply.outer(1j * length, order)
+    small = np.abs(z) < SERIES_BELOW
+    safe = np.where(small, 1.0, z)
+    exact = (np.expm1(-safe) + safe) / (safe * safe)
+    near = np.where(small, z, 0.0)
+    series = np.zeros_like(near)
+    for k in range(SERIES_TERMS + 2, 1, -1):
+        series = series * -near + 1.0 / math.factorial(k)
+    found: np.ndarray = length[:, None] * np.where(small, series, exact)
+    return found
+
+
+def hat_columns(
+    seen: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray, coefficients: np.ndarray
+) -> np.ndarray:
+    """Integrals of three kernels over hats, shape (3, m, k): two sums of cosines, and one sum of sines.
+
+    Parameters
+    ----------
+    seen : ndarray, shape (m,)
+        Angles theta, rad.
+    nodes, h_left, h_right : ndarray, shape (k,)
+        Nodes of the hats and distances to their outer knots, rad.
+    coefficients : ndarray, shape (3, N + 1)
+        c_n of the three kernels, for n = 0 to N.
+    """
+    found = np.zeros((3, seen.size, nodes.size))
+    for begin in range(0, coefficients.shape[1], BLOCK):
+        part = coefficients[:, begin : begin + BLOCK]
+        order = np.arange(begin, begin + part.shape[1], dtype=float)
+        cos, sin = _waves(order, seen)
+        hats = hat_moments(order, h_left, h_right) * np.exp(-1j * np.multiply.outer(nodes, order))
+        both, turned = np.hstack([hats.real, hats.imag]).T, np.hstack([hats.imag, hats.real]).T
+        waves = np.hstack([cos, -sin])
+        found[0] += (waves * np.tile(part[0], 2)) @ both
+        found[1] += (waves * np.tile(part[1], 2)) @ both
+        found[2] += (np.hstack([cos, sin]) * np.tile(part[2], 2)) @ turned
+    return found
+
+
+def _waves(order: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    phase = np.multiply.outer(angles, order)
+    return np.cos(phase), np.sin(phase)
+
+
+def hat_coefficients(
+    order: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray, values: np.ndarray
+) -> np.ndarray:
+    """int f exp(-i n xi) dxi of piecewise linear functions f, shape (m, ...), from their nodal `values` (k, ...)."""
+    hats = hat_moments(order, h_left, h_right) * np.exp(-1j * np.multiply.outer(nodes, order))
+    return np.tensordot(hats, values, axes=(0, 0))
+
+
+def product(
+    seen: np.ndarray,
+    nodes: np.ndarray,
+    h_left: np.ndarray,
+    h_right: np.ndarray,
+    coefficients: np.ndarray,
+    tractions: np.ndarray,
+) -> np.ndarray:
+    """Gap and slip, shape (2, m), of nodal tractions (N, T), shape (2, k); the other arguments as for hat_columns.
+
+    Gap is c_0 and c_2 of :func:`hat_columns` times N and T, slip is -c_2 and c_1.
+    """
+    found = np.zeros((2, seen.size))
+    for begin in range(0, coefficients.shape[1], BLOCK):
+        first, second, cross = coefficients[:, begin : begin + BLOCK]
+        order = np.arange(begin, begin + first.size, dtype=float)
+        pressure, shear = hat_coefficients(order, nodes, h_left, h_right, tractions.T).T
+        cos, sin = _waves(order, seen)
+        gap, slip = first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure
+        found += np.array([cos @ gap.real - sin @ gap.imag, cos @ slip.real - sin @ slip.imag])
+    return found
