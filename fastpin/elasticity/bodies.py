@@ -59,24 +59,14 @@ class BodyTerms:
     def add_matrix(self, grid: Grid, operator: np.ndarray) -> None:
         """Add the matrix of a compliance to the `operator`, shape (2n, 2n). Without one nothing changes."""
         if self.matrix.size:
-            waves, integrals = self._basis(grid)
+            waves, integrals = basis(self.matrix, grid)
             operator += waves @ (self.matrix @ integrals)
 
     def matrix_product(self, grid: Grid, tractions: np.ndarray) -> np.ndarray:
         """Gap and slip, shape (2n,), that the matrix of a compliance gives for tractions (N, T), shape (2n,)."""
-        waves, integrals = self._basis(grid)
+        waves, integrals = basis(self.matrix, grid)
         found: np.ndarray = waves @ (self.matrix @ (integrals @ tractions))
         return found
-
-    def _basis(self, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-        """The basis at the nodes, shape (2n, m), and the coefficients of hats in it, shape (m, 2n)."""
-        order = (len(self.matrix) - 2) // 4
-        left, right = grid.knots()
-        n = np.arange(order + 1.0)
-        hats = fourier.hat_moments(n, grid.theta - left, right - grid.theta)
-        hats = hats * np.exp(-1j * np.multiply.outer(grid.theta, n)) / math.pi
-        phase = np.exp(-1j * np.multiply.outer(grid.theta, n))
-        return _in_basis(phase), _in_basis(hats).T
 
     def radial(self, load: np.ndarray, theta: np.ndarray | float) -> np.ndarray:
         """v_r under the remote stresses of a `load` (loads,), and two derivatives, at `theta`; shape (3, ...)."""
@@ -99,6 +89,18 @@ class BodyTerms:
             v = np.exp(1j * np.multiply.outer(theta, order)) @ column
             found[place] = np.r_[v.real, -v.imag]
         return found
+
+
+def basis(matrix: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """The basis of a compliance's `matrix` (m, m) at the nodes, (2n, m), and the coefficients of hats in it, (m, 2n).
+
+    Rows and columns of the nodes belong to (gap, slip) and (N, T).
+    """
+    n = np.arange((len(matrix) - 2) // 4 + 1.0)
+    left, right = grid.knots()
+    waves = np.exp(-1j * np.multiply.outer(grid.theta, n))
+    hats = fourier.hat_moments(n, grid.theta - left, right - grid.theta) * waves / math.pi
+    return _in_basis(waves), _in_basis(hats).T
 
 
 def _in_basis(waves: np.ndarray) -> np.ndarray:
@@ -336,7 +338,7 @@ def _through_bush(problem: Problem, column: np.ndarray) -> np.ndarray:
 def translation_rows(body: Compliance) -> np.ndarray:
     """Unit vectors, shape (2, m), of the force along x and y in the basis of a compliance.
 
-    They are also the translation of the hole along x and y, times the square root of 2.
+    They are also a translation of the hole along x and y by the square root of 1/2.
     """
     rows = np.zeros((2, len(body.matrix)))
     rows[0, [2, 5]] = math.sqrt(0.5) * np.array([1.0, -1.0])

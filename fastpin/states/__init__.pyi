@@ -1,4 +1,5 @@
 from .hoop import hoop_peak as hoop_peak
+from .joint import joint_displacement as joint_displacement
 from .load_cycle import LoadCycle as LoadCycle
 from .load_cycle import Loop as Loop
 from .load_cycle import NodeBehaviour as NodeBehaviour

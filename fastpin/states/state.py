@@ -382,6 +382,31 @@ class State:
             "uy": self.dy - own * force["P"] - coupling * float(sin @ self.pressure + cos @ self.shear),
         }
 
+    def joint_displacement(
+        self, hub_radius: float | None = None, gauge_radius: float | None = None
+    ) -> dict[str, float]:
+        """The mean displacement of a circle in the pin over a circle in the plate, "ux" and "uy" in m, (T29).
+
+        It is the displacement that a gauge on the joint measures. It counts as dx and dy do. The difference of two
+        states over the difference of their forces is the compliance of the joint.
+
+        Parameters
+        ----------
+        hub_radius : float, optional
+            Radius of the circle in the pin, m. The default is the bore of a hollow pin, the mean over a body-loaded
+            solid pin, and R / sqrt(kappa_I + 1) in any other pin.
+        gauge_radius : float, optional
+            Radius of the circle in the plate, m. The default is the outer rim of a ring, also round a bush, the
+            supports of a :class:`fastpin.model.Compliance`, and the edge of the hole in an infinite plate, whose
+            displacement grows like the logarithm of the radius.
+
+        Raises
+        ------
+        InputError
+            If a circle lies outside its body, or the body has no such circle.
+        """
+        return states.joint_displacement(self, hub_radius, gauge_radius)
+
 
 def _in_degrees(intervals: list[Interval]) -> str:
     """Text of the intervals in degrees from the bottom."""
