@@ -2,20 +2,24 @@
 
 :func:`check_states` checks the states of a result. :func:`check_direction` and :func:`check_dissipation` check the
 way between states that lie close together. All read the public fields of states only. The displacements (9)-(12) are
-integrals of the piecewise linear tractions by Gauss quadrature, graded towards the logarithm.
+integrals of the piecewise linear tractions by Gauss quadrature, graded towards the logarithm. The smooth terms of other
+bodies share their coefficients with the solver, not their sums.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from fastpin.elasticity.bodies import body_terms
 from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.bodies import Tube
+from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -60,7 +64,7 @@ class Integrals:
 
     def __init__(self, problem: Problem, theta: np.ndarray, closed: bool, loaded: np.ndarray) -> None:
         self.problem, self.theta, self.loaded = problem, theta, np.flatnonzero(loaded)
-        pair, n = problem.pair, theta.size
+        pair, n = problem.surfaces, theta.size
         # 1/G and Kolosov's constant of pin and plate; the constants of (32).
         soft = [2.0 * (1.0 + body.nu) / body.E for body in (pair.pin, pair.plate)]
         strain = pair.plane == "strain"
@@ -71,15 +75,25 @@ class Integrals:
         self.alpha = (kappas[1] - 1.0) * soft[1] - (kappas[0] - 1.0) * soft[0]
         self.beta = 0.5 * ((kappas[1] + 1.0) * soft[1] + (kappas[0] + 1.0) * soft[0])
         self.plate = problem.hole_radius * 0.25 * (kappas[1] + 1.0) * soft[1]  # R k'/(2G) of (42)
-        self.share = 1.0 if problem.pin_load == "centre" else 0.5
+        share = 1.0 if problem.pin_load == "centre" else 0.5
+        self.bodies = body_terms(problem)
+        self.point = share * self.pin / (4.0 * math.pi)
+        if self.bodies is not None:
+            self.point = self.bodies.force_factor * self.beta
         first = np.arange(n if closed else n - 1)
         second = (first + 1) % n
         length = np.diff(np.r_[theta, theta[0] + 2.0 * math.pi])[first]
         self.moments = np.zeros((3, n))  # integrals of every hat times 1, cos, sin
         places = theta[first, None] + length[:, None] * POINTS
+        self.waves = np.zeros((0, n), dtype=complex)  # integrals of every hat times exp(-i k theta)
+        if self.bodies is not None:
+            most = max(self.bodies.coefficients.shape[1], (len(self.bodies.matrix) + 2) // 4)
+            self.waves = np.zeros((most, n), dtype=complex)
         for share, nodes in ((1.0 - POINTS, first), (POINTS, second)):
             for row, values in zip(self.moments, (np.ones_like(places), np.cos(places), np.sin(places)), strict=True):
                 np.add.at(row, nodes, length * (values @ (WEIGHTS * share)))
+            for k, row in enumerate(self.waves):
+                np.add.at(row, nodes, length * (np.exp(-1j * k * places) @ (WEIGHTS * share)))
         self.direct, self.cross = np.zeros((2, n, self.loaded.size))
         column = np.full(n, -1)
         column[self.loaded] = np.arange(self.loaded.size)
@@ -112,17 +126,61 @@ class Integrals:
         scale = self.problem.hole_radius / (4.0 * math.pi)
         swelling = 0.5 * (self.kappa_pin + 1.0) * self.pin * float(self.moments[0] @ state.pressure)
         gap = scale * (self.direct @ N + self.cross @ T - swelling)
-        return gap, scale * (self.direct @ T - self.cross @ N)
+        slip = scale * (self.direct @ T - self.cross @ N)
+        return (gap, slip) if self.bodies is None else self._with_bodies(state, gap, slip)
+
+    def _with_bodies(self, state: State, gap: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap and slip with the smooth terms of the bodies."""
+        assert self.bodies is not None
+        unit = self.problem.hole_radius * self.beta
+        N, T = self.waves @ state.pressure, self.waves @ state.shear
+        for k, (first, second, cross) in enumerate(self.bodies.coefficients.T):
+            wave = np.exp(1j * k * self.theta)
+            gap = gap + unit * (first * (wave * N[k]).real + cross * (wave * T[k]).imag)
+            slip = slip + unit * (second * (wave * T[k]).real - cross * (wave * N[k]).imag)
+        if not self.bodies.matrix.size:
+            return gap, slip
+        size = (len(self.bodies.matrix) - 2) // 4
+        columns = [np.ones_like(self.theta) / math.sqrt(2.0)]
+        forces = [N[0].real / math.sqrt(2.0), -T[0].real / math.sqrt(2.0)]
+        for k in range(1, size + 1):
+            columns += [np.cos(k * self.theta), np.sin(k * self.theta)]
+            forces += [N[k].real, -N[k].imag, -T[k].real, T[k].imag]
+        found = self.bodies.matrix @ np.array(forces) / math.pi
+        moved = np.r_[found[:2], found[2:]]
+        radial, turning = moved[0] * columns[0], moved[1] * columns[0]
+        for k in range(size):
+            radial = radial + moved[4 * k + 2] * columns[2 * k + 1] + moved[4 * k + 3] * columns[2 * k + 2]
+            turning = turning + moved[4 * k + 4] * columns[2 * k + 1] + moved[4 * k + 5] * columns[2 * k + 2]
+        return gap + unit * radial, slip - unit * turning
 
     def loads(self, state: State) -> tuple[np.ndarray, np.ndarray]:
         """The parts of gap and slip that the loads determine: terms of the force (w), and remote stress (42)."""
         load, cos, sin = state.load, np.cos(self.theta), np.sin(self.theta)
         double, double_sin = np.cos(2.0 * self.theta), np.sin(2.0 * self.theta)
-        point = self.share * self.pin / (4.0 * math.pi)
+        if self.bodies is not None:
+            return self._loads_of_bodies(load, cos, sin)
         total, oval, diagonal = load["sxx"] + load["syy"], load["sxx"] - load["syy"], 2.0 * load["sxy"]
         gap = self.plate * (0.5 * total + oval * double + diagonal * double_sin)
         slip = self.plate * (oval * double_sin - diagonal * double)
-        return gap + point * (load["P"] * sin - load["Q"] * cos), slip + point * (load["P"] * cos + load["Q"] * sin)
+        return (
+            gap + self.point * (load["P"] * sin - load["Q"] * cos),
+            slip + self.point * (load["P"] * cos + load["Q"] * sin),
+        )
+
+    def _loads_of_bodies(
+        self, load: Mapping[str, float], cos: np.ndarray, sin: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same with other bodies: every load displaces the hole by a Fourier series."""
+        assert self.bodies is not None
+        moved = np.zeros(self.theta.size, dtype=complex)
+        for place, column in self.bodies.columns.items():
+            unit = self.beta if LOADS[place] in "PQ" else self.beta * self.problem.hole_radius
+            half = column.size // 2
+            for k in range(-half, half + 1):
+                moved += unit * load[LOADS[place]] * column[half + k] * np.exp(1j * k * self.theta)
+        gap = moved.real + self.point * (load["P"] * sin - load["Q"] * cos)
+        return gap, -moved.imag + self.point * (load["P"] * cos + load["Q"] * sin)
 
     def resultants(self, state: State) -> tuple[np.ndarray, float]:
         """P, Q and M/R of the tractions, (50) and (51), shape (3,); and the resultant of their sizes."""
@@ -147,13 +205,13 @@ class _Checked:
         cos, sin = np.cos(state.theta), np.sin(state.theta)
         radius = self.problem.hole_radius
         # Gap and slip from the first resting position of the pin. The place of that position is not known.
-        self.gap = self.problem.clearance - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
+        self.gap = self.problem.assembled_clearance - state.dx * cos - state.dy * sin + self.elastic[0] + self.loads[0]
         self.slip = radius * state.rotation + state.dy * cos - state.dx * sin + self.elastic[1] + self.loads[1]
         self.touches = bool(np.any(state.status != OPEN))
         least = LEAST_LENGTH if self.touches else 1.0
         self.length = max(
             *(float(np.abs(part).max()) for part in self.elastic), abs(state.dx), abs(state.dy),
-            radius * abs(state.rotation), least * abs(self.problem.clearance), 1e-300,
+            radius * abs(state.rotation), least * abs(self.problem.assembled_clearance), 1e-300,
         )  # fmt: skip
         self.peak = max(float(np.abs(state.pressure).max()), 1e-300)
 
@@ -185,9 +243,12 @@ class _Checked:
     def _hub_turn(self, shear_force: float) -> float:
         """Rotation that a hub of a given radius adds; the force is R int T."""
         problem, integrals = self.problem, self._integrals
-        if problem.hub_radius is None:
+        hub = problem.hub_radius
+        if hub is None and isinstance(problem.pin_body, Tube):
+            hub = problem.pin_body.bore_radius
+        if hub is None:
             return 0.0
-        factor = (problem.hole_radius / problem.hub_radius) ** 2 - (integrals.kappa_pin + 1.0)
+        factor = (problem.hole_radius / hub) ** 2 - (integrals.kappa_pin + 1.0)
         return factor * integrals.pin / (4.0 * math.pi) * shear_force / problem.hole_radius
 
     def _energy_error(self, size: float) -> float:
@@ -252,7 +313,7 @@ def _check_slips(checked: list[_Checked], found: list[dict[str, float]]) -> None
 
 def _may_lose_contact(before: State, after: State) -> bool:
     """Whether the pin may float between two states with clearance: no force acts, or the force passes through zero."""
-    if before.problem.clearance < 0.0:
+    if before.problem.assembled_clearance < 0.0:
         return False
     first, last = (np.array([state.load["P"], state.load["Q"]]) for state in (before, after))
     way = last - first

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
 from fastpin.model.materials import Material, MaterialPair
@@ -235,10 +236,62 @@ def wandering(rng: np.random.Generator, seed: int) -> RandomCase:
     return RandomCase(problem, LoadHistory(corners), _nodes(rng))
 
 
+def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
+    """Hollow pins, rings with all supports, bushings and plates with a reaction; clearance, neat and interference."""
+    del seed
+    pair = MaterialPair(
+        *(Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.49)) for _ in range(2)),
+        "strain" if rng.random() < 0.5 else "stress",
+    )
+    load_parameter = 10.0 ** rng.uniform(-3.0, 1.0)
+    load_parameter *= rng.choice([1.0, 1.0, 1.0, 0.0, -0.3])
+    hollow = rng.random() < 0.6
+    pin: PinBody = Disk()
+    if hollow:
+        pin = Tube(rng.uniform(0.05, 0.95), rng.choice(TUBE_LOADS).item())
+    plate = _plate_body(rng)
+    support = _support(rng)
+    if hollow:
+        hub = rng.uniform(pin.bore_radius, 1.0) if isinstance(pin, Tube) and "hub_radius" in support else None
+        support |= {"pin_load": "centre", "hub_radius": hub}
+    problem = Problem.from_load_parameter(
+        pair, load_parameter, _any_friction(rng), pin_body=pin, plate_body=plate, **support
+    )
+    lug = problem.joint.lug
+    held = isinstance(lug, Ring) and lug.held
+    stress = 0.0 if held or rng.random() < 0.6 else 0.5
+    corners = _extreme_loads(rng, problem, int(rng.integers(1, 7)), stress)
+    return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+def _plate_body(rng: np.random.Generator) -> PlateBody:
+    """A plate, with a reaction at a point in half of the cases, a ring, or a bush in either."""
+    chosen = rng.random()
+    if chosen < 0.2:
+        return _plate(rng, 1.0)
+    if chosen < 0.6:
+        return _ring(rng, 1.0)
+    outer = 1.0 + 10.0 ** rng.uniform(-1.5, 0.3)
+    inside = _plate(rng, outer) if rng.random() < 0.5 else _ring(rng, outer)
+    bush = Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.49))
+    return Bushing(bush, outer, rng.uniform(0.0, 0.1) if rng.random() < 0.3 else 0.0, inside=inside)
+
+
+def _plate(rng: np.random.Generator, hole: float) -> Plate:
+    if rng.random() < 0.5:
+        return Plate()
+    away, angle = hole * 10.0 ** rng.uniform(0.05, 1.0), rng.uniform(-math.pi, math.pi)
+    return Plate((away * math.cos(angle), away * math.sin(angle)))
+
+
+def _ring(rng: np.random.Generator, hole: float) -> Ring:
+    return Ring(hole * (1.0 + 10.0 ** rng.uniform(-1.3, 1.0)), rng.choice(SUPPORTS).item())
+
+
 GENERATORS: dict[str, Callable[[np.random.Generator, int], RandomCase]] = {
     function.__name__: function
     for function in (
-        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering,
+        general, extreme, remote, fits, fixed, moderate_stress, narrow, rough, scales, wandering, bodies,
     )
 }  # fmt: skip
 """The classes of random cases, by name."""
