@@ -25,11 +25,14 @@ Support = Literal["held", "uniform", "normal", "shear", "half", "body"]
 
 SUPPORTS = ("held", "uniform", "normal", "shear", "half", "body")
 
-THINNEST = 0.01
-"""Least wall of a tube, ring or bushing, in parts of the radius of its contact or outer rim.
+THINNEST = 0.04
+"""Least wall of a tube or ring, in parts of its larger radius.
 
-A thinner wall is a shell: it bends over several widths of its wall, and 600 harmonics do not describe it.
+A thinner wall is a shell: it bends 10,000 times as much as its surface yields, and contacts are lost between the nodes.
 """
+
+THINNEST_LAYER = 0.01
+"""Least wall of a bush, in parts of its outer radius. It is bonded and does not bend; a thinner one is a coating."""
 
 WIDEST = 1e6
 """Largest outer radius, in parts of the hole radius. A larger body is an infinite plate."""
@@ -211,11 +214,11 @@ def check_plate_body(body: PlateBody, radius: float) -> None:
     if isinstance(body, Plate):
         _check_reaction(body, radius)
     elif isinstance(body, Ring):
-        _check_outer(body.outer_radius, radius, "hole radius")
+        _check_outer(body.outer_radius, radius, "hole radius", THINNEST)
     elif isinstance(body, Bushing):
-        _check_outer(body.outer_radius, radius, "hole radius")
+        _check_outer(body.outer_radius, radius, "hole radius", THINNEST_LAYER)
         if isinstance(body.inside, Ring):
-            _check_outer(body.inside.outer_radius, body.outer_radius, "outer radius of the bush")
+            _check_outer(body.inside.outer_radius, body.outer_radius, "outer radius of the bush", THINNEST)
         else:
             _check_reaction(body.inside, body.outer_radius)
         if body.interference >= body.outer_radius:
@@ -227,8 +230,8 @@ def check_plate_body(body: PlateBody, radius: float) -> None:
         raise InputError("plate_body", "must be a Plate, a Ring, a Bushing or a Compliance")
 
 
-def _check_outer(outer: float, inner: float, name: str) -> None:
-    least, most = inner / (1.0 - THINNEST), WIDEST * inner
+def _check_outer(outer: float, inner: float, name: str, thinnest: float) -> None:
+    least, most = inner / (1.0 - thinnest), WIDEST * inner
     if not least <= outer <= most:
         raise InputError(
             "outer_radius", f"must lie between {least:g} and {most:g} for the {name} {inner:g}, not {outer:g}"
