@@ -83,12 +83,12 @@ class BodyTerms:
 
     def load_columns(self, theta: np.ndarray) -> dict[int, np.ndarray]:
         """Gap and slip, shape (2n,), per unit of each load with a column, at the angles `theta` (n,)."""
-        found = {}
-        for place, column in self.columns.items():
-            order = np.arange(column.size) - column.size // 2
-            v = np.exp(1j * np.multiply.outer(theta, order)) @ column
-            found[place] = np.r_[v.real, -v.imag]
-        return found
+        if not self.columns:
+            return {}
+        highest = max(column.size // 2 for column in self.columns.values())
+        padded = np.array([np.pad(column, highest - column.size // 2) for column in self.columns.values()])
+        moved = fourier.waves(theta, -highest, 2 * highest + 1) @ padded.T
+        return {place: np.r_[v.real, -v.imag] for place, v in zip(self.columns, moved.T, strict=True)}
 
 
 def basis(matrix: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:

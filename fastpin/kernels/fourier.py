@@ -16,6 +16,9 @@ import numpy as np
 SERIES_BELOW, SERIES_TERMS = 0.5, 12
 """Size of z below which the quotient is summed by its series, and the terms of the series."""
 
+FEW = 4
+"""Hats up to this number are summed in complex numbers: equally spaced nodes need one or two columns."""
+
 BLOCK = 256
 """Harmonics that are summed together. It bounds the memory of thin walls, which need thousands of them."""
 
@@ -60,28 +63,38 @@ def hat_columns(
     found = np.zeros((3, seen.size, nodes.size))
     for begin in range(0, coefficients.shape[1], BLOCK):
         part = coefficients[:, begin : begin + BLOCK]
-        order = np.arange(begin, begin + part.shape[1], dtype=float)
-        cos, sin = _waves(order, seen)
-        hats = hat_moments(order, h_left, h_right) * np.exp(-1j * np.multiply.outer(nodes, order))
-        both, turned = np.hstack([hats.real, hats.imag]).T, np.hstack([hats.imag, hats.real]).T
-        waves = np.hstack([cos, -sin])
-        found[0] += (waves * np.tile(part[0], 2)) @ both
-        found[1] += (waves * np.tile(part[1], 2)) @ both
-        found[2] += (np.hstack([cos, sin]) * np.tile(part[2], 2)) @ turned
+        seen_waves = waves(seen, begin, part.shape[1])
+        hats = _hats(begin, part.shape[1], nodes, h_left, h_right)
+        if nodes.size <= FEW:
+            sums = seen_waves @ (part[:, :, None] * hats.T).transpose(1, 0, 2).reshape(part.shape[1], -1)
+            sums = sums.reshape(seen.size, 3, nodes.size)
+            found[:2] += sums[:, :2].real.transpose(1, 0, 2)
+            found[2] += sums[:, 2].imag
+            continue
+        cosines = np.hstack([seen_waves.real, -seen_waves.imag])
+        both = np.hstack([hats.real, hats.imag]).T
+        found[0] += (cosines * np.tile(part[0], 2)) @ both
+        found[1] += (cosines * np.tile(part[1], 2)) @ both
+        sines = np.hstack([seen_waves.imag, seen_waves.real])
+        found[2] += (sines * np.tile(part[2], 2)) @ both
     return found
 
 
-def _waves(order: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    phase = np.multiply.outer(angles, order)
-    return np.cos(phase), np.sin(phase)
+def waves(angles: np.ndarray, begin: int, count: int) -> np.ndarray:
+    """exp(i n theta) at `angles` (m,) for n = begin to begin + count - 1, shape (m, count).
+
+    n = p q + r: the waves are products of those of p q and those of r, so that few exponentials are needed.
+    """
+    step = max(1, math.isqrt(count))
+    coarse = np.exp(np.multiply.outer(angles, 1j * np.arange(begin, begin + count, step)))
+    fine = np.exp(np.multiply.outer(angles, 1j * np.arange(step)))
+    return (coarse[:, :, None] * fine[:, None, :]).reshape(angles.size, -1)[:, :count]
 
 
-def hat_coefficients(
-    order: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray, values: np.ndarray
-) -> np.ndarray:
-    """int f exp(-i n xi) dxi of piecewise linear functions f, shape (m, ...), from their nodal `values` (k, ...)."""
-    hats = hat_moments(order, h_left, h_right) * np.exp(-1j * np.multiply.outer(nodes, order))
-    return np.tensordot(hats, values, axes=(0, 0))
+def _hats(begin: int, count: int, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> np.ndarray:
+    """Integrals of exp(-i n xi) over hats, shape (k, count)."""
+    order = np.arange(begin, begin + count, dtype=float)
+    return hat_moments(order, h_left, h_right) * np.conj(waves(nodes, begin, count))
 
 
 def product(
@@ -99,9 +112,7 @@ def product(
     found = np.zeros((2, seen.size))
     for begin in range(0, coefficients.shape[1], BLOCK):
         first, second, cross = coefficients[:, begin : begin + BLOCK]
-        order = np.arange(begin, begin + first.size, dtype=float)
-        pressure, shear = hat_coefficients(order, nodes, h_left, h_right, tractions.T).T
-        cos, sin = _waves(order, seen)
-        gap, slip = first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure
-        found += np.array([cos @ gap.real - sin @ gap.imag, cos @ slip.real - sin @ slip.imag])
+        pressure, shear = tractions @ _hats(begin, first.size, nodes, h_left, h_right)
+        sums = np.column_stack([first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure])
+        found += (waves(seen, begin, first.size) @ sums).real.T
     return found

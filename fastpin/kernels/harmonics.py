@@ -26,7 +26,7 @@ HELD, FREE = "held", "free"
 ETA = {"uniform": 0.0, "normal": 1.0, "half": 1.0, "shear": -1.0}
 """The ratio t_1/conj t_-1 on the other rim, by the name of the distribution of the force."""
 
-SMALLEST = 1e-18
+SMALLEST = 3e-17
 """Harmonics below this part of the first ones are left out."""
 
 FEWEST = 4
