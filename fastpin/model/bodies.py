@@ -18,12 +18,12 @@ from fastpin.model.materials import Material
 TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
 """Kinds of load in the bore of a hollow pin."""
 
-TUBE_LOADS = ("uniform", "normal", "shear", "held", "body")
+TUBE_LOADS: tuple[TubeLoad, ...] = ("uniform", "normal", "shear", "held", "body")
 
 Support = Literal["held", "uniform", "normal", "shear", "half", "body"]
 """Kinds of support of a ring's outer rim."""
 
-SUPPORTS = ("held", "uniform", "normal", "shear", "half", "body")
+SUPPORTS: tuple[Support, ...] = ("held", "uniform", "normal", "shear", "half", "body")
 
 THINNEST = 0.04
 """Least wall of a tube or ring, in parts of its larger radius.

@@ -1,4 +1,4 @@
-"""The figures of the paper and four more: find them, compute them, write them.
+"""The figures of the paper and others: find them, compute them, write them.
 
 Each figure is a file of this folder with
 
@@ -28,7 +28,7 @@ from fastpin.version import __version__
 PAPER = tuple(str(number) for number in range(3, 18))
 """Names of the figures of the paper (1 and 2 are sketches)."""
 
-BEYOND = ("memory", "sliding-onset", "half-plane", "rigid-pin")
+BEYOND = ("memory", "sliding-onset", "half-plane", "rigid-pin", "rings", "supports", "hollow-pins")
 """Names of the figures that the paper does not have."""
 
 NODES = 400

@@ -1,0 +1,58 @@
+"""Pressure and shear in ring lugs, from a wide ring to a narrow one, against the infinite plate. Beyond the paper.
+
+Solid pin with a body load; like bodies, nu = 0.3, plane strain. The outer rim is held above, free with a uniform
+traction below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from fastpin.figures.style import Line, line
+from fastpin.model.bodies import Plate, PlateBody, Ring, Support
+from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.tractions import Panel, chosen, traction_figure
+from fastpin.report.curves import Curve
+from fastpin.solver.solving import solve
+
+TITLE = "Ring lugs: tractions for outer radii from 1.5 R to an infinite plate; like bodies, L_p = 0.1, mu = 0.3"
+LEAST_NODES = 101
+PAIR = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
+LOAD_PARAMETER, FRICTION = 0.1, 0.3
+SUPPORTS: tuple[Support, ...] = ("held", "uniform")
+OUTER_RADII = (1.5, 2.0, 3.0, 4.0)
+INFINITE = "infinite plate"
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Tractions at P = F, one curve for the infinite plate, and one for each support and outer radius."""
+    cases: list[tuple[dict[str, Any], PlateBody]] = [({"support": INFINITE}, Plate())]
+    for support in SUPPORTS:
+        for outer in OUTER_RADII:
+            cases.append(({"support": support, "outer_radius": outer}, Ring(outer, support)))
+    curves = []
+    for parameters, body in steps(cases, progress):
+        problem = Problem.from_load_parameter(PAIR, LOAD_PARAMETER, FRICTION, "body", plate_body=body)
+        curves.append(traction_curve(solve(problem, [{"P": 1.0}], nodes=nodes)[-1], **parameters))
+    return curves
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """Draw pressure left, shear right; the held rim above, the uniform traction below."""
+    lines: dict[float, Line] = {outer: line(k, k) for k, outer in enumerate(OUTER_RADII)}
+    infinite = line(5, 0, 1.0)
+    plate = chosen(curves, support=INFINITE)
+    layout = []
+    for support, words in zip(SUPPORTS, ("rim held", "uniform traction on the rim"), strict=True):
+        shown = [*plate, *chosen(curves, support=support)]
+        layout.append([Panel("N", shown, f"pressure, {words}"), Panel("T", shown, f"shear traction, {words}")])
+    return traction_figure(
+        layout,
+        lambda curve: lines.get(curve.parameters.get("outer_radius", 0.0), infinite),
+        [*((f"outer radius {outer:g} R", style) for outer, style in lines.items()), (INFINITE, infinite)],
+    )
