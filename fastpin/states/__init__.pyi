@@ -1,4 +1,6 @@
+from .bush import BushFit as BushFit
 from .hoop import hoop_peak as hoop_peak
+from .joint import bush_fit as bush_fit
 from .joint import joint_displacement as joint_displacement
 from .load_cycle import LoadCycle as LoadCycle
 from .load_cycle import Loop as Loop

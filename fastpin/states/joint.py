@@ -1,4 +1,4 @@
-"""The displacement of the pin over the far side of the plate: the stretch of a joint."""
+"""The displacement of the pin over the far side of the plate, and the interface of a bush."""
 
 from __future__ import annotations
 
@@ -8,12 +8,17 @@ import numpy as np
 
 from fastpin.elasticity.bodies import basis, translation_rows
 from fastpin.errors import InputError
-from fastpin.model.bodies import Ring, Tube
+from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.checks import number
 from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOADS
+from fastpin.model.points import Points
 from fastpin.model.problem import LEAST_HUB, MOST_GAUGE, Problem
+from fastpin.states.bush import BushFit
 from fastpin.states.state import State
+
+AROUND = 1440
+"""Equally spaced angles of the interface of a bush. Its tractions are smooth: the contact is a wall away."""
 
 
 def joint_displacement(state: State, hub_radius: float | None, gauge_radius: float | None) -> dict[str, float]:
@@ -66,3 +71,16 @@ def _checked_gauge(problem: Problem, gauge_radius: float) -> float:
         raise InputError("gauge_radius", "a compliance knows the edge of the hole only: leave the gauge out")
     most = lug.outer_radius if isinstance(lug, Ring) else MOST_GAUGE * problem.hole_radius
     return number("gauge_radius", gauge_radius, problem.hole_radius, most)
+
+
+def bush_fit(state: State, friction: float | None) -> BushFit:
+    """The interface of the bush; see :meth:`fastpin.State.bush_fit`."""
+    body = state.problem.plate_body
+    if not isinstance(body, Bushing):
+        raise InputError("plate_body", "the plate has no bush: there is no interface")
+    if friction is not None:
+        friction = number("friction", friction, 0.0)
+    theta = -0.5 * math.pi + math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
+    stress = state.stress(Points.at_radius(body.outer_radius, theta), straight=True)
+    chosen = body.friction if friction is None else friction
+    return BushFit(theta, -stress.radial, stress.shear, state.problem.press_fit_pressure, chosen)

@@ -23,6 +23,7 @@ from fastpin.states.zones import Interval, runs
 
 if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
+    from fastpin.states.bush import BushFit
     from fastpin.states.stress import HoopPeak, Stress
 
 
@@ -381,6 +382,21 @@ class State:
             "ux": self.dx + own * force["Q"] - coupling * float(cos @ self.pressure - sin @ self.shear),
             "uy": self.dy - own * force["P"] - coupling * float(sin @ self.pressure + cos @ self.shear),
         }
+
+    def bush_fit(self, friction: float | None = None) -> BushFit:
+        """The tractions between bush and plate, and whether the press fit holds the bush.
+
+        Parameters
+        ----------
+        friction : float, optional
+            Coefficient of friction between bush and plate; by default the bush's own, if it has one.
+
+        Raises
+        ------
+        InputError
+            If the plate has no bush, or `friction` is negative.
+        """
+        return states.bush_fit(self, friction)
 
     def joint_displacement(
         self, hub_radius: float | None = None, gauge_radius: float | None = None
