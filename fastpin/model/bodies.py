@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, instance, number, positive
+from fastpin.model.checks import choice, instance, not_negative, number, positive
 from fastpin.model.compliance import Compliance
 from fastpin.model.materials import Material
 
@@ -151,7 +151,7 @@ class Bushing:
         Outer radius of the bush, m, more than the hole radius. The hole radius is the inner radius of the bush.
     interference : float
         Radial interference of the bush in the plate before it is pressed in, m, at least 0. The press fit makes the
-        clearance of the pin smaller.
+        clearance of the pin smaller. In a dimensionless problem the unit is F beta*, as of the clearance.
     inside : Plate or Ring
         The body round the bush.
     friction : float, optional
@@ -174,11 +174,11 @@ class Bushing:
         if self.material.is_rigid:
             raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
-        object.__setattr__(self, "interference", number("interference", self.interference, 0.0))
+        object.__setattr__(self, "interference", not_negative("interference", self.interference))
         if not isinstance(self.inside, (Plate, Ring)):
             raise InputError("inside", "must be a Plate or a Ring")
         if self.friction is not None:
-            object.__setattr__(self, "friction", number("friction", self.friction, 0.0))
+            object.__setattr__(self, "friction", not_negative("friction", self.friction))
 
 
 PinBody = Disk | Tube
@@ -203,8 +203,10 @@ def check_pin_body(body: PinBody, radius: float) -> None:
         )
 
 
-def check_plate_body(body: PlateBody, radius: float) -> None:
+def check_plate_body(body: PlateBody, radius: float, dimensionless: bool = False) -> None:
     """Check that a plate's body fits round a hole of this radius, m.
+
+    The interference of a bush is not checked in a `dimensionless` problem: it then counts in units of F beta*.
 
     Raises
     ------
@@ -221,7 +223,7 @@ def check_plate_body(body: PlateBody, radius: float) -> None:
             _check_outer(body.inside.outer_radius, body.outer_radius, "outer radius of the bush", THINNEST)
         else:
             _check_reaction(body.inside, body.outer_radius)
-        if body.interference >= body.outer_radius:
+        if not dimensionless and body.interference >= body.outer_radius:
             raise InputError(
                 "interference",
                 f"must be smaller than the outer radius {body.outer_radius:g} of the bush, not {body.interference:g}",

@@ -61,6 +61,14 @@ def negative(field: str, value: object) -> float:
     return converted
 
 
+def not_negative(field: str, value: object) -> float:
+    """Check a finite number of at least 0, and return it as a float."""
+    converted = number(field, value)
+    if converted < 0.0:
+        raise InputError(field, f"must not be negative, not {converted:g}")
+    return converted
+
+
 def whole_number(field: str, value: object, least: int, most: int | None = None) -> int:
     """Check a whole number from `least` to `most`. No `most` means no upper limit."""
     if not is_whole(value) or value < least or (most is not None and value > most):  # type: ignore[operator]

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model.bodies import Ring
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -28,8 +29,9 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
+from fastpin.model.compliance import Compliance
 from fastpin.model.history_csv import read_corners
-from fastpin.model.loads import LOAD_KIND, LOADS, Corner, check_corner, load_index
+from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem
 
 POINTS = 24
@@ -469,6 +471,7 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
             if (given := column[~np.isnan(column)]).size:
                 largest = float(given[np.argmax(np.abs(given))])
                 number(name, largest, -MOST_LOAD * natural[kind], MOST_LOAD * natural[kind])
+    _check_remote(problem, history)
     moments = [block.given[:, LOADS.index("M")] for block in history.blocks]
     rotations = [block.given[:, LOADS.index("rotation")] for block in history.blocks]
     if problem.pin_load == "body" and any(np.any(np.nan_to_num(moment) != 0.0) for moment in moments):
@@ -492,6 +495,22 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
             raise InputError(force, f'the force is a reaction where drive = "{problem.drive}"; give {displacement}')
         words = f'a displacement can be prescribed only where drive = "{displacement}" or "both"; give {force}'
         raise InputError(displacement, words)
+
+
+def _check_remote(problem: Problem, history: LoadHistory) -> None:
+    """Raise :class:`InputError` if a remote stress other than 0 can't act on the plate's body."""
+    body = problem.joint.lug
+    for place in REMOTE:
+        name = LOADS[place]
+        if all(np.all(np.nan_to_num(block.given[:, place]) == 0.0) for block in history.blocks):
+            continue
+        if isinstance(body, Ring) and body.held:
+            raise InputError(
+                name, 'a held rim leaves no remote stress; leave it out, or choose another support, such as "uniform"'
+            )
+        if isinstance(body, Compliance) and name not in body.columns:
+            known = ", ".join(body.columns) or "none"
+            raise InputError(name, f"the compliance of the plate has no column of this load; its columns are: {known}")
 
 
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:

@@ -191,10 +191,7 @@ class MaterialPair:
             instance(field, body, Material, "a Material")
         if self.pin.is_rigid and self.plate.is_rigid:
             raise InputError("plate", "pin and plate can't both be rigid")
-        moduli = sorted((self.pin.E, self.plate.E))
-        if math.isfinite(moduli[1]) and moduli[1] > MOST_RATIO * moduli[0]:
-            allowed = f"must not differ by more than a factor {MOST_RATIO:g}; such a stiff body is rigid"
-            raise InputError("plate", f"the moduli of pin and plate {allowed}, not {moduli[0]:g} and {moduli[1]:g}")
+        check_moduli("plate", "pin and plate", self.pin, self.plate)
 
     def __repr__(self) -> str:
         return f"{self.pin!r} in {self.plate!r}, plane {self.plane}"
@@ -323,6 +320,17 @@ class MaterialPair:
         plate = (self.plate_kolosov + 1.0) * self.plate_compliance
         pin = (self.pin_kolosov + 1.0) * self.pin_compliance
         return sign * (plate - pin) / (plate + pin), sign * 0.5 * self.alpha_star / self.beta_star
+
+
+def check_moduli(field: str, names: str, first: Material, second: Material) -> None:
+    """Check that the moduli of two bodies in contact differ by at most :data:`MOST_RATIO`, unless one is rigid.
+
+    `names` are the two bodies in the message. :class:`InputError` is raised with this `field`.
+    """
+    moduli = sorted((first.E, second.E))
+    if math.isfinite(moduli[1]) and moduli[1] > MOST_RATIO * moduli[0]:
+        allowed = f"must not differ by more than a factor {MOST_RATIO:g}; such a stiff body is rigid"
+        raise InputError(field, f"the moduli of {names} {allowed}, not {moduli[0]:g} and {moduli[1]:g}")
 
 
 def _from_compliance(inverse_g: float, nu: float) -> Material:

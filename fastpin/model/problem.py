@@ -9,10 +9,10 @@ from typing import Literal
 
 from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube, check_pin_body, check_plate_body
-from fastpin.model.checks import as_toml, choice, instance, number, true_or_false
+from fastpin.model.checks import as_toml, choice, instance, not_negative, number, true_or_false
 from fastpin.model.compliance import Compliance
 from fastpin.model.joint import Joint, PinLoad
-from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
+from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair, check_moduli
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -122,9 +122,7 @@ class Problem:
             number("clearance", clearance, -MOST_PARAMETER, MOST_PARAMETER)
         elif abs(clearance) >= radius:
             raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
-        friction = number("friction", self.friction)
-        if friction < 0.0:
-            raise InputError("friction", f"must not be negative, not {friction:g}")
+        friction = not_negative("friction", self.friction)
         number("friction", friction, 0.0, MOST_FRICTION)
         self._check_bodies(radius)
         object.__setattr__(self, "hole_radius", radius)
@@ -152,11 +150,12 @@ class Problem:
     def _check_bodies(self, radius: float) -> None:
         """Check pin and plate body. `radius` is the radius of the hole."""
         check_pin_body(self.pin_body, radius)
-        check_plate_body(self.plate_body, radius)
+        check_plate_body(self.plate_body, radius, self.dimensionless)
         if isinstance(self.pin_body, Tube) and self.pin_load == "body":
             raise InputError("pin_load", 'the load of a hollow pin is a field of its body: load = "body" of the tube')
         if isinstance(self.plate_body, Bushing):
-            self.surfaces  # noqa: B018 - the pair of pin and bush checks the ratio of their moduli
+            check_bush(self.pair, self.plate_body)
+            number("interference", self.plate_body.interference, 0.0, MOST_PARAMETER)
         elif isinstance(self.plate_body, Compliance):
             self._check_compliance(self.plate_body, radius)
 
@@ -267,6 +266,7 @@ class Problem:
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
         if isinstance(plate_body, Bushing):
+            check_bush(pair, plate_body)
             factor = MaterialPair(pair.pin, plate_body.material, pair.plane).beta_star
             plate_body = replace(plate_body, material=plate_body.material.scaled(factor))
             pair = pair.scaled(pair.beta_star / factor)
@@ -374,3 +374,8 @@ class Problem:
         if self.hub_stiffness is None:
             return 0.0
         return self.hole_radius**2 / (self.hub_stiffness * self.surfaces.beta_star)
+
+
+def check_bush(pair: MaterialPair, bush: Bushing) -> None:
+    """Raise :class:`InputError` if the moduli of pin and bush are too different for one contact."""
+    check_moduli("material", "pin and bush", pair.pin, bush.material)

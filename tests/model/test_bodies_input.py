@@ -1,0 +1,149 @@
+"""Loads and fields that a problem with other bodies allows, and the sentences for the others."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Plate, Ring, Tube
+from fastpin.model.case import check_arc
+from fastpin.model.compliance import Compliance
+from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+
+PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+BRONZE = Material(110e9, 0.34, "bronze")
+SOFT = Material(1e-20, 0.3)  # softer than steel by more than any two moduli may differ
+HELD, FREE = Ring(0.02), Ring(0.02, "uniform")
+
+
+def compliance(**given: Any) -> Compliance:
+    """A small plate by hand: nothing but a softer hole and a column of sxx."""
+    matrix = np.zeros((18, 18))
+    matrix[0, 0] = 0.25
+    fields = {"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix, "columns": {"sxx": np.ones(18)}}
+    return Compliance(**fields | given)
+
+
+def problem(**given: Any) -> Problem:
+    return Problem(PAIR, 0.01, 2e-5, 0.3, **given)
+
+
+@pytest.mark.parametrize("body", [Plate(), FREE, Bushing(BRONZE, 0.0125), Bushing(BRONZE, 0.0125, inside=FREE)])
+@pytest.mark.parametrize("name", ["sxx", "syy", "sxy"])
+def test_remote_stress_acts_on_plates_and_rings_that_are_not_held(body, name):
+    check_loads(problem(plate_body=body), LoadHistory([{name: 1e6}]))
+
+
+@pytest.mark.parametrize("body", [HELD, Bushing(BRONZE, 0.0125, inside=HELD)])
+@pytest.mark.parametrize("name", ["sxx", "syy", "sxy"])
+def test_a_held_rim_takes_no_remote_stress(body, name):
+    check_loads(problem(plate_body=body), LoadHistory([{"P": 1e6, name: 0.0}]))
+    with pytest.raises(InputError, match="a held rim leaves no remote stress") as raised:
+        check_loads(problem(plate_body=body), LoadHistory([{"P": 1e6}, {name: 1e6}]))
+    assert raised.value.field == name
+
+
+def test_a_compliance_takes_the_loads_of_its_columns():
+    check_loads(problem(plate_body=compliance()), LoadHistory([{"sxx": 1e6, "syy": 0.0, "M": 10.0}]))
+    with pytest.raises(InputError, match="no column of this load; its columns are: sxx") as raised:
+        check_loads(problem(plate_body=compliance()), LoadHistory([{"syy": 1e6}]))
+    assert raised.value.field == "syy"
+    with pytest.raises(InputError, match="its columns are: none"):
+        check_loads(problem(plate_body=compliance(columns={})), LoadHistory([{"sxy": 1e6}]))
+
+
+@pytest.mark.parametrize("load", ["uniform", "body", "held"])
+@pytest.mark.parametrize("rotation", ["free", "fixed", "spring"])
+def test_a_hollow_pin_carries_a_moment_and_may_be_held(load, rotation):
+    spring = {"hub_stiffness": 1e6} if rotation == "spring" else {}
+    hollow = problem(pin_body=Tube(0.005, load), rotation=rotation, **spring)
+    check_loads(hollow, LoadHistory([{"M": 10.0} if rotation == "free" else {"rotation": 1e-4}]))
+
+
+@pytest.mark.parametrize(
+    ("given", "field", "words"),
+    [
+        ({"pin_body": Tube(0.011)}, "bore_radius", "must be at most 0.0099, 0.99 of the hole radius, not 0.011"),
+        ({"pin_body": Tube(0.00995)}, "bore_radius", "must be at most 0.0099"),
+        ({"pin_body": Tube(0.005), "pin_load": "body"}, "pin_load", 'load = "body" of the tube'),
+        ({"pin_body": Tube(0.005), "rotation": "fixed", "hub_radius": 0.004}, "hub_radius", "bore radius 0.005"),
+        ({"pin_body": Ring(0.02)}, "pin_body", "must be a Disk or a Tube"),
+        ({"plate_body": Ring(0.009)}, "outer_radius", "must lie between 0.010101 and 10000 for the hole radius 0.01"),
+        ({"plate_body": Ring(0.01005)}, "outer_radius", "must lie between 0.010101"),
+        ({"plate_body": Tube(0.005)}, "plate_body", "must be a Plate, a Ring, a Bushing or a Compliance"),
+        ({"plate_body": Plate((0.005, 0.0))}, "reaction", "must be a point from 0.0105"),
+        ({"plate_body": HELD, "drive": "ux", "gauge_radius": 0.03}, "gauge_radius", "at most the outer radius 0.02"),
+        ({"plate_body": compliance(nu=0.3)}, "plate_body", "nu = 0.3, plane strain; the plate has nu = 0.33"),
+        ({"plate_body": compliance(plane="stress")}, "plate_body", "plane stress; the plate has nu = 0.33, plane str"),
+        ({"plate_body": compliance(hole_radius=0.02)}, "plate_body", "a hole of radius 0.02; the hole radius is 0.01"),
+        ({"plate_body": Bushing(BRONZE, 0.0125, 0.02)}, "interference", "smaller than the outer radius 0.0125"),
+        (
+            {"plate_body": Bushing(BRONZE, 0.0125, inside=Ring(0.012))},
+            "outer_radius",
+            "outer radius of the bush 0.0125",
+        ),
+        (
+            {"plate_body": Bushing(SOFT, 0.0125)},
+            "material",
+            "the moduli of pin and bush must not differ",
+        ),
+    ],
+)
+def test_bodies_that_do_not_fit_are_refused_in_one_sentence(given, field, words):
+    with pytest.raises(InputError, match=words) as raised:
+        problem(**given)
+    assert raised.value.field == field
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert (again.field, again.reason) == (raised.value.field, raised.value.reason)
+
+
+@pytest.mark.parametrize(
+    ("make", "field", "words"),
+    [
+        (lambda: Bushing(BRONZE, 0.0125, -1e-6), "interference", "must not be negative, not -1e-06"),
+        (lambda: Bushing(BRONZE, 0.0125, friction=-0.1), "friction", "must not be negative, not -0.1"),
+        (lambda: Bushing(Material.rigid(), 0.0125), "material", "a rigid bush is a rigid plate"),
+        (lambda: Bushing(BRONZE, math.nan), "outer_radius", "must be a finite number"),
+        (lambda: Ring(0.02, "clamped"), "support", '"held" or "uniform"'),
+        (lambda: Tube(0.005, "centre"), "load", '"uniform" or "normal"'),
+        (lambda: Plate((1.0,)), "reaction", "must be a point"),
+        (lambda: Plate((1.0, math.nan)), "reaction", "must be a finite number"),
+    ],
+)
+def test_bad_fields_of_bodies_are_refused_in_one_sentence(make, field, words):
+    with pytest.raises(InputError, match=words) as raised:
+        make()
+    assert raised.value.field == field
+
+
+def test_the_interference_of_a_dimensionless_bush_may_be_larger_than_its_radius():
+    bush = Bushing(BRONZE, 1.25, interference=3.0)
+    found = Problem.from_load_parameter(PAIR, 5.0, 0.3, plate_body=bush)
+    assert found.plate_body.interference == 3.0
+    assert found.assembled_clearance < found.clearance
+    with pytest.raises(InputError, match="the moduli of pin and bush"):
+        Problem.from_load_parameter(PAIR, 5.0, 0.3, plate_body=Bushing(SOFT, 1.25))
+
+
+def test_a_press_fit_that_closes_the_gap_needs_the_whole_circle():
+    pressed = problem(plate_body=Bushing(BRONZE, 0.0125, 5e-5))
+    assert pressed.clearance > 0.0 > pressed.assembled_clearance
+    with pytest.raises(InputError, match="an interference fit is in contact all round") as raised:
+        check_arc(pressed, SolveOptions(arc=(-3.0, 0.0)))
+    assert raised.value.field == "arc"
+
+
+def test_a_problem_says_its_bodies():
+    bodies = problem(pin_body=Tube(0.005), plate_body=Bushing(BRONZE, 0.0125, inside=FREE))
+    assert "Tube(bore_radius=0.005, load='uniform')" in repr(bodies)
+    assert "Bushing(" in repr(bodies)
+    assert "Ring(outer_radius=0.02, support='uniform')" in repr(bodies)
+    assert "Tube" not in repr(problem())
