@@ -8,21 +8,22 @@ harmless one, so that the rest is still checked.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
+from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
+from fastpin.casefile.materials import DUNDURS_KEYS, MATERIAL_KEYS, read_pair
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import Case, check_arc, check_keep
-from fastpin.model.checks import as_toml, choice, closest, file_path, number, string, true_or_false
-from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.checks import closest, file_path, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 
@@ -32,12 +33,10 @@ EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 MOST_BYTES = 100_000_000
 """Most bytes of a case file or a plan."""
 
-_MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue")
-_FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
 KEYS: dict[str, tuple[str, ...]] = {
-    "pin": _MATERIAL_KEYS,
-    "plate": _MATERIAL_KEYS,
-    "dundurs": ("alpha", "beta", "nu_pin", "convention", "beta_star"),
+    "pin": MATERIAL_KEYS,
+    "plate": MATERIAL_KEYS,
+    "dundurs": DUNDURS_KEYS,
     "contact": (
         "plane",
         "hole_radius",
@@ -51,6 +50,7 @@ KEYS: dict[str, tuple[str, ...]] = {
         "drive",
         "gauge_radius",
     ),
+    **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
     "solve": tuple(field.name for field in fields(SolveOptions)),
@@ -58,8 +58,6 @@ KEYS: dict[str, tuple[str, ...]] = {
 """Sections of a case file and their keys."""
 
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
-
-T = TypeVar("T")
 
 
 def builtin_case() -> Case:
@@ -73,7 +71,7 @@ def read_case(path: str | Path) -> Case:
     Parameters
     ----------
     path : str or Path
-        The case file. Relative paths of CSV files start in its folder.
+        The case file. Relative paths of CSV files and compliances start in its folder.
 
     Raises
     ------
@@ -119,7 +117,7 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     name : str
         Name of the file in error messages.
     folder : str or Path
-        Folder in which relative paths of CSV files start.
+        Folder in which relative paths of files start.
 
     Raises
     ------
@@ -147,7 +145,7 @@ def case_from(
     source : CaseText
         The text. If it has faults afterwards, the returned case has no meaning.
     folder : Path
-        Folder in which relative paths of CSV files start.
+        Folder in which relative paths of files start.
     read : callable
         Reads the load history.
 
@@ -158,8 +156,7 @@ def case_from(
     """
     _check_keys(source)
     title = source.root.checked("title", string) or ""
-    pair = _pair(source, source.section("contact"))
-    problem = _problem(source.section("contact", required=True), pair or _STEEL)
+    problem = _problem(source, folder, read_pair(source))
     history = read(source, folder)
     options = _options(source.section("solve"))
     if problem is not None and history is not None:
@@ -177,25 +174,6 @@ def _check_together(source: CaseText, check: Callable[[], None]) -> None:
         check()
     except InputError as error:
         source.report(str(error), "solve", error.field)
-
-
-def _built(
-    section: Section, make: Callable[..., T], values: Mapping[str, Any], harmless: Mapping[str, Any]
-) -> T | None:
-    """Call ``make(**values)`` and report every wrong value.
-
-    Missing and wrong values are replaced by the `harmless` ones. None if a wrong value has no harmless replacement.
-    """
-    values = {key: harmless.get(key) if value is None else value for key, value in values.items()}
-    left = dict(harmless)
-    while True:
-        try:
-            return make(**values)
-        except InputError as error:
-            section.report(str(error), error.field)
-            if error.field not in left:
-                return None
-            values[error.field] = left.pop(error.field)
 
 
 def _check_keys(source: CaseText) -> None:
@@ -227,105 +205,11 @@ def _in_brackets(section: str) -> str:
     return "[[load]]" if section == "load" else f"[{section}]"
 
 
-def _pair(source: CaseText, contact: Section) -> MaterialPair | None:
-    plane = contact.choice("plane", ("strain", "stress")) or "strain"
-    if "dundurs" in source.root:
-        for name in ("pin", "plate"):
-            if name in source.root:
-                source.report(f"[{name}]: give either [dundurs] or [pin] and [plate]", name)
-        return _dundurs(source.section("dundurs"), contact, plane)
-    pin, plate = (_material(source, name) for name in ("pin", "plate"))
-    if pin is None or plate is None:
-        return None
-    return _built(source.root, MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})
-
-
-def _material(source: CaseText, name: str) -> Material | None:
-    """The material of a body, with its fatigue constants. They replace the constants of a named material."""
-    section = source.section(name, required=True)
-    material, fatigue = _elastic(section), _fatigue(source, section)
-    if material is None or fatigue is None:
-        return material
-    return replace(material, fatigue=fatigue)
-
-
-def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
-    """The fatigue constants of a body; None if there are none, or they are wrong (reported)."""
-    table = section.value("fatigue")
-    if table is None:
-        return None
-    if section.value("rigid") is True:
-        section.report(f"[{section.name}]: fatigue can't be given together with rigid", "fatigue")
-        return None
-    if "load_parameter" in source.section("contact"):
-        section.report("fatigue: has no meaning with load_parameter, for the stresses have no unit", "fatigue")
-        return None
-    if not isinstance(table, dict):
-        section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
-        return None
-    inner = Section(source, (section.name, "fatigue"), table)
-    for key in table:
-        if key not in _FATIGUE_KEYS:
-            hint = closest(key, _FATIGUE_KEYS) or f"; the keys are {', '.join(_FATIGUE_KEYS)}"
-            inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
-    given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
-    return _built(inner, FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
-
-
-def _elastic(section: Section) -> Material | None:
-    if not section.present:
-        return None
-    rigid = section.checked("rigid", true_or_false)
-    values = {"E": section.checked("E", _modulus), "nu": section.number("nu")}
-    chosen = "material" if "material" in section else "rigid" if rigid else None
-    if chosen is not None:
-        others = ("E", "nu", "rigid") if rigid and chosen == "material" else ("E", "nu")
-        for other in others:
-            if other in section:
-                section.report(f"[{section.name}]: {other} can't be given together with {chosen}", other)
-        if chosen == "rigid":
-            return Material.rigid()
-        return MATERIALS.get(section.checked("material", choice, tuple(MATERIALS)) or "")
-    if "E" not in section and "nu" not in section:
-        if rigid is not None or "rigid" not in section:
-            section.report(f"[{section.name}]: needs material, or E and nu, or rigid = true")
-        return None
-    section.require("E")
-    section.require("nu")
-    return _built(section, Material, values, {"E": 1.0, "nu": 0.3})
-
-
-def _modulus(name: str, value: object) -> float:
-    if value == math.inf:
-        raise InputError(name, "must be a finite number, not inf; for a rigid body write rigid = true")
-    return number(name, value)
-
-
-def _dundurs(section: Section, contact: Section, plane: str) -> MaterialPair | None:
-    if not section.present:
-        return None
-    convention = section.choice("convention", ("usual", "paper"))
-    values = {
-        "alpha": section.checked("alpha", number, -1.0, 1.0),
-        "beta": section.number("beta"),
-        "nu_pin": section.checked("nu_pin", number, 0.0, 0.5),
-    }
-    for key in values:
-        section.require(key)
-    if "load_parameter" in contact:
-        if "beta_star" in section:
-            section.report("beta_star: has no meaning with load_parameter, which counts in units of it", "beta_star")
-    elif "hole_radius" in contact or "clearance" in contact:
-        section.require("beta_star", " (the scale of the moduli; with load_parameter none is needed)")
-        values["beta_star"] = section.number("beta_star")
-    if convention is None or None in values.values():
-        return None
-    return _built(section, MaterialPair.from_dundurs, {**values, "plane": plane, "convention": convention}, {})
-
-
-def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
+def _problem(source: CaseText, folder: Path, given: MaterialPair | None) -> Problem | None:
     """The problem. None if [contact] is missing, or pin_load, rotation or drive is wrong: the loads depend on them."""
+    contact, pair = source.section("contact", required=True), given or _STEEL
     if not contact.present:
+        read_bodies(source, folder, None, given)
         return None
     make: Callable[..., Problem] = Problem
     needed = ["hole_radius", "clearance", "friction"]
@@ -346,7 +230,9 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
-        radius, hub = MOST_RADIUS, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
+        radius, hub = None, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
+    values |= read_bodies(source, folder, radius, given)
+    radius = radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     held = None not in (pin_load, rotation, drive)
     if held:
@@ -359,8 +245,11 @@ def _problem(contact: Section, pair: MaterialPair) -> Problem | None:
         "hub_radius": None,
         "hub_stiffness": unit if rotation == "spring" else None,
         "gauge_radius": None,
+        "plate_body": Plate(),
     }
-    problem = _built(contact, make, values, harmless)
+    if isinstance(values["pin_body"], Tube):
+        harmless["pin_load"] = "centre"
+    problem = contact.build(make, values, harmless, {"plate_body": (source.section("plate_body"), "file")})
     return problem if held else None
 
 
@@ -369,4 +258,4 @@ def _options(section: Section) -> SolveOptions:
     harmless = SolveOptions().keywords()
     if "increments" in given:
         harmless["method"] = "increment"  # replaces a wrong method, so that its increments are not reported as well
-    return _built(section, SolveOptions, given, harmless) or SolveOptions()
+    return section.build(SolveOptions, given, harmless) or SolveOptions()

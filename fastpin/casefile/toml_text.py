@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from fastpin.errors import InputError
@@ -181,6 +181,30 @@ class Section:
     def choice(self, key: str, allowed: tuple[str, ...]) -> str | None:
         """One of the words `allowed`. The first one if the key is missing; None if the word is wrong (reported)."""
         return self.checked(key, choice, allowed) if key in self else allowed[0]
+
+    def build(
+        self,
+        make: Callable[..., T],
+        values: Mapping[str, Any],
+        harmless: Mapping[str, Any],
+        elsewhere: Mapping[str, tuple[Section, str]] | None = None,
+    ) -> T | None:
+        """Call ``make(**values)`` and report every wrong value.
+
+        Missing and wrong values are replaced by the `harmless` ones. None if a wrong value has no harmless replacement.
+        The values of `elsewhere` stand in another section, under another key.
+        """
+        values = {key: harmless.get(key) if value is None else value for key, value in values.items()}
+        left = dict(harmless)
+        while True:
+            try:
+                return make(**values)
+            except InputError as error:
+                section, key = (elsewhere or {}).get(error.field, (self, error.field))
+                section.report(f"{key}: {error.reason}", key)
+                if error.field not in left:
+                    return None
+                values[error.field] = left.pop(error.field)
 
 
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""

@@ -7,8 +7,9 @@ or in units of R for a dimensionless problem. docs/bodies.md explains the choice
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, not_negative, number, positive
@@ -183,6 +184,24 @@ class Bushing:
 
 PinBody = Disk | Tube
 PlateBody = Plate | Ring | Bushing | Compliance
+
+
+def body_document(body: PinBody | PlateBody, material: Callable[[Material], Any]) -> dict[str, Any]:
+    """Return a body as a JSON-ready dict: its kind, and its fields by name.
+
+    `material` turns the material of a bush into its entry. A compliance enters by the SHA-256 of its numbers.
+    """
+    if isinstance(body, Compliance):
+        return {"kind": "compliance", "sha256": body.digest}
+    found: dict[str, Any] = {"kind": type(body).__name__.lower()}
+    for each in fields(body):
+        value = getattr(body, each.name)
+        if isinstance(value, Material):
+            value = material(value)
+        elif isinstance(value, (Plate, Ring)):
+            value = body_document(value, material)
+        found[each.name] = list(value) if isinstance(value, tuple) else value
+    return found
 
 
 def check_pin_body(body: PinBody, radius: float) -> None:

@@ -13,11 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.model.bodies import Disk, Plate, body_document
 from fastpin.model.case import Case
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
 from fastpin.version import __version__
 
 FIRST_LOADS = 6
@@ -49,6 +51,7 @@ def canonical(case: Case) -> dict[str, Any]:
         "rotation": problem.rotation,
         "hub_radius": problem.hub_radius,
         **{name: value for name in _LATER_FIELDS if (value := getattr(problem, name)) not in (None, "force")},
+        **_bodies(problem),
         "dimensionless": problem.dimensionless,
         "loads": _loads(case.history),
         "solve": _options(case.options),
@@ -75,6 +78,24 @@ def _material(material: Material) -> dict[str, Any]:
     constants = {} if material.fatigue is None else material.fatigue.given()
     constants.pop("source", None)
     return {**elastic, "fatigue": constants} if constants else elastic
+
+
+def _bodies(problem: Problem) -> dict[str, Any]:
+    """Return the bodies of a problem. A solid pin and an infinite plate are left out, so that older ids stay.
+
+    The friction of a bush changes no state, and enters like fatigue constants: a result says whether the bush slips.
+    """
+    given = {"pin_body": (problem.pin_body, Disk()), "plate_body": (problem.plate_body, Plate())}
+    found = {name: body_document(body, _material) for name, (body, plain) in given.items() if body != plain}
+    return {name: _without_negative_zero(entry) for name, entry in found.items()}
+
+
+def _without_negative_zero(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _without_negative_zero(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_without_negative_zero(item) for item in value]
+    return _number(value) if isinstance(value, float) else value
 
 
 def _loads(history: LoadHistory) -> dict[str, Any]:

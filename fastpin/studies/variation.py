@@ -1,7 +1,8 @@
 """Variation of a case: set fields, ``section.key``, in the tables of a case file.
 
 A case file has several ways to give some inputs. A varied field then replaces the other ways. A named material replaces
-moduli, Dundurs' parameters replace two materials, a CSV file replaces load blocks; and the other way round.
+moduli, Dundurs' parameters replace two materials, a CSV file replaces load blocks; and the other way round. A kind of
+body replaces the keys of other kinds.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.bodies import BODY_KINDS, Kinds, keys_of
 from fastpin.casefile.loads import read_history
 from fastpin.casefile.reader import case_from
 from fastpin.casefile.toml_text import CaseText
@@ -31,7 +33,7 @@ class BaseCase:
     name : str
         Name of the case in messages.
     folder : Path
-        Folder of the CSV files with relative paths.
+        Folder of the CSV files and compliances with relative paths.
 
     Raises
     ------
@@ -74,8 +76,10 @@ _REPLACED: dict[str, tuple[str, ...]] = {
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
     "rigid": ("material", "E", "nu", "fatigue"),
+    "ring_outer_radius": ("reaction",),
+    "reaction": ("ring_outer_radius", "support"),
 }
-"""Keys of the base case that each key of [pin] and [plate] replaces, in the same section."""
+"""Keys of the base case that each key of the sections of bodies and their materials replaces, in the same section."""
 
 _REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("pin", "plate")}
 """Sections of the base case that each section replaces."""
@@ -145,7 +149,11 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
     elif section == "load" and isinstance(tables.get("history"), dict):
         tables["history"].pop("csv", None)
     body = tables.get(section)
-    if section not in ("pin", "plate") or not isinstance(body, dict) or (key == "rigid" and value is not True):
+    if not isinstance(body, dict):
+        return
+    if section in BODY_KINDS:
+        _drop_other_kinds(body, BODY_KINDS[section], key, value)
+    if section not in ("pin", "plate", "plate_body") or (key == "rigid" and value is not True):
         return
     material_name = body.get("material")
     if key in ("E", "nu") and isinstance(material_name, str) and material_name in MATERIALS:
@@ -156,3 +164,18 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
             body.setdefault("fatigue", material.fatigue.given())
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
+
+
+def _drop_other_kinds(body: dict[str, Any], kinds: Kinds, key: str, value: Any) -> None:
+    """Remove the keys of other kinds of body than a varied kind.
+
+    The file of a compliance replaces all other keys of a body, and any other key replaces the file.
+    """
+    kind = value if key == "kind" else "compliance" if key == "file" else None
+    if kind is None and "file" in body and key in keys_of(kinds):
+        del body["file"]
+        body.pop("kind", None)
+    if isinstance(kind, str) and kind in kinds:
+        body.pop("kind", None)
+        for other in set(body) & set(keys_of(kinds)) - set(kinds[kind]):
+            del body[other]

@@ -1,0 +1,122 @@
+"""The materials of a case file: [pin] and [plate], or [dundurs]."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, choice, closest, number, true_or_false
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue")
+"""Keys of the material of a body."""
+
+DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
+"""Keys of [dundurs]."""
+
+_FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
+
+
+def read_pair(source: CaseText) -> MaterialPair | None:
+    """The materials of pin and plate. None if they can't be used. The reason is reported."""
+    contact = source.section("contact")
+    plane = contact.choice("plane", ("strain", "stress")) or "strain"
+    if "dundurs" in source.root:
+        for name in ("pin", "plate"):
+            if name in source.root:
+                source.report(f"[{name}]: give either [dundurs] or [pin] and [plate]", name)
+        return _dundurs(source.section("dundurs"), contact, plane)
+    pin, plate = (read_material(source, source.section(name, required=True)) for name in ("pin", "plate"))
+    if pin is None or plate is None:
+        return None
+    return source.root.build(MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})
+
+
+def read_material(source: CaseText, section: Section, may_be_rigid: bool = True) -> Material | None:
+    """The material of a body, with its fatigue constants. They replace the constants of a named material.
+
+    None if it can't be used. The reason is reported.
+    """
+    material, fatigue = _elastic(section, may_be_rigid), _fatigue(source, section)
+    if material is None or fatigue is None:
+        return material
+    return replace(material, fatigue=fatigue)
+
+
+def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
+    """The fatigue constants of a body; None if there are none, or they are wrong (reported)."""
+    table = section.value("fatigue")
+    if table is None:
+        return None
+    if section.value("rigid") is True:
+        section.report(f"[{section.name}]: fatigue can't be given together with rigid", "fatigue")
+        return None
+    if "load_parameter" in source.section("contact"):
+        section.report("fatigue: has no meaning with load_parameter, for the stresses have no unit", "fatigue")
+        return None
+    if not isinstance(table, dict):
+        section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
+        return None
+    inner = Section(source, (section.name, "fatigue"), table)
+    for key in table:
+        if key not in _FATIGUE_KEYS:
+            hint = closest(key, _FATIGUE_KEYS) or f"; the keys are {', '.join(_FATIGUE_KEYS)}"
+            inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
+    given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
+    return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
+
+
+def _elastic(section: Section, may_be_rigid: bool) -> Material | None:
+    if not section.present:
+        return None
+    rigid = section.checked("rigid", true_or_false)
+    values = {"E": section.checked("E", _modulus if may_be_rigid else number), "nu": section.number("nu")}
+    chosen = "material" if "material" in section else "rigid" if rigid else None
+    if chosen is not None:
+        others = ("E", "nu", "rigid") if rigid and chosen == "material" else ("E", "nu")
+        for other in others:
+            if other in section:
+                section.report(f"[{section.name}]: {other} can't be given together with {chosen}", other)
+        if chosen == "rigid":
+            return Material.rigid()
+        return MATERIALS.get(section.checked("material", choice, tuple(MATERIALS)) or "")
+    if "E" not in section and "nu" not in section:
+        if rigid is not None or "rigid" not in section:
+            section.report(
+                f"[{section.name}]: needs material, or E and nu{', or rigid = true' if may_be_rigid else ''}"
+            )
+        return None
+    section.require("E")
+    section.require("nu")
+    return section.build(Material, values, {"E": 1.0, "nu": 0.3})
+
+
+def _modulus(name: str, value: object) -> float:
+    if value == math.inf:
+        raise InputError(name, "must be a finite number, not inf; for a rigid body write rigid = true")
+    return number(name, value)
+
+
+def _dundurs(section: Section, contact: Section, plane: str) -> MaterialPair | None:
+    if not section.present:
+        return None
+    convention = section.choice("convention", ("usual", "paper"))
+    values = {
+        "alpha": section.checked("alpha", number, -1.0, 1.0),
+        "beta": section.number("beta"),
+        "nu_pin": section.checked("nu_pin", number, 0.0, 0.5),
+    }
+    for key in values:
+        section.require(key)
+    if "load_parameter" in contact:
+        if "beta_star" in section:
+            section.report("beta_star: has no meaning with load_parameter, which counts in units of it", "beta_star")
+    elif "hole_radius" in contact or "clearance" in contact:
+        section.require("beta_star", " (the scale of the moduli; with load_parameter none is needed)")
+        values["beta_star"] = section.number("beta_star")
+    if convention is None or None in values.values():
+        return None
+    return section.build(MaterialPair.from_dundurs, {**values, "plane": plane, "convention": convention}, {})

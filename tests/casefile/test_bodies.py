@@ -1,0 +1,386 @@
+"""The sections [pin_body] and [plate_body] of case files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.cli.main import main
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.model.compliance import MOST_BYTES, Compliance
+from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.problem import Problem
+
+HEAD = """[pin]
+material = "steel"
+[plate]
+material = "aluminium"
+[contact]
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.3
+[[load]]
+P = 1e6
+"""
+LINES = HEAD.count("\n")
+BUSH = "[plate_body]\nE = 110e9\nnu = 0.34\nouter_radius = 12.5e-3\n"
+BRONZE = Material(110e9, 0.34)
+
+
+def plate(**given: Any) -> Compliance:
+    """A small plate by hand: nothing but a softer hole."""
+    matrix = np.zeros((18, 18))
+    matrix[0, 0] = 0.25
+    return Compliance(**{"nu": 0.33, "plane": "strain", "hole_radius": 0.01, "matrix": matrix} | given)
+
+
+def problem(bodies: str, folder: Path | str = ".", head: str = HEAD) -> Problem:
+    return parse_case(head + bodies, folder=folder).problem
+
+
+def faults(bodies: str, folder: Path | str = ".", head: str = HEAD) -> list[tuple[int, str]]:
+    """Lines after the head, and sentences."""
+    with pytest.raises(CaseFileError) as raised:
+        parse_case(head + bodies, folder=folder)
+    return [(line - head.count("\n"), text) for line, text in raised.value.problems]
+
+
+def the_fault(bodies: str, folder: Path | str = ".", head: str = HEAD) -> tuple[int, str]:
+    (one,) = faults(bodies, folder, head)
+    return one
+
+
+@pytest.mark.parametrize(
+    ("text", "body"),
+    [
+        ("", Disk()),
+        ("[pin_body]\n", Disk()),
+        ('[pin_body]\nkind = "disk"\n', Disk()),
+        ("[pin_body]\nbore_radius = 5e-3\n", Tube(5e-3)),
+        ('[pin_body]\nkind = "tube"\nbore_radius = 5e-3\nload = "held"\n', Tube(5e-3, "held")),
+    ],
+)
+def test_bodies_of_the_pin(text, body):
+    assert problem(text).pin_body == body
+
+
+@pytest.mark.parametrize(
+    ("keys", "body"),
+    [
+        ("", Plate()),
+        ('kind = "plate"', Plate()),
+        ("reaction = [0, 6e-2]", Plate((0.0, 0.06))),
+        ("outer_radius = 2e-2", Ring(0.02)),
+        ('kind = "ring"\nouter_radius = 2e-2\nsupport = "half"', Ring(0.02, "half")),
+        ('material = "steel"\nouter_radius = 12e-3', Bushing(MATERIALS["steel"], 0.012)),
+        ("E = 110e9\nnu = 0.34\nouter_radius = 12e-3\nfriction = 0.2", Bushing(BRONZE, 0.012, friction=0.2)),
+        (
+            'kind = "bushing"\nE = 110e9\nnu = 0.34\nouter_radius = 12e-3\ninterference = 2e-5\n'
+            'ring_outer_radius = 2e-2\nsupport = "normal"',
+            Bushing(BRONZE, 0.012, 2e-5, Ring(0.02, "normal")),
+        ),
+        (
+            "E = 110e9\nnu = 0.34\nouter_radius = 12e-3\nreaction = [3e-2, 0]",
+            Bushing(BRONZE, 0.012, inside=Plate((0.03, 0.0))),
+        ),
+    ],
+)
+def test_bodies_of_the_plate(keys, body):
+    assert problem(f"[plate_body]\n{keys}\n").plate_body == body
+
+
+def test_a_compliance_lies_beside_the_case_file(tmp_path):
+    (tmp_path / "lug.json").write_text(plate().to_text())
+    for keys in ('file = "lug.json"\n', 'kind = "compliance"\nfile = "lug.json"\n'):
+        assert problem(f"[plate_body]\n{keys}", tmp_path).plate_body == plate()
+
+
+def test_a_compliance_that_changes_is_read_again(tmp_path):
+    path = tmp_path / "lug.json"
+    path.write_text(plate().to_text())
+    first = problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body
+    assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body is first
+    path.write_text(plate(columns={"sxx": np.ones(18)}).to_text())
+    assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path).plate_body != first
+
+
+def test_fatigue_constants_of_a_bush():
+    body = problem(BUSH + "fatigue = { fatigue_strength = 1e9, strength_exponent = -0.1 }\n").plate_body
+    assert body.material.fatigue.fatigue_strength == 1e9
+
+
+def test_a_dimensionless_case_counts_bodies_in_its_units():
+    """Radii in R, the interference in F beta* of pin and bush, moduli in one unit."""
+    head = HEAD.replace("hole_radius = 10e-3\nclearance = 20e-6", "load_parameter = 0.1").replace("1e6", "1.0")
+    text = (
+        "[pin_body]\nbore_radius = 0.5\n[plate_body]\nE = 110e9\nnu = 0.34\nouter_radius = 1.25\ninterference = 2.0\n"
+    )
+    found = problem(text, head=head)
+    assert found.pin_body == Tube(0.5)
+    assert (found.plate_body.outer_radius, found.plate_body.interference) == (1.25, 2.0)
+    assert found.surfaces.beta_star == pytest.approx(1.0, rel=1e-14)
+    assert found.plate_body.material.E / found.pair.pin.E == pytest.approx(110 / 210, rel=1e-14)
+    assert found.pair.plate.E / found.pair.pin.E == pytest.approx(69 / 210, rel=1e-14)
+
+
+def test_bodies_beside_dundurs_parameters(tmp_path):
+    dundurs = "[dundurs]\nalpha = 0.2\nbeta = 0.05\nnu_pin = 0.3\n"
+    head = dundurs + "beta_star = 8e-11\n" + HEAD[HEAD.index("[contact]") :]
+    found = problem('[pin_body]\nbore_radius = 5e-3\n[plate_body]\nouter_radius = 2e-2\nsupport = "half"\n', head=head)
+    assert (found.pin_body, found.plate_body) == (Tube(5e-3), Ring(2e-2, "half"))
+    assert found.surfaces.dundurs() == pytest.approx((0.2, 0.05))
+    assert problem(BUSH, head=head).plate_body == Bushing(BRONZE, 0.0125)
+    (tmp_path / "lug.json").write_text(plate(nu=found.pair.plate.nu).to_text())
+    assert problem('[plate_body]\nfile = "lug.json"\n', tmp_path, head).plate_body.nu == found.pair.plate.nu
+    loose = dundurs + HEAD[HEAD.index("[contact]") :].replace(
+        "hole_radius = 10e-3\nclearance = 20e-6", "load_parameter = 0.1"
+    ).replace("1e6", "1.0")
+    assert problem("[plate_body]\nE = 2.0\nnu = 0.3\nouter_radius = 1.2\n", head=loose).surfaces.beta_star == (
+        pytest.approx(1.0, rel=1e-14)
+    )
+    line, text = the_fault('[plate_body]\nmaterial = "steel"\nouter_radius = 1.2\n', head=loose)
+    assert (line, text[:39]) == (2, "material: with [dundurs] and load_param")
+
+
+@pytest.mark.parametrize(
+    ("bodies", "line", "words"),
+    [
+        ("[pin_body]\nbore_radius = 11e-3\n", 2, "bore_radius: must be at most 0.0099"),
+        ("[pin_body]\nbore_radius = 9.95e-3\n", 2, "bore_radius: must be at most 0.0099"),
+        ("[pin_body]\nbore_radius = 0\n", 2, "bore_radius: must be positive, not 0"),
+        ('[pin_body]\nbore_radius = "wide"\n', 2, "bore_radius: must be a number"),
+        ('[pin_body]\nbore_radius = 5e-3\nload = "centre"\n', 3, 'load: must be "uniform" or "normal"'),
+        ('[pin_body]\nload = "held"\n', 1, "[pin_body]: bore_radius is missing"),
+        ('[pin_body]\nkind = "tube"\n', 1, "[pin_body]: bore_radius is missing"),
+        ('[pin_body]\nkind = "hollow"\n', 2, 'kind: must be "disk" or "tube", not "hollow"'),
+        (
+            '[pin_body]\nkind = "disk"\nbore_radius = 5e-3\n',
+            3,
+            'bore_radius: belongs to kind = "tube", not to kind = "disk"',
+        ),
+        ("[pin_body]\nbore_radus = 5e-3\n", 2, 'unknown key "bore_radus" in [pin_body], did you mean "bore_radius"?'),
+        ("[pin_bodies]\n", 1, 'unknown section [pin_bodies], did you mean "pin_body"?'),
+        ("[plate_body]\nouter_radius = 9e-3\n", 2, "outer_radius: must lie between 0.010101 and 10000 for the hole ra"),
+        ("[plate_body]\nouter_radius = 10.05e-3\n", 2, "outer_radius: must lie between"),
+        ('[plate_body]\nouter_radius = 2e-2\nsupport = "clamped"\n', 3, 'support: must be "held" or "uniform"'),
+        ('[plate_body]\nkind = "ring"\n', 1, "[plate_body]: outer_radius is missing"),
+        ('[plate_body]\nsupport = "held"\n', 1, "[plate_body]: outer_radius is missing"),
+        ('[plate_body]\nkind = "lug"\n', 2, 'kind: must be "plate" or "ring" or "bushing" or "compliance"'),
+        ("[plate_body]\nreaction = [5e-3, 0]\n", 2, "reaction: must be a point from 0.0105 to 10000 from the centre"),
+        ("[plate_body]\nreaction = 5e-3\n", 2, "reaction: must be a point [x, y]"),
+        ('[plate_body]\nreaction = [0, "far"]\n', 2, "reaction: must be a number"),
+        (
+            '[plate_body]\nfile = "lug.json"\nouter_radius = 2e-2\n',
+            3,
+            'outer_radius: belongs to kind = "ring" or "bushing", not to kind = "compliance"',
+        ),
+        (BUSH + "interference = -1e-6\n", 5, "interference: must not be negative, not -1e-06"),
+        (BUSH + "interference = 2e-2\n", 5, "interference: must be smaller than the outer radius 0.0125 of the bush"),
+        (BUSH + "friction = -1\n", 5, "friction: must not be negative, not -1"),
+        (BUSH + "ring_outer_radius = 12e-3\n", 5, "ring_outer_radius: must lie between 0.0126263"),
+        (BUSH + "reaction = [12e-3, 0]\n", 5, "reaction: must be a point from 0.013125"),
+        (BUSH + 'support = "held"\n', 5, "support: needs ring_outer_radius"),
+        (
+            BUSH + "ring_outer_radius = 2e-2\nreaction = [0.1, 0]\n",
+            6,
+            "reaction: can't be given together with ring_outer_radius",
+        ),
+        ("[plate_body]\nrigid = true\nouter_radius = 12e-3\n", 2, "rigid: a rigid bush is a rigid plate: leave the bu"),
+        ("[plate_body]\nE = inf\nnu = 0.3\nouter_radius = 12e-3\n", 2, "E: must be a finite number, not inf"),
+        ("[plate_body]\nE = 1e-20\nnu = 0.3\nouter_radius = 12e-3\n", 2, "E: the moduli of pin and bush must not di"),
+        ("[plate_body]\nE = 110e9\nouter_radius = 12e-3\n", 1, "[plate_body]: nu is missing"),
+        ('[plate_body]\nmaterial = "bronze"\nouter_radius = 12e-3\n', 2, 'material: must be "Ti-6Al-4V" or'),
+        ('[plate_body]\nkind = "bushing"\nouter_radius = 12e-3\n', 1, "[plate_body]: needs material, or E and nu"),
+        (BUSH.replace("outer_radius = 12.5e-3", "interference = 0"), 1, "[plate_body]: outer_radius is missing"),
+        ('[plate_body]\nkind = "compliance"\n', 1, "[plate_body]: file is missing"),
+        ("[plate_body]\nfile = 5\n", 2, "file: must be text in quotes, not 5"),
+        ("[[plate_body]]\nouter_radius = 2e-2\n", 1, "plate_body: must be a section [plate_body], not a list"),
+    ],
+)
+def test_a_fault_is_told_once_with_its_line(bodies, line, words):
+    found = [fault for fault in faults(bodies) if "lug.json" not in fault[1]]
+    assert len(found) == 1
+    assert found[0][1].startswith(words)
+    assert found[0][0] == line
+
+
+@pytest.mark.parametrize(
+    ("contact", "bodies", "words"),
+    [
+        ('pin_load = "body"', "[pin_body]\nbore_radius = 5e-3\n", "pin_load: the load of a hollow pin is a field of"),
+        (
+            'rotation = "fixed"\nhub_radius = 4e-3',
+            "[pin_body]\nbore_radius = 5e-3\n",
+            "hub_radius: must be at least the bore radius 0.005, not 0.004",
+        ),
+        (
+            'drive = "ux"\ngauge_radius = 3e-2',
+            "[plate_body]\nouter_radius = 2e-2\n",
+            "gauge_radius: must be at most the outer radius 0.02, not 0.03",
+        ),
+        (
+            'drive = "ux"\ngauge_radius = 3e-2',
+            BUSH + "ring_outer_radius = 2e-2\n",
+            "gauge_radius: must be at most the outer radius 0.02, not 0.03",
+        ),
+        (
+            'drive = "ux"\ngauge_radius = 3e-2',
+            "[plate_body]\nreaction = [0, 0.1]\n",
+            "gauge_radius: a plate with a reaction at a point has no gauge circle",
+        ),
+    ],
+)
+def test_faults_of_the_contact_beside_bodies_stand_in_contact(contact, bodies, words):
+    head = HEAD.replace("friction = 0.3", f"friction = 0.3\n{contact}")
+    line, text = the_fault(bodies, head=head)
+    assert text.startswith(words)
+    assert head.splitlines()[line + head.count("\n") - 1].split(" =")[0] == words.split(":")[0]
+
+
+def test_loads_that_a_body_can_not_carry_stand_at_their_blocks(tmp_path):
+    head = HEAD + "[[load]]\nsxx = 1e6\n"
+    line, text = the_fault("[plate_body]\nouter_radius = 2e-2\n", head=head)
+    assert (line, text.partition(";")[0]) == (0, "sxx: a held rim leaves no remote stress")
+    problem('[plate_body]\nouter_radius = 2e-2\nsupport = "uniform"\n', head=head)
+    line, text = the_fault(BUSH + "ring_outer_radius = 2e-2\n", head=head)
+    assert (line, text.partition(";")[0]) == (0, "sxx: a held rim leaves no remote stress")
+    (tmp_path / "lug.json").write_text(plate().to_text())
+    line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path, head)
+    assert (line, text.partition(";")[0]) == (0, "sxx: the compliance of the plate has no column of this load")
+
+
+def wrong_file(path: Path, kind: str) -> None:
+    good = plate().document()
+    matrix = np.array(good["matrix"])
+    if kind == "asymmetric":
+        matrix[2, 7] = 0.3
+    elif kind == "undecayed":
+        matrix[-1, -1] = 0.2
+    elif kind == "not finite":
+        matrix[3, 3] = np.nan
+    elif kind == "short":
+        matrix = matrix[:5]
+    texts = {
+        "foreign": json.dumps({"name": "something else"}),
+        "text": "no JSON",
+        "list": "[1, 2]",
+        "nested": "[" * 200_000,
+        "version": json.dumps(good | {"version": 99}),
+        "no matrix": json.dumps({key: value for key, value in good.items() if key != "matrix"}),
+        "column": json.dumps(good | {"columns": {"P": [0.0] * 18}}),
+        "material": plate(nu=0.3).to_text(),
+        "plane": plate(plane="stress").to_text(),
+        "hole": plate(hole_radius=0.02).to_text(),
+    }
+    path.write_text(texts.get(kind, json.dumps(good | {"matrix": matrix.tolist()})))
+    if kind == "binary":
+        path.write_bytes(bytes(range(256)) * 10)
+    elif kind == "huge":
+        with path.open("wb") as file:
+            file.truncate(MOST_BYTES + 1)
+    elif kind == "folder":
+        path.unlink()
+        path.mkdir()
+    elif kind == "missing":
+        path.unlink()
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("asymmetric", "matrix: must be symmetric"),
+        ("undecayed", "matrix: its last harmonic 4 is"),
+        ("not finite", "matrix: must be a finite number"),
+        ("short", "matrix: must have the shape (2 + 4 K, 2 + 4 K)"),
+        ("foreign", "is no compliance file"),
+        ("text", "is no compliance file"),
+        ("list", "is no compliance file"),
+        ("nested", "is no compliance file"),
+        ("binary", "is no compliance file"),
+        ("version", "version: must be 1, not 99"),
+        ("no matrix", "matrix: is missing"),
+        ("column", 'columns: must be "sxx" or "syy" or "sxy", not "P"'),
+        ("huge", "is larger than 10,000,000 bytes"),
+        ("missing", "can't be read: No such file or directory"),
+        ("folder", "can't be read: Is a directory"),
+        ("material", "the compliance was made for nu = 0.3, plane strain; the plate has nu = 0.33"),
+        ("plane", "the compliance was made for nu = 0.33, plane stress"),
+        ("hole", "the compliance was made for a hole of radius 0.02; the hole radius is 0.01"),
+    ],
+)
+def test_wrong_files_of_compliances(kind, words, tmp_path, capsys):
+    path = tmp_path / "lug.json"
+    wrong_file(path, kind)
+    line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path)
+    assert line == 2
+    assert text.startswith("file: ")
+    assert words in text
+    if kind not in ("material", "plane", "hole"):
+        with pytest.raises(InputError) as raised:
+            Compliance.from_file(path)
+        assert str(raised.value) == text
+    (tmp_path / "case.toml").write_text(f'{HEAD}[plate_body]\nfile = "lug.json"\n')
+    assert main(["check", str(tmp_path / "case.toml")]) == 2
+    assert f"line {LINES + 2}: {text}" in capsys.readouterr().err
+
+
+def test_all_faults_of_bodies_at_once(tmp_path):
+    text = """[pin_body]
+bore_radius = -1
+load = "hung"
+[plate_body]
+E = -5
+nu = 0.7
+outer_radius = 12e-3
+interference = -1
+friction = "rough"
+ring_outer_radius = 0
+support = "none"
+colour = "red"
+"""
+    head = HEAD.replace("friction = 0.3", "friction = -0.3")
+    found = faults(text, head=head)
+    assert [line for line, _ in found] == [8 - LINES, 2, 3, 5, 6, 8, 9, 10, 11, 12]
+    later = faults(BUSH + "interference = 1.0\nring_outer_radius = 1e-3\n[pin_body]\nbore_radius = 1.0\n")
+    assert [line for line, _ in later] == [5, 6, 8]
+
+
+def test_bodies_are_checked_without_a_contact_section_or_a_hole():
+    bodies = "[pin_body]\nbore_radius = -1\n[plate_body]\nouter_radius = 1e-9\n"
+    head = HEAD[: HEAD.index("[contact]")] + "[[load]]\nP = 1e6\n"
+    assert [text for _, text in faults(bodies, head=head)] == [
+        "the section [contact] is missing",
+        "bore_radius: must be positive, not -1",
+    ]
+    head = HEAD.replace("hole_radius = 10e-3", "hole_radius = -1")
+    assert [text for _, text in faults(bodies, head=head)] == [
+        "hole_radius: must be positive, not -1",
+        "bore_radius: must be positive, not -1",
+    ]
+
+
+def test_a_compliance_beside_a_wrong_material_is_not_blamed(tmp_path):
+    (tmp_path / "lug.json").write_text(plate().to_text())
+    head = HEAD.replace('material = "aluminium"', 'material = "tin"')
+    line, text = the_fault('[plate_body]\nfile = "lug.json"\n', tmp_path, head)
+    assert text.startswith("material: must be")
+    assert line == 4 - LINES
+
+
+def test_the_bodies_of_the_example_can_be_switched_on():
+    """Every commented section of a body is valid as it stands, apart from the file of a compliance."""
+    text = EXAMPLE.replace('pin_load = "body"  ', 'pin_load = "centre"')
+    blocks = EXAMPLE[EXAMPLE.index("# A hollow pin") : EXAMPLE.index("# Loads: the corners")].split("\n\n")
+    found = []
+    for block in blocks:
+        lines = [line.removeprefix("# ") for line in block.splitlines() if " = " in line or line.startswith("# [")]
+        if lines and "file" not in lines[-1]:
+            found.append(parse_case("\n".join([text, *lines])).problem)
+    kinds = [type(one.pin_body if one.plate_body == Plate() else one.plate_body).__name__ for one in found]
+    assert kinds == ["Tube", "Plate", "Ring", "Bushing"]
