@@ -33,14 +33,21 @@ MOST_CURVES = 20
 """Most curves in one figure."""
 
 _KIND = {
-    "hole_radius": "length",
-    "clearance": "length",
-    "hub_radius": "length",
-    "hub_stiffness": "stiffness",
-    "gauge_radius": "length",
-    "E": "traction",
-} | LOAD_KIND
-"""The kind of every key of a case that has a unit."""
+    "contact.hole_radius": "length",
+    "contact.clearance": "length",
+    "contact.hub_radius": "length",
+    "contact.hub_stiffness": "stiffness",
+    "contact.gauge_radius": "length",
+    "pin.E": "traction",
+    "plate.E": "traction",
+    "pin_body.bore_radius": "length",
+    "plate_body.E": "traction",
+    "plate_body.outer_radius": "length",
+    "plate_body.ring_outer_radius": "length",
+    "plate_body.reaction": "length",
+    "plate_body.interference": "displacement",
+}
+"""The kind of every field of a case that has a unit, apart from the loads."""
 
 _SHOWN = {
     "peak_pressure": "peak N",
@@ -66,7 +73,7 @@ def text(plan: Plan, rows: Sequence[Row]) -> str:
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
-        columns.append(_column(name, [row[name] for row in rows], unit.get(_KIND.get(_key(name), ""), "")))
+        columns.append(_column(name, [row[name] for row in rows], unit.get(_kind(name), "")))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
@@ -235,7 +242,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = scaled(values, unit.get(_KIND.get(_key(name), ""), ""))
+    factor, label = scaled(values, unit.get(_kind(name), ""))
     axis = Axis(
         f"{name}{f'  [{label}]' if label else ''}", factor * np.array(values, float), plan.fields[name] == "log"
     )
@@ -263,8 +270,10 @@ def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
 
 
-def _key(field: str) -> str:
-    return field.rsplit(".", 1)[-1]
+def _kind(field: str) -> str:
+    """Return the kind of a varied field; empty if it has no unit."""
+    section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
+    return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")
 
 
 def _brief(value: Any) -> str:

@@ -137,20 +137,20 @@ class Plan:
         Raises
         ------
         InputError
-            If a CSV file of its loads has changed since the plan was read, or `point` is no point.
+            If a file of its loads or of its plate has changed since the plan was read, or `point` is no point.
         """
         instance("point", point, Point, "a Point of this plan")
         text, case = self._base.vary(point.values)
         if case is None or text.placed or run_id(canonical(case)) != point.id:
-            raise InputError(f"run {point.id}", "its loads have changed since the plan was read")
+            raise InputError(f"run {point.id}", "files of its loads or bodies have changed since the plan was read")
         return case
 
 
 def read_plan(path: str | Path) -> Plan:
     """Read a plan file.
 
-    A relative path of the case file starts in the folder of the plan. A relative path of a CSV file starts in the
-    folder of the case file, or in the folder of the plan if the base case is the built-in case.
+    A relative path of the case file starts in the folder of the plan. A relative path of a CSV file or of a
+    compliance starts in the folder of the case file, or in the folder of the plan if the base case is the built-in case.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fastpin.casefile.bodies import BODY_KINDS, Kinds, keys_of
+from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.loads import read_history
 from fastpin.casefile.reader import case_from
 from fastpin.casefile.toml_text import CaseText
@@ -167,15 +167,15 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
 
 
 def _drop_other_kinds(body: dict[str, Any], kinds: Kinds, key: str, value: Any) -> None:
-    """Remove the keys of other kinds of body than a varied kind.
+    """Remove all keys of a body if a varied field makes it a body of another kind.
 
-    The file of a compliance replaces all other keys of a body, and any other key replaces the file.
+    The key ``kind`` does so, and the file of a compliance. Any other key replaces the file.
     """
-    kind = value if key == "kind" else "compliance" if key == "file" else None
-    if kind is None and "file" in body and key in keys_of(kinds):
-        del body["file"]
-        body.pop("kind", None)
-    if isinstance(kind, str) and kind in kinds:
-        body.pop("kind", None)
-        for other in set(body) & set(keys_of(kinds)) - set(kinds[kind]):
+    given = body.get("kind", implied_kind(kinds, body))
+    if key == "kind":
+        is_replaced = value in list(kinds) and value != given
+    else:
+        is_replaced = key in keys_of(kinds) and (key == "file") != (given == "compliance")
+    if is_replaced:
+        for other in set(body) & set(keys_of(kinds)):
             del body[other]

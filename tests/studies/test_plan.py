@@ -121,7 +121,7 @@ def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[
         (tmp_path / f"{name}.csv").write_text("P\n1\n")
     plan = parse_plan('[grid]\nhistory.csv = ["a.csv", "b.csv"]\ncontact.friction = [0.2]\n', folder=tmp_path)
     change(tmp_path / "a.csv")
-    with pytest.raises(InputError, match="its loads have changed since the plan was read"):
+    with pytest.raises(InputError, match="files of its loads or bodies have changed since the plan was read"):
         plan.case(plan.points[0])
 
 
