@@ -185,6 +185,21 @@ class Bushing:
 PinBody = Disk | Tube
 PlateBody = Plate | Ring | Bushing | Compliance
 
+KINDS: dict[str, type[PinBody | PlateBody]] = {
+    "disk": Disk,
+    "tube": Tube,
+    "plate": Plate,
+    "ring": Ring,
+    "bushing": Bushing,
+    "compliance": Compliance,
+}
+"""The classes of bodies by their names in files."""
+
+
+def kind_of(body: PinBody | PlateBody) -> str:
+    """The name of a body's class in files, a key of :data:`KINDS`."""
+    return next(kind for kind, made in KINDS.items() if made is type(body))
+
 
 def body_document(body: PinBody | PlateBody, material: Callable[[Material], Any]) -> dict[str, Any]:
     """Return a body as a JSON-ready dict: its kind, and its fields by name.
@@ -192,8 +207,8 @@ def body_document(body: PinBody | PlateBody, material: Callable[[Material], Any]
     `material` turns the material of a bush into its entry. A compliance enters by the SHA-256 of its numbers.
     """
     if isinstance(body, Compliance):
-        return {"kind": "compliance", "sha256": body.digest}
-    found: dict[str, Any] = {"kind": type(body).__name__.lower()}
+        return {"kind": kind_of(body), "sha256": body.digest}
+    found: dict[str, Any] = {"kind": kind_of(body)}
     for each in fields(body):
         value = getattr(body, each.name)
         if isinstance(value, Material):

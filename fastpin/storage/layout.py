@@ -2,7 +2,7 @@
 
 ======================  ============================================================================================
 ``/``                   attributes: format, versions, date and machine, whether the run is complete, its error
-``/problem``            attributes: geometry, friction, materials, units
+``/problem``            attributes: geometry, friction, materials, units; bodies that are no solid pin or infinite plate
 ``/history``            ``corners`` (NaN: not given), ``blocks`` of corners with the number of times of each block
 ``/grid``               ``theta`` (n,), rad
 ``/solver``             attributes: method and options; ``statistics``
@@ -28,16 +28,16 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
-from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
-from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.materials import MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
+from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
 from fastpin.version import __version__
 
@@ -177,24 +177,17 @@ def _write_problem(group: h5py.Group, problem: Problem) -> None:
             group.attrs[name] = value
     group.attrs["plane"] = problem.pair.plane
     for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
-        body = group.create_group(name)
-        body.attrs.update(E=material.E, nu=material.nu, name=material.name)
-        if material.fatigue is not None:
-            body.create_group("fatigue").attrs.update(material.fatigue.given())
+        write_material(group, name, material)
+    write_bodies(group, problem)
     group.attrs["units"] = [f"{kind}: {name}" for kind, name in units(problem).items()]
 
 
 def read_problem(file: h5py.File) -> Problem:
     """Read the problem of a result."""
-    group, bodies = file["problem"], {}
-    for name in ("pin", "plate"):
-        attributes, fatigue = group[name].attrs, None
-        if "fatigue" in group[name]:
-            stored = group[name]["fatigue"].attrs.items()
-            fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
-        bodies[name] = Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue)
+    group = file["problem"]
+    pair = MaterialPair(read_material(group["pin"]), read_material(group["plate"]), group.attrs["plane"])
     given = {name: as_python(group.attrs[name]) for name in _PROBLEM_FIELDS if name in group.attrs}
-    return Problem(MaterialPair(bodies["pin"], bodies["plate"], group.attrs["plane"]), **given)
+    return Problem(pair, **given, **read_bodies(group))
 
 
 def _write_history(group: h5py.Group, problem: Problem, history: LoadHistory) -> None:

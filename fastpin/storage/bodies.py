@@ -1,0 +1,101 @@
+"""The bodies of a problem in an HDF5 file: materials, pin and plate.
+
+A solid pin and an infinite plate are left out, so a file without bodies is as it was before there were any. A
+compliance is stored whole.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import h5py
+import numpy as np
+
+from fastpin.model.bodies import KINDS, Disk, PinBody, Plate, PlateBody, Ring, kind_of
+from fastpin.model.checks import as_toml
+from fastpin.model.compliance import Compliance
+from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.materials import Material
+from fastpin.model.problem import Problem
+from fastpin.storage.damage import as_python, dataset_of
+
+_COMPLIANCE_FIELDS = ("nu", "plane", "hole_radius", "made_by")
+
+
+def write_material(group: h5py.Group, name: str, material: Material) -> None:
+    """Write a material into a new group of this name."""
+    body = group.create_group(name)
+    body.attrs.update(E=material.E, nu=material.nu, name=material.name)
+    if material.fatigue is not None:
+        body.create_group("fatigue").attrs.update(material.fatigue.given())
+
+
+def read_material(group: h5py.Group) -> Material:
+    """Read a material from its group."""
+    attributes, fatigue = group.attrs, None
+    if "fatigue" in group:
+        stored = group["fatigue"].attrs.items()
+        fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
+    return Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue)
+
+
+def write_bodies(group: h5py.Group, problem: Problem) -> None:
+    """Write the bodies of a problem into its group."""
+    if problem.pin_body != Disk():
+        _write_body(group, "pin_body", problem.pin_body)
+    if problem.plate_body != Plate():
+        _write_body(group, "plate_body", problem.plate_body)
+
+
+def read_bodies(group: h5py.Group) -> dict[str, Any]:
+    """Read the bodies of a problem: the arguments ``pin_body`` and ``plate_body`` that its group holds.
+
+    Raises
+    ------
+    ValueError
+        If a body has an unknown kind, or an array of a compliance is missing or of another type.
+    InputError
+        If a number is out of range.
+    """
+    return {name: _read_body(group[name]) for name in ("pin_body", "plate_body") if name in group}
+
+
+def _write_body(parent: h5py.Group, name: str, body: PinBody | PlateBody) -> None:
+    group = parent.create_group(name)
+    group.attrs["kind"] = kind_of(body)
+    if isinstance(body, Compliance):
+        group.attrs.update({each: getattr(body, each) for each in _COMPLIANCE_FIELDS})
+        group["matrix"] = body.matrix
+        columns = group.create_group("columns")
+        for load, column in body.columns.items():
+            columns[load] = column
+        return
+    for each in fields(body):
+        value = getattr(body, each.name)
+        if isinstance(value, Material):
+            write_material(group, each.name, value)
+        elif isinstance(value, (Plate, Ring)):
+            _write_body(group, each.name, value)
+        elif value is not None:
+            group.attrs[each.name] = value
+
+
+def _read_body(group: h5py.Group) -> PinBody | PlateBody:
+    kind = group.attrs.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"the kind {as_toml(kind)} of {group.name[1:]} is unknown")
+    given: dict[str, Any] = {name: _as_plain(value) for name, value in group.attrs.items() if name != "kind"}
+    if kind == "compliance":
+        given["matrix"] = dataset_of(group, "matrix", float)[()]
+        given["columns"] = {load: dataset_of(group["columns"], load, float)[()] for load in group["columns"]}
+    if "material" in group:
+        given["material"] = read_material(group["material"])
+    if "inside" in group:
+        given["inside"] = _read_body(group["inside"])
+    return KINDS[kind](**given)
+
+
+def _as_plain(value: Any) -> Any:
+    """Return the value of an attribute as a Python number, or as a list of numbers."""
+    return value.tolist() if isinstance(value, np.ndarray) else as_python(value)

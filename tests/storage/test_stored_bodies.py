@@ -1,0 +1,149 @@
+"""Bodies of problems in HDF5 files: equal when read back, and described when damaged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.model.compliance import Compliance
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.problem import Problem
+from fastpin.solver.errors import Interrupted
+from fastpin.storage.export import to_xarray
+from fastpin.storage.recording import record, resume, stored_case
+from fastpin.storage.store import load, save
+from tests.support.interrupts import StopAt
+from tests.support.samples import PAIR, sample_result
+
+BUSH = Bushing(Material(110e9, 0.34, "bronze"), 0.0125)
+
+
+def plate() -> Compliance:
+    """A compliance whose numbers use all their bits."""
+    noise = 1e-3 * np.random.default_rng(1).normal(size=(18, 18))
+    noise[0, 0] = 0.3
+    noise[-4:] = noise[:, -4:] = 0.0
+    return Compliance(0.33, "strain", 0.01, noise + noise.T, {"sxx": np.linspace(0.0, 1.0, 18) / 3.0}, "by hand")
+
+
+BODIES: list[dict[str, Any]] = [
+    {},
+    {"pin_body": Tube(0.005)},
+    {"pin_body": Tube(1.0 / 300.0, "held"), "plate_body": Ring(0.02, "half")},
+    {"plate_body": Plate((1.0 / 30.0, -0.06))},
+    {"plate_body": BUSH},
+    {"plate_body": Bushing(MATERIALS["2024-T3"], 0.0125, 1e-5 / 3.0, Ring(0.02, "normal"), 0.2)},
+    {"plate_body": Bushing(MATERIALS["steel"], 0.0125, inside=Plate((0.0, 0.05)))},
+    {"plate_body": plate()},
+]
+
+
+def problem(**bodies: Any) -> Problem:
+    return Problem(PAIR, 0.01, 2e-5, 0.4, **bodies)
+
+
+@pytest.mark.parametrize("bodies", BODIES, ids=repr)
+def test_a_problem_with_bodies_comes_back_equal(bodies, tmp_path):
+    path = tmp_path / "a.h5"
+    save(sample_result(problem=problem(**bodies)), path)
+    found = load(path).problem
+    assert found == problem(**bodies)
+    assert repr(found) == repr(problem(**bodies))
+    assert to_xarray(path).sizes["state"] == 3
+    with h5py.File(path) as file:
+        assert {"pin_body", "plate_body"} & set(file["problem"]) == set(bodies)
+
+
+def test_a_compliance_is_stored_whole(tmp_path):
+    path = tmp_path / "a.h5"
+    save(sample_result(problem=problem(plate_body=plate())), path)
+    found = load(path).problem.plate_body
+    assert found.matrix.tobytes() == plate().matrix.tobytes()
+    assert found.columns["sxx"].tobytes() == plate().columns["sxx"].tobytes()
+    assert found.made_by == "by hand"
+    assert found.digest == plate().digest
+
+
+def test_bodies_in_units_of_the_paper_come_back_equal(tmp_path):
+    path = tmp_path / "a.h5"
+    bush = Bushing(Material(110e9, 0.34), 1.25, interference=3.0)
+    whole = Problem.from_load_parameter(PAIR, 5.0, 0.4, pin_body=Tube(0.5), plate_body=bush)
+    save(sample_result([{"P": 1.0}], problem=whole), path)
+    assert load(path).problem == whole
+
+
+def test_a_file_without_bodies_has_a_solid_pin_in_an_infinite_plate(tmp_path):
+    path = tmp_path / "a.h5"
+    save(sample_result(), path)
+    found = load(path).problem
+    assert (found.pin_body, found.plate_body) == (Disk(), Plate())
+
+
+@pytest.mark.parametrize("bodies", [BODIES[2], BODIES[5]], ids=["tube in ring", "bush"])
+def test_a_history_with_bodies_is_resumed(bodies, tmp_path):
+    first, whole = tmp_path / "a.h5", tmp_path / "b.h5"
+    history = LoadHistory([{"P": 2e6}, {"Q": 1e5}])
+    with pytest.raises(Interrupted):
+        record(problem(**bodies), history, first, nodes=61, arc=(-3.0, -0.1), progress=StopAt(1.0))
+    assert stored_case(first).problem == problem(**bodies)
+    resume(first)
+    record(problem(**bodies), history, whole, nodes=61, arc=(-3.0, -0.1))
+    assert load(first).problem == problem(**bodies)
+    for one, other in zip(load(first), load(whole), strict=True):
+        assert np.array_equal(one.pressure, other.pressure)
+
+
+def changed(place: str, name: str, value: Any) -> Any:
+    """A change of an attribute of a group of /problem."""
+    return lambda file: file[f"problem/{place}"].attrs.__setitem__(name, value)
+
+
+def put(place: str, value: Any) -> Any:
+    """Another array in the place of one of /problem."""
+
+    def change(file: h5py.File) -> None:
+        del file[f"problem/{place}"]
+        file[f"problem/{place}"] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("bodies", "change", "words"),
+    [
+        (BODIES[2], changed("pin_body", "bore_radius", 0.011), "bore_radius: must be at most 0.0099"),
+        (BODIES[2], changed("pin_body", "bore_radius", np.nan), "bore_radius: must be a finite number"),
+        (BODIES[2], changed("pin_body", "load", "x"), "load: must be"),
+        (BODIES[2], changed("pin_body", "kind", "cube"), 'the kind "cube" of problem/pin_body is unknown'),
+        (BODIES[2], changed("pin_body", "kind", 5), "the kind 5 of problem/pin_body is unknown"),
+        (BODIES[2], changed("plate_body", "outer_radius", -1.0), "outer_radius: must be positive"),
+        (BODIES[2], changed("plate_body", "support", 3), "support: must be"),
+        (BODIES[3], changed("plate_body", "reaction", [1.0, np.nan]), "reaction: must be a finite number"),
+        (BODIES[3], changed("plate_body", "reaction", 5.0), "reaction: must be a point"),
+        (BODIES[5], changed("plate_body", "interference", -1.0), "interference: must not be negative"),
+        (BODIES[5], changed("plate_body/material", "E", -1.0), "E: Young's modulus must be positive"),
+        (BODIES[5], changed("plate_body/inside", "kind", "tube"), "is damaged"),
+        (BODIES[5], lambda file: file.__delitem__("problem/plate_body/material"), "is damaged: .*material"),
+        (BODIES[7], put("plate_body/matrix", np.eye(18)[:5]), "matrix: must have the shape"),
+        (BODIES[7], put("plate_body/matrix", np.triu(np.ones((18, 18)))), "matrix: must be symmetric"),
+        (BODIES[7], put("plate_body/matrix", ["a", "b"]), "problem/plate_body/matrix has numbers of the type object"),
+        (BODIES[7], lambda file: file.__delitem__("problem/plate_body/matrix"), "no array problem/plate_body/matrix"),
+        (BODIES[7], put("plate_body/columns/sxx", np.ones(5)), "columns.sxx: must have the shape"),
+        (BODIES[7], changed("plate_body", "nu", 0.3), "the compliance was made for nu = 0.3"),
+    ],
+)
+def test_damaged_bodies_are_described(bodies, change, words, tmp_path):
+    path: Path = tmp_path / "a.h5"
+    save(sample_result(problem=problem(**bodies)), path)
+    with h5py.File(path, "r+") as file:
+        change(file)
+    with pytest.raises(InputError, match=words) as raised:
+        load(path)
+    assert "\n" not in str(raised.value)
