@@ -7,14 +7,38 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
+from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.units import acting_loads, scaled, units, with_unit
 from fastpin.report.table import table, visible_rows
+
+_PIN_LOADS = {"centre": "force at the centre", "body": "uniform body force"}
+"""Words for the load of a solid pin."""
+
+_BORE_LOADS = {
+    "uniform": "uniform traction in the bore",
+    "normal": "normal traction in the bore",
+    "shear": "shear traction in the bore",
+    "held": "force on a rigid core in the bore",
+    "body": "uniform body force",
+}
+"""Words for the load of a hollow pin."""
+
+_SUPPORTS = {
+    "held": "rim clamped",
+    "uniform": "held by a uniform traction on the rim",
+    "normal": "held by normal traction on the rim",
+    "shear": "held by shear traction on the rim",
+    "half": "held by normal pressure on half of the rim",
+    "body": "held by a uniform body force",
+}
+"""Words for the support of a ring."""
 
 
 def describe(case: Case) -> str:
@@ -24,16 +48,19 @@ def describe(case: Case) -> str:
     """
     instance("case", case, Case, "a Case")
     problem, options = case.problem, case.options
-    pair = problem.pair
-    alpha, beta = pair.dundurs()
+    pair, surfaces = problem.pair, problem.surfaces
+    alpha, beta = surfaces.dundurs()
     if problem.dimensionless:
         scale = "dimensionless: R = 1, F = 1, beta* = 1"
         size = f"load parameter {problem.clearance:.4g}"
     else:
-        scale = f"beta* = {pair.beta_star:.4g} 1/Pa"
+        scale = f"beta* = {surfaces.beta_star:.4g} 1/Pa"
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
         size = f"hole radius {with_unit(problem.hole_radius, 'm')}, {kind} {with_unit(problem.clearance, 'm')}"
-    pin_load = {"centre": "force at the centre", "body": "uniform body force"}[problem.pin_load]
+    pin_load = (
+        _PIN_LOADS[problem.pin_load] if isinstance(problem.pin_body, Disk) else _BORE_LOADS[problem.pin_body.load]
+    )
+    contact = "" if surfaces is pair else "pin and bush: "
     if options.arc is None:
         where = "arc chosen by the solver"
     elif options.is_full_turn:
@@ -44,7 +71,8 @@ def describe(case: Case) -> str:
     rows = [
         ("pin", _material(pair.pin, problem.dimensionless)),
         ("plate", _material(pair.plate, problem.dimensionless)),
-        ("pair", f"plane {pair.plane}, Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
+        *_bodies(problem),
+        ("pair", f"plane {pair.plane}, {contact}Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}, {scale}"),
         ("contact", f"{size}, friction {problem.friction:g}"),
         ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}{_drive(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
@@ -53,8 +81,53 @@ def describe(case: Case) -> str:
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
     text = [case.title] if case.title else []
-    text += [f"{name:8s} {value}" for name, value in rows]
+    width = max(8, *(len(name) for name, _ in rows))
+    text += [f"{name:{width}s} {value}" for name, value in rows]
     return "\n".join([*text, "", _load_table(problem, case.history)])
+
+
+def _bodies(problem: Problem) -> list[tuple[str, str]]:
+    """Return the rows of the bodies; none for a solid pin in an infinite plate."""
+    length, body, rows = units(problem)["length"], problem.plate_body, []
+    if isinstance(problem.pin_body, Tube):
+        rows.append(("pin body", f"hollow, bore radius {with_unit(problem.pin_body.bore_radius, length)}"))
+    if isinstance(body, Bushing):
+        rows += [("plate body", f"{_plate_body(body.inside, length)} round a bush"), *_bush(problem, body)]
+    elif body != Plate():
+        rows.append(("plate body", _plate_body(body, length)))
+    return rows
+
+
+def _plate_body(body: Plate | Ring | Compliance, length: str) -> str:
+    if isinstance(body, Compliance):
+        made = f", {body.made_by}" if body.made_by else ""
+        return (
+            f"finite plate, compliance of {body.order} harmonics{made}, loads: {', '.join(['forces', *body.columns])}"
+        )
+    if isinstance(body, Ring):
+        return f"ring of outer radius {with_unit(body.outer_radius, length)}, {_SUPPORTS[body.support]}"
+    if body.reaction is None:
+        return "infinite"
+    x, y = (with_unit(value, length) for value in body.reaction)
+    return f"infinite, forces balanced at x = {x}, y = {y}"
+
+
+def _bush(problem: Problem, bush: Bushing) -> list[tuple[str, str]]:
+    """Return the rows of a bush and of its press fit."""
+    unit = units(problem)
+    size = f"outer radius {with_unit(bush.outer_radius, unit['length'])}"
+    grip = "" if bush.friction is None else f", friction {bush.friction:g} in the plate"
+    rows = [("bush", f"{_material(bush.material, problem.dimensionless)}, {size}{grip}")]
+    if bush.interference:
+        rows.append(
+            (
+                "press fit",
+                f"interference {with_unit(bush.interference, unit['displacement'])}, "
+                f"pressure {with_unit(problem.press_fit_pressure, unit['traction'], 4)}, "
+                f"clearance after it {with_unit(problem.assembled_clearance, unit['displacement'])}",
+            )
+        )
+    return rows
 
 
 def _hub(problem: Problem) -> str:
@@ -65,7 +138,8 @@ def _hub(problem: Problem) -> str:
     if problem.hub_stiffness is not None:
         spring = f" of stiffness {with_unit(problem.hub_stiffness, unit['stiffness'])}"
     if problem.hub_radius is None:
-        return f"{spring} at the paper's datum"
+        datum = "the paper's datum" if isinstance(problem.pin_body, Disk) else "the bore"
+        return f"{spring} at {datum}"
     return f"{spring} at radius {problem.hub_radius:g} {unit['length']}"
 
 

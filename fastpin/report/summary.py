@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from fastpin.model.angles import interval_from_bottom
+from fastpin.model.bodies import PinBody, PlateBody, body_document
 from fastpin.model.case import Case
+from fastpin.model.compliance import Compliance
 from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
@@ -44,7 +46,7 @@ def document(
         The cycle of the entry ``cycle``.
     """
     problem, pair = case.problem, case.problem.pair
-    alpha, beta = pair.dundurs()
+    alpha, beta = problem.surfaces.dundurs()
     found = {
         "fastpin": __version__,
         "title": case.title,
@@ -56,7 +58,7 @@ def document(
             "plate": _material_summary(pair.plate),
             "plane": pair.plane,
             "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
-            "beta_star": pair.beta_star,
+            "beta_star": problem.surfaces.beta_star,
             "hole_radius": problem.hole_radius,
             "clearance": problem.clearance,
             "friction": problem.friction,
@@ -66,6 +68,10 @@ def document(
             "hub_stiffness": problem.hub_stiffness,
             "drive": problem.drive,
             "gauge_radius": problem.gauge_radius,
+            "pin_body": _body_summary(problem.pin_body),
+            "plate_body": _body_summary(problem.plate_body),
+            "assembled_clearance": problem.assembled_clearance,
+            "press_fit_pressure": problem.press_fit_pressure,
             "dimensionless": problem.dimensionless,
         },
         "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},
@@ -88,8 +94,15 @@ def _material_summary(material: Material) -> dict[str, Any]:
     return {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
 
 
+def _body_summary(body: PinBody | PlateBody) -> dict[str, Any]:
+    found = body_document(body, _material_summary)
+    if isinstance(body, Compliance):
+        found |= {"order": body.order, "loads": list(body.columns), "made_by": body.made_by}
+    return found
+
+
 def _state_summary(state: State) -> dict[str, Any]:
-    resultants, bars, plate = state.resultants, state.error_bars, state.problem.pair.plate
+    resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
     return {
         "load_point": load_point(state),
         "step": state.step,

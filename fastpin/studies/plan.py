@@ -150,7 +150,7 @@ def read_plan(path: str | Path) -> Plan:
     """Read a plan file.
 
     A relative path of the case file starts in the folder of the plan. A relative path of a CSV file or of a
-    compliance starts in the folder of the case file, or in the folder of the plan if the base case is the built-in case.
+    compliance starts in the folder of the case file, or of the plan if the base case is the built-in case.
 
     Raises
     ------
