@@ -16,7 +16,6 @@ import fastpin
 from fastpin.model.history import Block
 from fastpin.model.loads import LOADS
 from fastpin.model.options import MOST_BETWEEN, SolveOptions
-from fastpin.model.problem import Problem
 
 Tables = dict[str, dict[str, Any]]
 """Sections of a case file, without its loads."""
