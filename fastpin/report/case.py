@@ -86,13 +86,18 @@ def describe(case: Case) -> str:
     return "\n".join([*text, "", _load_table(problem, case.history)])
 
 
+def hole_body(problem: Problem) -> str:
+    """Return the word for the body with the hole: bush or plate."""
+    return "bush" if isinstance(problem.plate_body, Bushing) else "plate"
+
+
 def _bodies(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows of the bodies; none for a solid pin in an infinite plate."""
     length, body, rows = units(problem)["length"], problem.plate_body, []
     if isinstance(problem.pin_body, Tube):
         rows.append(("pin body", f"hollow, bore radius {with_unit(problem.pin_body.bore_radius, length)}"))
     if isinstance(body, Bushing):
-        rows += [("plate body", f"{_plate_body(body.inside, length)} round a bush"), *_bush(problem, body)]
+        rows += [("plate body", _plate_body(body.inside, length)), *_bush(problem, body)]
     elif body != Plate():
         rows.append(("plate body", _plate_body(body, length)))
     return rows
@@ -107,9 +112,9 @@ def _plate_body(body: Plate | Ring | Compliance, length: str) -> str:
     if isinstance(body, Ring):
         return f"ring of outer radius {with_unit(body.outer_radius, length)}, {_SUPPORTS[body.support]}"
     if body.reaction is None:
-        return "infinite"
+        return "infinite plate"
     x, y = (with_unit(value, length) for value in body.reaction)
-    return f"infinite, forces balanced at x = {x}, y = {y}"
+    return f"infinite plate, forces balanced at x = {x}, y = {y}"
 
 
 def _bush(problem: Problem, bush: Bushing) -> list[tuple[str, str]]:

@@ -13,6 +13,7 @@ from fastpin.damage import cycle_states, fatigue
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units, with_unit
+from fastpin.report.case import hole_body
 from fastpin.report.curves import Curve
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
@@ -40,7 +41,7 @@ def cycle_line(cycle: LoadCycle) -> str:
 
 
 def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
-    """Return a line of text: the hot spot of the plate by Smith, Watson and Topper, its plane and its life.
+    """Return a line of text: the hot spot of plate or bush by Smith, Watson and Topper, its plane and its life.
 
     It is empty if the plate has no fatigue constants, if the states lack a corner of the cycle, or if the cycle has
     more than :data:`MOST_STOPS` states.
@@ -60,7 +61,7 @@ def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
         parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
     if not np.isnan(spot.life):
         parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
-    return f"fatigue of the plate in the last cycle, Smith-Watson-Topper: {', '.join(parts)}"
+    return f"fatigue of the {hole_body(problem)} in the last cycle, Smith-Watson-Topper: {', '.join(parts)}"
 
 
 def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:

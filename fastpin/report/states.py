@@ -12,7 +12,7 @@ from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled, units, with_unit
-from fastpin.report.case import load_columns
+from fastpin.report.case import hole_body, load_columns
 from fastpin.report.table import MAX_ROWS, table
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
@@ -83,7 +83,7 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
 
 
 def hoop_line(problem: Problem, states: Sequence[State]) -> str:
-    """Return a line of text: the largest hoop stress of the plate in the states, and its stress concentrations.
+    """Return a line of text: the largest hoop stress of plate or bush in the states, and its stress concentrations.
 
     It is empty for a rigid plate, and if no state is in contact.
     """
@@ -96,7 +96,8 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     peak = state.peak_hoop_stress()
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     text = (
-        f"largest hoop stress of the plate in these states: {with_unit(peak.value, units(problem)['traction'], 4)}"
+        f"largest hoop stress of the {hole_body(problem)} in these states: "
+        f"{with_unit(peak.value, units(problem)['traction'], 4)}"
         f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     )
     ratios = {"bearing": peak.kt_bearing, "remote": peak.kt_gross}

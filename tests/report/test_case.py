@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
+import numpy as np
+import pytest
+
 from fastpin.casefile.reader import parse_case
+from fastpin.model.compliance import Compliance
 from fastpin.report.case import describe
+from fastpin.report.summary import document
 
 
 def test_description_of_other_kinds_of_cases() -> None:
@@ -26,3 +33,107 @@ def test_description_of_other_kinds_of_cases() -> None:
     for words in ("rigid", "load parameter 0.05", "rotation fixed at radius 1 R", "dimensionless"):
         assert words in said
     assert said.splitlines()[-1].split() == ["2", "0", "-"]
+
+
+JOINED = """
+[pin]
+material = "steel"
+[plate]
+material = "aluminium"
+[contact]
+hole_radius = 10e-3
+clearance = 20e-6
+friction = 0.3
+rotation = "fixed"
+[[load]]
+P = 1e6
+"""
+BUSH = """
+[plate_body]
+E = 110e9
+nu = 0.34
+outer_radius = 12.5e-3
+interference = 20e-6
+friction = 0.2
+"""
+
+
+def lines(text: str) -> dict[str, str]:
+    """The rows of a description by their names."""
+    rows = describe(parse_case(text)).split("\n\n")[0].splitlines()
+    width = 10 if any(row.startswith("plate body") for row in rows) else 8
+    return {row[:width].strip(): row[width + 1 :] for row in rows}
+
+
+def test_a_hollow_pin_is_described() -> None:
+    said = lines(JOINED + "[pin_body]\nbore_radius = 5e-3\n")
+    assert said["pin body"] == "hollow, bore radius 5 mm"
+    assert said["loading"] == "uniform traction in the bore, rotation fixed at the bore"
+    assert "plate body" not in said
+    assert lines(JOINED)["loading"] == "force at the centre, rotation fixed at the paper's datum"
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ("outer_radius = 20e-3", "ring of outer radius 20 mm, rim clamped"),
+        ('outer_radius = 20e-3\nsupport = "half"', "ring of outer radius 20 mm, held by normal pressure on half of"),
+        ("reaction = [0, 60e-3]", "infinite plate, forces balanced at x = 0 m, y = 60 mm"),
+    ],
+)
+def test_a_plate_is_described(keys, words) -> None:
+    assert lines(f"{JOINED}[plate_body]\n{keys}\n")["plate body"].startswith(words)
+
+
+def test_a_bush_is_described_with_its_press_fit() -> None:
+    case = parse_case(JOINED + BUSH)
+    said, problem = lines(JOINED + BUSH), case.problem
+    assert said["plate body"] == "infinite plate"
+    assert said["bush"] == "E = 110 GPa, nu = 0.34, outer radius 12.5 mm, friction 0.2 in the plate"
+    pressure, clearance = problem.press_fit_pressure / 1e6, problem.assembled_clearance * 1e6
+    assert said["press fit"] == (
+        f"interference 20 um, pressure {pressure:.4g} MPa, clearance after it {clearance:.6g} um"
+    )
+    alpha, beta = problem.surfaces.dundurs()
+    assert (alpha, beta) != pytest.approx(problem.pair.dundurs())
+    assert f"pin and bush: Dundurs alpha = {alpha:.4f}, beta = {beta:.4f}" in said["pair"]
+    assert f"beta* = {problem.surfaces.beta_star:.4g} 1/Pa" in said["pair"]
+    assert describe(case).splitlines()[-1].split()[-1] == f"{problem.load_parameter(1e6):.4g}"
+    ring = lines(JOINED + BUSH + "ring_outer_radius = 25e-3\n")
+    assert ring["plate body"] == "ring of outer radius 25 mm, rim clamped"
+    assert "press fit" not in lines(JOINED + BUSH.replace("interference = 20e-6\n", ""))
+
+
+def test_a_finite_plate_is_described(tmp_path) -> None:
+    matrix = np.zeros((18, 18))
+    matrix[0, 0] = 0.25
+    plate = Compliance(0.33, "strain", 0.01, matrix, {"sxx": np.ones(18)}, "made by hand")
+    (tmp_path / "lug.json").write_text(plate.to_text())
+    case = parse_case(f'{JOINED}[plate_body]\nfile = "lug.json"\n', folder=tmp_path)
+    words = "plate body finite plate, compliance of 4 harmonics, made by hand, loads: forces, sxx"
+    assert words in describe(case).splitlines()
+    found = document(case, None)["problem"]["plate_body"]
+    assert found["sha256"] == plate.digest
+    assert {key: found[key] for key in ("kind", "order", "loads", "made_by")} == {
+        "kind": "compliance",
+        "order": 4,
+        "loads": ["sxx"],
+        "made_by": "made by hand",
+    }
+
+
+def test_the_summary_has_the_bodies() -> None:
+    case = parse_case(JOINED + BUSH + '[pin_body]\nbore_radius = 5e-3\nload = "held"\n')
+    found, problem = document(case, None)["problem"], case.problem
+    assert found["pin_body"] == {"kind": "tube", "bore_radius": 5e-3, "load": "held"}
+    assert found["plate_body"]["material"] == {"name": "", "rigid": False, "E": 110e9, "nu": 0.34}
+    assert found["plate_body"]["inside"] == {"kind": "plate", "reaction": None}
+    assert found["plate_body"]["interference"] == 20e-6
+    assert found["dundurs"]["alpha"] == problem.surfaces.dundurs()[0]
+    assert found["beta_star"] == problem.surfaces.beta_star
+    assert found["assembled_clearance"] == problem.assembled_clearance < found["clearance"]
+    assert found["press_fit_pressure"] == problem.press_fit_pressure > 0.0
+    json.dumps(found, allow_nan=False)
+    plain = document(parse_case(JOINED), None)["problem"]
+    assert (plain["pin_body"], plain["plate_body"]) == ({"kind": "disk"}, {"kind": "plate", "reaction": None})
+    assert plain["assembled_clearance"] == plain["clearance"]
