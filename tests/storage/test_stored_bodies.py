@@ -118,7 +118,7 @@ def put(place: str, value: Any) -> Any:
 @pytest.mark.parametrize(
     ("bodies", "change", "words"),
     [
-        (BODIES[2], changed("pin_body", "bore_radius", 0.011), "bore_radius: must be at most 0.0099"),
+        (BODIES[2], changed("pin_body", "bore_radius", 0.011), "bore_radius: must be at most 0.0096"),
         (BODIES[2], changed("pin_body", "bore_radius", np.nan), "bore_radius: must be a finite number"),
         (BODIES[2], changed("pin_body", "load", "x"), "load: must be"),
         (BODIES[2], changed("pin_body", "kind", "cube"), 'the kind "cube" of problem/pin_body is unknown'),
