@@ -25,7 +25,7 @@ from fastpin.cli.terminal import (
 )
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
-from fastpin.report.states import cycle_lines, hoop_line, state_table
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, state_table
 from fastpin.report.table import visible_rows
 
 if TYPE_CHECKING:  # it imports compiled code
@@ -320,8 +320,10 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
         print("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
         return
     print(state_table(case.problem, list(result), hidden))
-    if line := hoop_line(case.problem, [result[place] for place in visible_rows(len(result))]):
-        print(line)
+    shown = [result[place] for place in visible_rows(len(result))]
+    for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
+        if line:
+            print(line)
     strain = case.problem.surfaces.beta_star * max(state.peak_pressure for state in result)
     if strain > LARGE_STRAIN and not case.problem.dimensionless:
         print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")

@@ -126,11 +126,11 @@ class Problem:
         number("friction", friction, 0.0, MOST_FRICTION)
         self._check_bodies(radius)
         object.__setattr__(self, "hole_radius", radius)
-        if clearance < 0.0 and self.is_incompressible:
+        if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
             raise InputError(
                 "clearance",
                 "a pin with nu = 0.5 in a rigid plate keeps its area in plane strain: it fits into no smaller hole; "
-                f"must not be negative, not {clearance:g}",
+                f"must not be negative, not {clearance + self.joint.press_fit[1]:g}",
             )
         choice("pin_load", self.pin_load, ("centre", "body"))
         choice("rotation", self.rotation, ("free", "fixed", "spring"))

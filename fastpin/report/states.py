@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled, units, with_unit
@@ -106,6 +107,27 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     if len(known) == len(parts):
         known.append(f"it is {' + '.join(f'{value:.4g} x {name} stress' for name, value in parts.items())}")
     return "; ".join([text, *known])
+
+
+def bush_line(problem: Problem, states: Sequence[State]) -> str:
+    """Return a line of text: whether the press fit holds the bush in all states; empty without a bush or contact."""
+    if not isinstance(problem.plate_body, Bushing) or not any(state.in_contact for state in states):
+        return ""
+    fits = [(state, state.bush_fit()) for state in states]
+    state, fit = min(fits, key=lambda pair: pair[1].open_margin)
+    unit = units(problem)["traction"]
+    where = f"at {_angle(fit.open_angle)} deg, load point {_point(state)}"
+    if fit.open_margin < 0.0:
+        return (
+            f"note: the bush would open {where}: it needs a press-fit pressure of "
+            f"{with_unit(fit.pressure_to_close, unit, 4)}, not {with_unit(fit.press_fit_pressure, unit, 4)}; "
+            "these states hold for a bonded bush"
+        )
+    needed = max(fit.least_friction for _, fit in fits)
+    text = f"smallest pressure between bush and plate: {with_unit(fit.open_margin, unit, 4)} {where}"
+    if fit.friction is None or fit.friction >= needed:
+        return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
+    return f"{text}\nnote: the bush would slip: it needs a friction of {needed:.3g}, not {fit.friction:g}"
 
 
 def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:

@@ -43,6 +43,10 @@ from fastpin.version import __version__
 
 FORMAT = "fastpin result"
 FORMAT_VERSION = 2
+"""Version of the format of files with a solid pin in an infinite plate."""
+
+WITH_BODIES = 3
+"""Version with other bodies. Programs that know version 2 only would not see the bodies, and must refuse the file."""
 
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
 # number. The other fields of State are written and read one by one. The coarse states behind error bars are not stored.
@@ -144,7 +148,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     without rows.
     """
     file.attrs["format"] = FORMAT
-    file.attrs["format_version"] = FORMAT_VERSION
+    file.attrs["format_version"] = WITH_BODIES if problem.has_bodies else FORMAT_VERSION
     file.attrs["complete"] = False
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     file.attrs["platform"] = platform.platform()
@@ -479,5 +483,5 @@ def check_format(file: h5py.File, path: str) -> None:
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
     made_by = file.attrs.get("version_fastpin", "unknown")
-    if file.attrs.get("format_version") != FORMAT_VERSION:
+    if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES):
         raise InputError(path, f"was written by fastpin {made_by} in a format that this version can't read")

@@ -19,7 +19,14 @@ from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.storage.export import to_xarray
-from fastpin.storage.layout import CYCLE_FIELDS, FORMAT_VERSION, NODE_FIELDS, NUMBER_FIELDS, OTHER_FIELDS, SLIP_FIELDS
+from fastpin.storage.layout import (
+    CYCLE_FIELDS,
+    NODE_FIELDS,
+    NUMBER_FIELDS,
+    OTHER_FIELDS,
+    SLIP_FIELDS,
+    WITH_BODIES,
+)
 from fastpin.storage.store import load, save, state_count
 from tests.support.samples import PAIR, sample_result
 
@@ -127,7 +134,7 @@ def test_newer_formats_and_missing_parts_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     save(sample_result(), path)
     with h5py.File(path, "a") as file:
-        file.attrs["format_version"] = FORMAT_VERSION + 1
+        file.attrs["format_version"] = WITH_BODIES + 1
     with pytest.raises(InputError, match="format that this version can't read"):
         load(path)
     for part in ("states/gap", "problem/pin", "grid/theta", "solver/statistics"):
