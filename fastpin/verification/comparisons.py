@@ -1,19 +1,26 @@
 """Differences of solved states from closed forms, from the singular integral equations, and of stresses from slip.
 
-``fastpin verify``, scripts/accuracy.py and the tests share these measures. Problems are dimensionless
+``fastpin verify``, scripts/accuracy.py, figures and the tests share these measures. Problems are dimensionless
 (R = F = beta* = 1).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.points import Body, Points
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import closed_forms, integral_equations
+from fastpin.verification import closed_forms, integral_equations, interference
+
+EVENT_ROUNDS, EVENT_STATES = 5, 16
+"""Search of the load of an event: rounds, and parts of the range of loads in each. 16^-5 is 1e-6 of the range."""
 
 
 def cattaneo_mindlin(
@@ -181,3 +188,61 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
         away &= np.abs(angle_between(state.theta, border)) > margin
     first, second = (float(np.abs(residual[away]).max()) for residual in equations)
     return first, second
+
+
+def all_round_difference(state: State) -> float:
+    """Largest difference of N and T from the closed forms of a contact all round, over the uniform pressure N0.
+
+    Parameters
+    ----------
+    state : State
+        Of an interference fit that is closed all round. With friction, all of it has stuck since assembly.
+    """
+    load = {name: value for name, value in state.load.items() if value != 0.0}
+    if state.problem.frictionless:
+        pressure = interference.frictionless_pressure(state.problem, state.theta, load)
+        expected = np.array([pressure, np.zeros(pressure.size)])
+    else:
+        expected = interference.stuck_tractions(state.problem, state.theta, load)
+    found = np.array([state.pressure, state.shear])
+    return float(np.abs(found - expected).max() / interference.uniform_pressure(state.problem))
+
+
+def event_load(
+    problem: Problem,
+    load: str,
+    bounds: tuple[float, float],
+    happened: Callable[[State], bool],
+    nodes: int,
+    follow: Callable[..., Result] = solve,
+) -> float:
+    """The size of one load at which an event first happens on a grid, by states along the exact path.
+
+    Parameters
+    ----------
+    problem : Problem
+    load : str
+        The name of the load that grows from 0.
+    bounds : (float, float)
+        Loads between which the event happens, SI.
+    happened : callable
+        ``happened(state)`` tells whether the event has happened.
+    nodes : int
+    follow : callable
+        The function that solves, :func:`fastpin.solve` by default.
+
+    Returns
+    -------
+    float
+        The load, to 1e-6 of the distance of the bounds; NaN if the event has not happened at the upper bound.
+    """
+    low, high = bounds
+    start: Result | None = None
+    for _ in range(EVENT_ROUNDS):
+        start = follow(problem, [{load: low}], nodes=nodes, start=start)
+        states = follow(problem, [{load: high}], nodes=nodes, start=start, between=EVENT_STATES - 1)
+        first = next((place for place, state in enumerate(states) if happened(state)), None)
+        if first is None:
+            return math.nan
+        low, high = (low if first == 0 else states[first - 1].load[load]), states[first].load[load]
+    return 0.5 * (low + high)
