@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
@@ -21,10 +22,12 @@ from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import closed_forms
+from fastpin.verification import closed_forms, interference
 from fastpin.verification.comparisons import (
+    all_round_difference,
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
+    event_load,
     half_plane_stress_difference,
     residuals_away,
     strain_slip_difference,
@@ -74,6 +77,7 @@ TOLERANCES: dict[str, dict[str, float]] = {
         "force": 8e-15,
         "moment": 1.8e-15,
     },
+    "all round": {"tractions": 2e-5, "slip begins": 3e-5},
     "strains": {"slip": 6e-5},
     "stresses, half-plane": {
         "largest shear": 4e-3,
@@ -328,6 +332,36 @@ def _interference_fit(solving: _Solving) -> Rows:
         yield _Row("Lame", difference / pressure, "p", case=f"interference fit, {body}")
 
 
+def _stress_of_fit(problem: Problem) -> dict[str, float]:
+    """Remote stresses that leave an interference fit closed, and stuck with a friction of 0.3."""
+    pressure = interference.uniform_pressure(problem)
+    return {"sxx": 0.1 * pressure, "syy": -0.05 * pressure, "sxy": 0.04 * pressure}
+
+
+_FITS: dict[str, tuple[float, Callable[[Problem], dict[str, float]]]] = {
+    "P, mu = 0": (0.0, lambda problem: {"P": 0.9 * interference.frictionless_opening_load(problem)}),
+    "P, mu = 0.3": (0.3, lambda problem: {"P": 0.9 * interference.first_slip_load(problem)}),
+    "stress, mu = 0": (0.0, _stress_of_fit),
+    "stress, mu = 0.3": (0.3, _stress_of_fit),
+    "M, mu = 0.3": (0.3, lambda problem: {"M": 0.9 * interference.first_slip_moment(problem)}),
+}
+"""Coefficient of friction, and loads under which the contact stays closed all round and stuck, by the case."""
+
+
+def _all_round(pair: MaterialPair, case: str, solving: _Solving) -> Rows:
+    friction, loads = _FITS[case]
+    problem = Problem.from_load_parameter(pair, -0.3, friction)
+    yield _Row("tractions", all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
+
+
+def _first_slip(pair: MaterialPair, solving: _Solving) -> Rows:
+    problem = Problem.from_load_parameter(pair, -0.3, 0.3)
+    exact = interference.first_slip_load(problem)
+    bounds = 0.9 * exact, 1.1 * exact
+    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving)
+    yield _value("slip begins", found, exact)
+
+
 def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.ndarray, expected: np.ndarray) -> float:
     """Largest difference of a polar component from the expected ones, shape (3, ...)."""
     found = state.stress(Points.at_radius(radius, theta), body)
@@ -441,6 +475,11 @@ Cases = dict[str, Callable[[_Solving], Rows]]
 
 _RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
 _SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
+_FITTED = {"like": LIKE, "Ti-6Al-4V in Al": UNLIKE}
+_FITTED_CASES: Cases = {
+    f"{case}, {name}": partial(_all_round, pair, case) for name, pair in _FITTED.items() for case in _FITS
+}
+_FITTED_CASES |= {f"first slip, {name}": partial(_first_slip, pair) for name, pair in _FITTED.items()}
 _COUPLED = {"Ti-6Al-4V in Al": UNLIKE, "rigid pin": _RIGID_PIN, "soft pin": _SOFT_PIN}
 
 TOPICS: dict[str, tuple[str, Cases]] = {
@@ -496,6 +535,7 @@ TOPICS: dict[str, tuple[str, Cases]] = {
             "held rotation": partial(_edges_and_circles, "held rotation", _HELD),
         },
     ),
+    "all round": ("Interference fits in contact all round: harmonics 0, 1 and 2", _FITTED_CASES),
     "strains": (
         "Hoop strains of pin and plate: gap and slip",
         {"free rotation": partial(_strains, _FREE, 1.75), "held rotation": partial(_strains, _HELD, 1.2)},
