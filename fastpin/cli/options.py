@@ -232,7 +232,8 @@ def add_paper(commands: Any) -> None:
         "--figure",
         metavar="NAME",
         action="append",
-        help="a figure's number, 3 to 17, or one of four more: memory, sliding-onset, half-plane, rigid-pin "
+        help="a figure's number, 3 to 17, or one of nine more: memory, sliding-onset, half-plane, rigid-pin, rings, "
+        "supports, hollow-pins, interference, regimes "
         "(repeat the option for several figures; default: figures 3 to 17)",
     )
     paper.add_argument("--nodes", type=literal, help="number of nodes (default 400)")

@@ -33,10 +33,17 @@ BODIES: dict[str, tuple[MaterialPair, dict[str, Any]]] = {
     "unlike": (UNLIKE, {}),
     "unlike, body load": (UNLIKE, {"pin_load": "body"}),
     "plane stress": (STRESSED, {}),
+    "tube": (LIKE, {"pin_body": Tube(0.5)}),
+    "held tube": (UNLIKE, {"pin_body": Tube(0.4, "held")}),
+    "ring": (UNLIKE, {"plate_body": Ring(2.0, "normal")}),
+    "held ring, body load": (UNLIKE, {"plate_body": Ring(2.0, "held"), "pin_load": "body"}),
+    "tube in ring": (STRESSED, {"pin_body": Tube(0.6, "shear"), "plate_body": Ring(3.0, "uniform")}),
+    "bush": (STRESSED, {"plate_body": Bushing(Material(110e9, 0.34), 1.25)}),
+    "bush in ring": (LIKE, {"plate_body": Bushing(Material(110e9, 0.34), 1.25, inside=Ring(2.5, "held"))}),
 }
-"""Materials, and further fields of the problem, of the bodies that the solver can solve."""
+"""Materials, and further fields of the problem, of bodies that carry the force symmetrically."""
 
-SOLID = tuple(BODIES)
+SOLID = ("like", "like, body load", "unlike", "unlike, body load", "plane stress")
 """The solid pins in infinite plates among them, which carry a remote stress in closed form."""
 
 every_body = pytest.mark.parametrize("name", BODIES)

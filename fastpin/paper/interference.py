@@ -1,0 +1,147 @@
+"""Interference fits under a force: the loads at which they slip and open, and their tractions on the way.
+
+Like bodies, nu = 0.3, plane strain. Left: the load P over R N0 at which the contact opens (solid) and at which the
+first place slips (dashed), against the coefficient of friction. N0 is the pressure before the load; the curves do not
+depend on the interference. The solver gives both loads on two grids, and the limit of fine grids is extrapolated.
+Circles: the closed form of the slip. Grey lines: closed forms of the opening without friction and of a bonded contact.
+Right: pressure and shear round the hole for mu = 0.3 and a load at the centre.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fastpin.figures.style import add_legend, line, panels
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.joint import PinLoad
+from fastpin.model.problem import Problem
+from fastpin.paper.curves import Report, steps
+from fastpin.report.curves import Curve
+from fastpin.solver.solving import solve
+from fastpin.states.state import State
+from fastpin.verification import interference
+from fastpin.verification.comparisons import event_load
+from fastpin.verification.finite_elements import LIKE
+
+TITLE = "Interference fit of like bodies: loads of first slip and of opening against friction; tractions at mu = 0.3"
+LEAST_NODES = 101
+LOAD_PARAMETER = -0.25
+"""Any negative number will do. With this one like bodies have N0 = F/R."""
+
+FRICTION = tuple(np.r_[0.0, 0.02, 0.05, 0.1:1.51:0.1].round(2).tolist())
+LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
+SHOWN_FRICTION = 0.3
+STAGES = (0.0, 3.204, 3.6029, 4.5)
+"""Loads P/(R N0) of the right panel: none, first slip, opening, and an open top."""
+
+
+def slips(state: State) -> bool:
+    """Return whether a place does not stick."""
+    return bool(np.any(state.status != STICK))
+
+
+def opens(state: State) -> bool:
+    """Return whether a place is open."""
+    return bool(np.any(state.status == OPEN))
+
+
+def fitted(friction: float, pin_load: PinLoad = "centre", load_parameter: float = LOAD_PARAMETER) -> Problem:
+    """Return the interference fit of like bodies."""
+    return Problem.from_load_parameter(LIKE, load_parameter, friction, pin_load)
+
+
+def extrapolated(problem: Problem, happened: Callable[[State], bool], about: tuple[float, float], nodes: int) -> float:
+    """Return the load of an event over R N0 in the limit of fine grids. Its error falls with the square of the spacing.
+
+    `about` are two values of P/(R N0) between which the event happens. `nodes` is the number of nodes of the finer
+    grid. The coarser one has half as many, and both have a node at the top.
+    """
+    unit = interference.uniform_pressure(problem) * problem.hole_radius
+    bounds = about[0] * unit, about[1] * unit
+    coarse, fine = (event_load(problem, "P", bounds, happened, count) / unit for count in (nodes // 2, nodes // 2 * 2))
+    return (4.0 * fine - coarse) / 3.0
+
+
+def events(friction: float, pin_load: PinLoad, nodes: int) -> tuple[float, float, float]:
+    """Return P/(R N0) at the opening and at the first slip, and the closed form of the slip."""
+    problem = fitted(friction, pin_load)
+    unit = interference.uniform_pressure(problem) * problem.hole_radius
+    bonded = interference.bonded_opening_load(problem) / unit
+    opening = extrapolated(problem, opens, (0.95 * math.pi, 1.05 * bonded), nodes)
+    if friction == 0.0:
+        return opening, math.nan, math.nan
+    exact = interference.first_slip_load(problem) / unit
+    return opening, extrapolated(problem, slips, (0.9 * exact, 1.1 * exact), nodes), exact
+
+
+def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Loads of both events against friction, one curve for each load of the pin; then tractions round the hole."""
+    cases = [(pin_load, friction) for pin_load in LOADS for friction in FRICTION]
+    rows: dict[str, list[tuple[float, float, float, float]]] = {pin_load: [] for pin_load in LOADS}
+    for pin_load, friction in steps(cases, progress):
+        rows[pin_load].append((friction, *events(friction, pin_load, nodes)))
+    names = ("mu", "P_opens", "P_slips", "P_slips_closed_form")
+    curves = [
+        Curve({"pin_load": pin_load}, dict(zip(names, np.array(values).T, strict=True)))
+        for pin_load, values in rows.items()
+    ]
+    problem = fitted(SHOWN_FRICTION)
+    states = solve(problem, [{"P": stage} for stage in STAGES], grid=Grid.circle(nodes))
+    for stage, state in zip(STAGES, states, strict=True):
+        ends = np.r_[state.theta, state.theta[0] + 2.0 * math.pi]  # from the top round to the top
+        columns = {"angle_deg": np.degrees(ends) + 90.0}
+        columns |= {name: np.append(values, values[0]) for name, values in (("N", state.pressure), ("T", state.shear))}
+        curves.append(Curve({"pin_load": "centre", "mu": SHOWN_FRICTION, "P": stage}, columns))
+    return curves
+
+
+def draw(curves: Sequence[Curve]) -> Figure:
+    """Draw the loads of both events against friction on the left, tractions on the right."""
+    figure, axes = panels(1, 2, height=3.3)
+    loads, tractions = axes[0]
+    of_events = [curve for curve in curves if "P_opens" in curve.columns]
+    for colour, curve in enumerate(of_events):
+        loads.plot(curve["mu"], curve["P_opens"], **line(colour))
+        loads.plot(curve["mu"], curve["P_slips"], **line(colour, 1))
+        dots = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": line(colour)["color"]}
+        loads.plot(curve["mu"], curve["P_slips_closed_form"], markerfacecolor="white", markeredgewidth=0.9, **dots)
+        bonded = _bonded(str(curve.parameters["pin_load"]))
+        loads.axhline(bonded, color="0.35", linewidth=0.8, zorder=0)
+        loads.annotate(f"bonded, {curve.parameters['pin_load']} load", (1.5, bonded + 0.06), ha="right", fontsize=8.0)
+    loads.axhline(math.pi, color="0.35", linewidth=0.8, zorder=0)
+    loads.annotate("no friction: π", (1.5, math.pi - 0.06), ha="right", va="top", fontsize=8.0)
+    loads.set_xlim(0.0, FRICTION[-1])
+    loads.set_ylim(0.0, 5.2)
+    loads.set_xlabel("coefficient of friction  μ")
+    loads.set_ylabel("load  $P/(R\\,N_0)$")
+    for colour, curve in enumerate(curves[len(of_events) :], start=2):
+        tractions.plot(curve["angle_deg"], curve["N"], **line(colour))
+        tractions.plot(curve["angle_deg"], curve["T"], **line(colour, 0, 0.8))
+    tractions.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    tractions.set_xlim(-180.0, 180.0)
+    tractions.set_xticks(range(-180, 181, 60))
+    tractions.set_xlabel("angle from the bottom  [deg]")
+    tractions.set_ylabel("$N/N_0$ (thick),  $T/N_0$ (thin)")
+    grey = {"color": "0.35"}
+    add_legend(
+        figure,
+        [
+            ("centre load", line(0)),
+            ("body load", line(1)),
+            ("opens", line(5) | grey),
+            ("first place slips", line(5, 1) | grey),
+        ],
+        [(f"$P/(R\\,N_0)$ = {stage:.4g}", line(colour)) for colour, stage in enumerate(STAGES, start=2)],
+    )
+    return figure
+
+
+def _bonded(pin_load: str) -> float:
+    """P/(R N0) at which a bonded contact would open."""
+    problem = fitted(SHOWN_FRICTION, "body" if pin_load == "body" else "centre")
+    return interference.bonded_opening_load(problem) / interference.uniform_pressure(problem)
