@@ -111,12 +111,12 @@ def test_the_first_place_slips_where_the_closed_form_says(name, friction):
 
 @every_body
 def test_a_contact_with_much_friction_opens_like_a_bonded_one(name):
-    """With mu = 10 the slip beside the top still takes up to 8e-4 off the load."""
+    """With mu = 10 slip still takes up to 4.5e-3 off the load (tube in ring); the grid adds up to 8e-5."""
     problem = fit(name, 10.0)
     exact = interference.bonded_opening_load(problem)
     bounds = 0.9 * exact, 1.1 * exact
     found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), 2 * NODES)
-    assert 0.999 * exact < found < exact
+    assert 0.995 * exact < found < 1.0001 * exact
 
 
 @pytest.mark.parametrize("name", [name for name, (_, fields) in BODIES.items() if fields.get("pin_load") != "body"])
@@ -126,7 +126,7 @@ def test_the_whole_rim_slips_under_a_moment(name):
     below = solved(problem, {"M": 0.999 * limit})
     assert np.all(below.status == STICK)
     assert all_round_difference(below) < 1e-12
-    held = Problem.from_load_parameter(BODIES[name][0], -0.3, 0.3, "centre", "fixed")
+    held = Problem.from_load_parameter(BODIES[name][0], -0.3, 0.3, rotation="fixed", **BODIES[name][1])
     turned = solve(held, [{"rotation": 5.0}], nodes=NODES)[-1]  # a free pin would turn without end
     assert np.all(turned.status != STICK)
     assert abs(turned.resultants["M"]) == pytest.approx(limit, rel=1e-12)
