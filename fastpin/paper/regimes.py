@@ -123,8 +123,8 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
         if case not in starts:
             even = nodes - nodes % 4  # symmetric about x and y, like the contact without a force
             starts[case] = solve(problem_of(case[1]), [{"P": case[0]}], grid=Grid.circle(even))
-        low, high = ((place + 0.5) * 8.0 / RAYS for place in (index, index + 1))
-        _add_rays(found[case], starts[case], (low, high % 8.0 if index + 1 == RAYS else high), HALVINGS)
+        low, high = ((place % RAYS + 0.5) * 8.0 / RAYS for place in (index, index + 1))
+        _add_rays(found[case], starts[case], (low, high), HALVINGS)
     curves = []
     for (force, load_parameter), rays in found.items():
         rows = [
