@@ -218,13 +218,13 @@ def _columns(problem: Problem) -> Displacements:
     """Displacements v/R of the contact rim per unit load, 1/Pa, beyond those of (T16) and of ``force_factor``."""
     joint = problem.joint
     rim = joint.bush or 1.0
-    columns = _lug_columns(problem, rim)
+    columns = lug_columns(problem, rim)
     if joint.bush is None:
         return columns
     return {place: _through_bush(problem, column) for place, column in columns.items()}
 
 
-def _lug_columns(problem: Problem, rim: float) -> Displacements:
+def lug_columns(problem: Problem, rim: float) -> Displacements:
     """Displacements over the radius of the lug's own hole, `rim` R, per unit load."""
     joint, lug = problem.joint, problem.joint.lug
     kolosov, compliance = joint.pair.plate_kolosov, joint.pair.plate_compliance
@@ -355,10 +355,10 @@ def _compliance_terms(body: Compliance) -> tuple[np.ndarray, Displacements]:
         P: -body.matrix @ rows[1] / (math.pi * math.sqrt(2.0)),
         **{LOADS.index(name): column for name, column in body.columns.items()},
     }
-    return keep @ body.matrix @ keep, {place: _as_complex(keep @ column) for place, column in columns.items()}
+    return keep @ body.matrix @ keep, {place: as_complex(keep @ column) for place, column in columns.items()}
 
 
-def _as_complex(column: np.ndarray) -> np.ndarray:
+def as_complex(column: np.ndarray) -> np.ndarray:
     """Fourier coefficients of v_r + i v_theta, n = -K to K, from coefficients in the real basis (2 + 4K,)."""
     order = (column.size - 2) // 4
     found = np.zeros(2 * order + 1, dtype=complex)
