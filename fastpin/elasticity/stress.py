@@ -1,7 +1,8 @@
-"""Stresses inside pin and plate from the tractions between them, in closed form.
+"""Stresses inside pin and plate from the tractions between them.
 
-With s = srr + stt and D = srr - i srt, the Cauchy integrals of the tractions give all stresses, (T30)-(T33). Lengths
-are in units of the radius R, stresses in the units of the tractions. Tension is positive.
+With s = srr + stt and D = srr - i srt, the Cauchy integrals of the tractions give all stresses of a solid pin and an
+infinite plate, (T30)-(T33). Other bodies add smooth fields, (T42)-(T47). Lengths are in units of the radius R, stresses
+in the units of the tractions. Tension is positive.
 """
 
 from __future__ import annotations
@@ -10,7 +11,13 @@ import math
 
 import numpy as np
 
+from fastpin.elasticity import bodies
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
+from fastpin.elasticity.walls import LEAST_BORE, pin_wall, plate_walls, traction_harmonics
+from fastpin.model.bodies import Plate
+from fastpin.model.compliance import Compliance
+from fastpin.model.loads import LOADS, REMOTE
+from fastpin.model.points import ROUNDING
 from fastpin.model.problem import Problem
 
 SERIES = 50
@@ -20,20 +27,85 @@ SERIES = 50
 def plate_stress(
     problem: Problem, tractions: Tractions, remote: np.ndarray, theta: np.ndarray, depth: np.ndarray
 ) -> np.ndarray:
-    """Stresses (srr, stt, srt) in the plate, shape (3, m).
+    """Stresses (srr, stt, srt) in the plate, shape (3, m). The press fit of a bush is included.
 
     Parameters
     ----------
     problem : Problem
     tractions : Tractions
     remote : ndarray, shape (3,)
-        Remote stress (sxx, syy, sxy).
+        Remote stress (sxx, syy, sxy); the own loads of a compliance.
     theta : ndarray, shape (m,)
         Angles of the points, rad.
     depth : ndarray, shape (m,)
-        Distances of the points from the edge of the hole, in units of R; at least 0.
+        Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
     """
-    kolosov = problem.surfaces.plate_kolosov
+    kolosov, joint, none = problem.surfaces.plate_kolosov, problem.joint, np.zeros(3)
+    far = remote if isinstance(problem.plate_body, Plate) else none
+    walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))
+    if walls is None or walls.lug is None:
+        found = hole_stress(kolosov, tractions, far, theta, depth)
+        if walls is not None:
+            found += walls.surface.polar(theta, 1.0 + depth)
+        elif isinstance(problem.plate_body, Compliance):
+            found[1] += _compliance_hoop(problem.plate_body, kolosov, tractions, remote, theta)
+        return found
+    assert joint.bush is not None
+    found, beyond = np.empty((3, theta.size)), is_beyond_bush(problem, depth)
+    inside = ~beyond
+    found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])
+    found[:, inside] += walls.surface.polar(theta[inside], 1.0 + depth[inside])
+    radius = (1.0 + depth[beyond]) / joint.bush
+    found[:, beyond] = walls.lug.polar(theta[beyond], radius)
+    if isinstance(joint.lug, Plate):
+        kirsch = hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta[beyond], radius - 1.0)
+        found[:, beyond] += kirsch
+    return found
+
+
+def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
+    """Whether points of the plate at these depths, in units of R, lie beyond the bush; False without a bush."""
+    bush = problem.joint.bush
+    return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
+
+
+def press_fit_hoop(problem: Problem) -> float:
+    """Hoop stress at the hole that the press fit of a bush leaves, in the unit of its pressure; 0 without a bush."""
+    bush = problem.joint.bush
+    return 0.0 if bush is None else -2.0 * problem.press_fit_pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
+
+
+def _compliance_hoop(
+    body: Compliance, kolosov: float, tractions: Tractions, remote: np.ndarray, theta: np.ndarray
+) -> np.ndarray:
+    """Hoop stress on the edge of the hole, shape (m,), beyond that of the infinite plate, (T48)."""
+    t = traction_harmonics(tractions, body.order)
+    forces = np.zeros(len(body.matrix))
+    pressure, shear = -0.5 * (t[:, 0] + t[:, 1]), -0.5j * (t[:, 0] - t[:, 1])
+    forces[:2] = math.sqrt(2.0) * pressure[0].real, -math.sqrt(2.0) * shear[0].real
+    forces[2::4], forces[3::4] = 2.0 * pressure[1:].real, -2.0 * pressure[1:].imag
+    forces[4::4], forces[5::4] = -2.0 * shear[1:].real, 2.0 * shear[1:].imag
+    moved = body.matrix @ forces
+    for place, value in zip(REMOTE, remote, strict=True):
+        moved = moved + value * body.columns_of(LOADS[place])
+    order = np.arange(-body.order, body.order + 1.0)
+    waves = np.exp(1j * np.multiply.outer(theta, order))
+    hoop: np.ndarray = 8.0 / (kolosov + 1.0) * np.real(waves @ ((1.0 + order) * bodies.as_complex(moved)))
+    return hoop
+
+
+def hole_stress(
+    kolosov: float, tractions: Tractions, remote: np.ndarray, theta: np.ndarray, depth: np.ndarray
+) -> np.ndarray:
+    """Stresses (srr, stt, srt) in an infinite plate, shape (3, m). The force is balanced far away.
+
+    Parameters
+    ----------
+    kolosov : float
+        Kolosov's constant of the plate.
+    tractions, remote, theta, depth
+        See :func:`plate_stress`.
+    """
     (pressure, shear), away = tractions.low_coefficients, np.log1p(depth)
     whole, of_shear, slope = cauchy_integrals(tractions, theta, away, outside=True).T
     zeta, square = np.exp(away + 1j * theta), (1.0 + depth) ** -2.0  # square: (R/r)^2
@@ -56,7 +128,8 @@ def plate_stress(
 def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """Stresses (srr, stt, srt) in the pin, shape (3, m).
 
-    A moment acts at the centre, and so does the force if ``pin_load`` is "centre": there the stress is infinite.
+    In a solid pin a moment acts at the centre, and so does the force if ``pin_load`` is "centre": there the stress is
+    infinite.
 
     Parameters
     ----------
@@ -66,6 +139,26 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
         Angles of the points, rad.
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the pin, in units of R; 0 to less than 1.
+    """
+    found = disk_stress(problem.surfaces.pin_kolosov, problem.pin_load, tractions, theta, depth)
+    wall = pin_wall(problem, tractions)
+    if wall is not None:
+        found += wall.polar(theta, np.maximum(1.0 - depth, max(problem.joint.bore, LEAST_BORE)))
+    return found
+
+
+def disk_stress(
+    kolosov: float, pin_load: str, tractions: Tractions, theta: np.ndarray, depth: np.ndarray
+) -> np.ndarray:
+    """Stresses (srr, stt, srt) in a solid pin, shape (3, m).
+
+    Parameters
+    ----------
+    kolosov : float
+        Kolosov's constant of the pin.
+    pin_load : {"centre", "body"}
+    tractions, theta, depth
+        See :func:`pin_stress`.
     """
     radius = 1.0 - depth
     near = radius < 0.5
@@ -84,8 +177,8 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     first[edge] = below * slope - square * (2j * of_shear - 1j * shear[0])
     mean = -4.0 * np.real(whole) + 2.0 * pressure[0].real
     radial = -2.0 * np.real(whole) + pressure[0].real + first
-    if problem.pin_load == "centre":
-        share = 1.0 / (math.pi * (1.0 + problem.surfaces.pin_kolosov))
+    if pin_load == "centre":
+        share = 1.0 / (math.pi * (1.0 + kolosov))
         mean = mean + 4.0 * share * np.real(np.conj(force) * zeta - 0.5 * force / zeta)
         radial = radial + share * force * (np.conj(zeta) - 1.0 / zeta)
         radial[near] -= np.conj(force) / (2.0 * math.pi * np.conj(zeta[near]))

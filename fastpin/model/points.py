@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -9,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
+from fastpin.model.bodies import Ring, Tube
 from fastpin.model.checks import numbers
+from fastpin.model.compliance import Compliance
 from fastpin.model.problem import Problem
 
 Body = Literal["plate", "pin"]
@@ -71,13 +74,15 @@ class Points:
         Raises
         ------
         InputError
-            If a point lies outside the body.
+            If a point lies outside the body, or inside a plate that a compliance describes.
         """
-        radius = problem.hole_radius
+        radius, far = problem.hole_radius, _far_rim(problem, body)
+        wall = abs(far - 1.0) if far is not None else math.inf
         if self.depth is not None:
             depth = self.depth / radius
-            if body == "pin" and np.any(depth > 1.0):
-                raise InputError("depth", f"must be at most the radius of {radius:g} in the pin")
+            if np.any(depth > wall + ROUNDING * max(1.0, wall)):
+                name = "radius" if far == 0.0 else "wall"
+                raise InputError("depth", f"must be at most the {name} of {wall * radius:g} in the {body}")
         else:
             assert self.radius is not None
             depth = (self.radius - radius) / radius * (1.0 if body == "plate" else -1.0)
@@ -85,7 +90,20 @@ class Points:
             if np.any(depth < 0.0):
                 side = "at least" if body == "plate" else "at most"
                 raise InputError("radius", f"must be {side} the hole's radius of {radius:g} in the {body}")
-        return depth
+            if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
+                rim = "at least the bore" if body == "pin" else "at most the outer"
+                raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
+        if body == "plate" and isinstance(problem.plate_body, Compliance) and np.any(depth > 0.0):
+            raise InputError("points", "a compliance gives the stress on the edge of the hole only")
+        return np.minimum(depth, wall)
+
+
+def _far_rim(problem: Problem, body: Body) -> float | None:
+    """Radius of a body's other rim over the hole's radius; 0 for a solid pin, None for a plate without a rim."""
+    if body == "pin":
+        return problem.pin_body.bore_radius / problem.hole_radius if isinstance(problem.pin_body, Tube) else 0.0
+    lug = problem.joint.lug
+    return lug.outer_radius / problem.hole_radius if isinstance(lug, Ring) else None
 
 
 def _broadcast(field: str, one: np.ndarray, other: np.ndarray) -> list[np.ndarray]:
