@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 
+from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.points import Body
 from fastpin.states.error_bars import UNRESOLVED
 from fastpin.states.state import State
-from fastpin.states.stress import HoopPeak
+from fastpin.states.stress import HoopPeak, open_hole_hoop
 
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
@@ -53,14 +54,15 @@ def hoop_peak(state: State, body: Body) -> HoopPeak:
     value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
     resolved = _is_resolved(state, body, value, angle)
     force = math.hypot(state.resultants["P"], state.resultants["Q"])
-    bearing, gross, bypass = force / (2.0 * state.problem.hole_radius), 0.0, 0.0
+    bearing, gross, bypass, press_fit = force / (2.0 * state.problem.hole_radius), 0.0, 0.0, 0.0
     if body == "plate":
         sxx, syy, sxy = (state.load[name] for name in ("sxx", "syy", "sxy"))
         mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
         gross = mean + math.copysign(radius, mean)
-        bypass = 2.0 * mean - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
+        bypass = open_hole_hoop(state.problem, np.array([sxx, syy, sxy]), angle)
+        press_fit = press_fit_hoop(state.problem)
     place = angle if state.in_contact or value != 0.0 else math.nan
-    return HoopPeak(value, place, resolved, bearing, gross, bypass)
+    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit)
 
 
 def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[float, float]:

@@ -309,7 +309,9 @@ class State:
     def stress(self, points: Points, body: Body = "plate", straight: bool = False) -> Stress:
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
 
-        The remote stress, the force on the pin and the moment at its centre are included.
+        The remote stress, the force on the pin and the moment at its centre are included, and so is the press fit of a
+        bush. The plate holds its bush: points beyond the outer radius of the bush lie in the body round it. A
+        compliance gives the stress on the edge of the hole only.
 
         Parameters
         ----------
@@ -322,7 +324,8 @@ class State:
         Raises
         ------
         InputError
-            If a point lies outside the body, where the stress is infinite, or if the body is rigid.
+            If a point lies outside the body, inside a plate that a compliance describes, or where the stress is
+            infinite, or if the body is rigid.
         """
         tractions = self._tractions if straight else self.refined.tractions
         return states.stress_at(self.problem, tractions, self.load, points, body)

@@ -9,15 +9,16 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.elasticity.stress import pin_stress, plate_stress
+from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, press_fit_hoop
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
+from fastpin.model.bodies import Disk, Plate
 from fastpin.model.checks import choice, instance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material
-from fastpin.model.points import BODIES, Body, Points
+from fastpin.model.points import BODIES, ROUNDING, Body, Points
 from fastpin.model.problem import Problem
 from fastpin.states.zones import runs, unrolled
 
@@ -33,7 +34,8 @@ class Stress:
     radial, hoop, shear : ndarray
         Polar components srr, stt and srt.
     axial : ndarray
-        Component szz along the pin: nu (srr + stt) in plane strain, 0 in plane stress.
+        Component szz along the pin: nu (srr + stt) in plane strain, 0 in plane stress. nu is that of the material at
+        the point: beyond a bush that of the plate round it.
     """
 
     theta: np.ndarray
@@ -108,7 +110,11 @@ class HoopPeak:
     gross_stress : float
         Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin.
     bypass : float
-        Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin.
+        Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin. The hole is that of
+        the problem's plate: of a ring, of a bush, or of a compliance under its own loads.
+    press_fit : float
+        Hoop stress that the press fit of a bush leaves at the hole, Pa; 0 without a bush, and for the pin. It is in the
+        peak, but in no concentration by parts: no load causes it.
     """
 
     value: float
@@ -117,6 +123,7 @@ class HoopPeak:
     bearing_stress: float
     gross_stress: float
     bypass: float
+    press_fit: float = 0.0
 
     @property
     def kt_gross(self) -> float:
@@ -132,14 +139,14 @@ class HoopPeak:
     def kt_bypass_part(self) -> float:
         """The open hole's part of the peak over the gross remote stress; NaN without remote stress.
 
-        peak = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress.
+        peak = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress + press_fit.
         """
         return _over(self.bypass, self.gross_stress)
 
     @property
     def kt_bearing_part(self) -> float:
         """The rest of the peak, which the pin causes, over the bearing stress; NaN without a force on the pin."""
-        return _over(self.value - self.bypass, self.bearing_stress)
+        return _over(self.value - self.bypass - self.press_fit, self.bearing_stress)
 
 
 def _over(one: float, other: float) -> float:
@@ -160,7 +167,7 @@ def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np
 
 
 def check_body(problem: Problem, body: Body) -> Material:
-    """The material of a body that has a stress.
+    """The material of a body that has a stress: of the plate the material at the hole, which may be a bush.
 
     Raises
     ------
@@ -181,13 +188,47 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     instance("points", points, Points, "fastpin.Points")
     material = check_body(problem, body)
     depth, theta = points.depths(problem, body).ravel(), points.theta.ravel()
-    if body == "pin" and problem.pin_load == "centre" and np.any(depth == 1.0):
+    if body == "pin" and problem.pin_load == "centre" and isinstance(problem.pin_body, Disk) and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")
+    ratio: float | np.ndarray = material.nu
     if body == "plate":
+        ratio = _ratios_in_plate(problem, theta, depth)
         remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
         components = plate_stress(problem, tractions, remote, theta, depth)
     else:
         components = pin_stress(problem, tractions, theta, depth)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
-    axial = material.nu * (radial + hoop) if problem.surfaces.plane == "strain" else np.zeros(points.shape)
+    axial = np.zeros(points.shape)
+    if problem.surfaces.plane == "strain":
+        axial = (ratio.reshape(points.shape) if isinstance(ratio, np.ndarray) else ratio) * (radial + hoop)
     return Stress(points.theta, radial, hoop, shear, axial)
+
+
+def _ratios_in_plate(problem: Problem, theta: np.ndarray, depth: np.ndarray) -> float | np.ndarray:
+    """Poisson's ratio at points of the plate, or one for all.
+
+    Raises
+    ------
+    InputError
+        If the plate beyond a bush is rigid, or a reaction acts at a point.
+    """
+    joint = problem.joint
+    if isinstance(joint.lug, Plate) and joint.lug.reaction is not None:
+        place = complex(*joint.lug.reaction) / problem.hole_radius
+        if np.any(np.abs((1.0 + depth) * np.exp(1j * theta) - place) < ROUNDING * abs(place)):
+            raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
+    beyond = is_beyond_bush(problem, depth)
+    if not beyond.any():
+        return problem.surfaces.plate.nu
+    if joint.pair.plate.is_rigid:
+        raise InputError("points", "the plate round the bush is rigid: its stress is not determined")
+    return np.where(beyond, joint.pair.plate.nu, problem.surfaces.plate.nu)
+
+
+def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float) -> float:
+    """Hoop stress of the open hole under a remote stress (sxx, syy, sxy) at an angle, Pa, without a press fit."""
+    if isinstance(problem.plate_body, Plate):
+        sxx, syy, sxy = (float(value) for value in remote)
+        return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
+    whole = plate_stress(problem, Tractions(()), remote, np.array([angle]), np.zeros(1))
+    return float(whole[1, 0]) - press_fit_hoop(problem)
