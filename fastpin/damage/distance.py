@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage.hot_spots import Criterion, Fatigue, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.damage.hot_spots import Criterion, Fatigue, checked_depths, cycle_stops, evaluated, fatigue, stress_history
 from fastpin.model.checks import choice, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import BODIES, Body, Points
@@ -89,7 +89,7 @@ def fatigue_at_distance(
     ------
     InputError
         See :func:`fatigue`; also if the method is unknown, constants for L are missing, or the length reaches beyond
-        the pin.
+        the body or its bush.
     """
     choice("method", method, METHODS)
     choice("body", body, BODIES)
@@ -105,6 +105,7 @@ def fatigue_at_distance(
     radius = problem.hole_radius
     depth, turn, weights = _places(method, length / radius, body)
     points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
+    checked_depths(problem, points, body)
     history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
     place = angles, np.full(angles.shape, 0.5 * length if method == "point" else 0.0)
     return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)

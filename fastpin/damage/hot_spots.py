@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.damage import criteria, lives
+from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.kernels.threads import in_threads
 from fastpin.model.angles import near_bottom
@@ -135,6 +136,7 @@ def fatigue(
     criterion : str
         One of :data:`CRITERIA`.
     body : {"plate", "pin"}
+        The plate's material is that of its surface: of the bush if there is one.
     points : Points, optional
         Unless given, the points lie all round the edge: at the nodes, at the ends of all contact and stick zones, and
         at each degree.
@@ -146,8 +148,8 @@ def fatigue(
     Raises
     ------
     InputError
-        If the states are no cycle of one problem, a point lies outside the body or its stress is infinite, both points
-        and depth are given, the body is rigid, or the material lacks constants of the criterion.
+        If the states are no cycle of one problem, a point lies outside the body or beyond a bush or its stress is
+        infinite, both points and depth are given, the body is rigid, or the material lacks constants of the criterion.
     """
     stops = cycle_stops(states)
     if points is None:
@@ -156,9 +158,23 @@ def fatigue(
         raise InputError("depth", "can't be given together with points")
     check_body(stops[0].problem, body)
     instance("points", points, Points, "fastpin.Points")
-    place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
+    place = points.theta, checked_depths(stops[0].problem, points, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
+
+
+def checked_depths(problem: Problem, points: Points, body: Body) -> np.ndarray:
+    """Depths of points in units of R, in the shape of the points.
+
+    Raises
+    ------
+    InputError
+        If a point lies outside the body, or beyond a bush: the constants of the plate are those of the bush.
+    """
+    depth = points.depths(problem, body)
+    if body == "plate" and is_beyond_bush(problem, depth).any():
+        raise InputError("points", "must lie in the bush: the fatigue constants of the plate are those of its bush")
+    return depth
 
 
 def stress_history(states: Sequence[State], points: Points, body: Body = "plate") -> np.ndarray:
