@@ -71,8 +71,10 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
 
 def press_fit_hoop(problem: Problem) -> float:
     """Hoop stress at the hole that the press fit of a bush leaves, in the unit of its pressure; 0 without a bush."""
-    bush = problem.joint.bush
-    return 0.0 if bush is None else -2.0 * problem.press_fit_pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
+    bush, pressure = problem.joint.bush, problem.press_fit_pressure
+    if bush is None or pressure == 0.0:
+        return 0.0
+    return -2.0 * pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
 
 
 def _compliance_hoop(

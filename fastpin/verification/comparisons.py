@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.model.angles import BOTTOM, angle_between
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
@@ -158,7 +159,9 @@ def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
     pair = state.problem.surfaces
     material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
     found = state.stress(Points.at_depth(0.0, theta), body, straight=True)
-    return (found.hoop - 0.25 * (3.0 - kolosov) * (found.hoop + found.radial)) / (2.0 * material.shear_modulus)
+    # the press fit of a bush is over before slip and gap count
+    hoop = found.hoop - (press_fit_hoop(state.problem) if body == "plate" else 0.0)
+    return (hoop - 0.25 * (3.0 - kolosov) * (hoop + found.radial)) / (2.0 * material.shear_modulus)
 
 
 def residuals_away(state: State, margin: float) -> tuple[float, float]:
