@@ -105,7 +105,10 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     known = [f"Kt {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
     parts = {"remote": peak.kt_bypass_part, "bearing": peak.kt_bearing_part}
     if len(known) == len(parts):
-        known.append(f"it is {' + '.join(f'{value:.4g} x {name} stress' for name, value in parts.items())}")
+        terms = [f"{value:.4g} x {name} stress" for name, value in parts.items()]
+        if peak.press_fit:
+            terms.append(f"{with_unit(peak.press_fit, units(problem)['traction'], 4)} of the press fit")
+        known.append(f"it is {' + '.join(terms)}")
     return "; ".join([text, *known])
 
 
