@@ -76,7 +76,7 @@ class Points:
         InputError
             If a point lies outside the body, or inside a plate that a compliance describes.
         """
-        radius, far = problem.hole_radius, _far_rim(problem, body)
+        radius, far = problem.hole_radius, far_rim(problem, body)
         wall = abs(far - 1.0) if far is not None else math.inf
         if self.depth is not None:
             depth = self.depth / radius
@@ -98,7 +98,7 @@ class Points:
         return np.minimum(depth, wall)
 
 
-def _far_rim(problem: Problem, body: Body) -> float | None:
+def far_rim(problem: Problem, body: Body) -> float | None:
     """Radius of a body's other rim over the hole's radius; 0 for a solid pin, None for a plate without a rim."""
     if body == "pin":
         return problem.pin_body.bore_radius / problem.hole_radius if isinstance(problem.pin_body, Tube) else 0.0

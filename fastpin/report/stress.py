@@ -10,7 +10,8 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
-from fastpin.model.points import BODIES, Body, Points
+from fastpin.model.compliance import Compliance
+from fastpin.model.points import BODIES, Body, Points, far_rim
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
@@ -135,7 +136,7 @@ def field_curves(
         A name of :data:`COMPONENTS`.
     body : {"plate", "pin", "both"}
     extent : float
-        Outer radius of the plate's part, in units of the hole's radius; above 1, at most 100.
+        Outer radius of the plate's part, in units of the hole's radius; above 1, at most 100. A ring ends at its rim.
     fineness : int
         Number of circles in each body.
 
@@ -149,11 +150,16 @@ def field_curves(
     if not 1.0 < outer <= 100.0:
         raise InputError("extent", f"must be above 1 and at most 100 radii, not {outer:g}")
     unit, radius, curves = units(state.problem), state.problem.hole_radius, []
+    drawn = bodies_of(state, body)
+    if body == "both" and isinstance(state.problem.plate_body, Compliance):
+        drawn = tuple(each for each in drawn if each == "pin")  # the stress inside the plate is unknown
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
-    for each in bodies_of(state, body):
-        part = np.linspace(0.0, 1.0, fineness)[:, None]
-        # The force may act at the pin's centre, where the stress is infinite.
-        below = radius * ((outer - 1.0) * part**2 if each == "plate" else 0.999 * (1.0 - part) ** 2)
+    for each in drawn:
+        part, far = np.linspace(0.0, 1.0, fineness)[:, None], far_rim(state.problem, each)
+        if each == "plate":
+            below = radius * (min(outer, math.inf if far is None else far) - 1.0) * part**2
+        else:  # The force may act at a solid pin's centre, where the stress is infinite.
+            below = radius * (1.0 - (far or 0.001)) * (1.0 - part) ** 2
         values = component_of(state.stress(Points.at_depth(below, theta), each), component)
         distance = radius + below if each == "plate" else radius - below
         columns = {
