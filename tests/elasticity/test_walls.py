@@ -14,7 +14,7 @@ import pytest
 from fastpin.elasticity import bodies
 from fastpin.elasticity.stress import disk_stress, hole_stress, pin_stress, plate_stress
 from fastpin.elasticity.tractions import Tractions
-from fastpin.elasticity.walls import traction_harmonics
+from fastpin.elasticity.walls import HalfCosine, traction_harmonics
 from fastpin.kernels import harmonics
 from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.compliance import Compliance
@@ -354,6 +354,25 @@ def test_the_reaction_is_a_force_at_its_point():
     assert found == pytest.approx(force, abs=1e-11)  # a pull outwards balances the reaction -force
     far = [np.abs(stresses(FAR, AROUND, away, remote=NO_LOAD)).max() * away**2 for away in (1e3, 1e4)]
     assert far[1] == pytest.approx(far[0], rel=1e-2)
+
+
+def test_half_cosine_is_the_sum_of_its_harmonics():
+    half, m = HalfCosine(1.3, 0.4, 2.0), np.arange(1, 200)
+    n, t = 2 * m, half.harmonics(m)
+    for size in (1e-6, 0.03, 0.199, 0.201, 0.9):
+        x = size * np.exp(1j * AROUND[:, None])
+        value, slope = (t * x**n).sum(axis=1), (n * t * x**n).sum(axis=1)
+        mean, first = half.polar(2.0 * x[:, 0])
+        assert mean == pytest.approx(4.0 * value.real, abs=1e-14)
+        assert first == pytest.approx(2.0 * value.real + (size**-2.0 - 1.0) * slope, abs=1e-14)
+
+
+def test_half_cosine_at_its_ends():
+    """Its pressure is zero there: the harmonics from 2 on leave the mean with the other sign."""
+    half = HalfCosine(1.3, 0.0, 2.0)
+    mean, first = half.polar(np.array([2j, -2j]))
+    assert first == pytest.approx(-half.mean, rel=1e-15)
+    assert mean == pytest.approx(-2.0 * half.mean, rel=1e-15)
 
 
 # --- the edge --------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from fastpin.damage import fatigue, fatigue_at_distance
 from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.model import Bushing, Compliance, FatigueConstants, Plate, Ring, Tube
 from fastpin.report.states import hoop_line
+from fastpin.report.stress import field_curves
 from fastpin.verification.comparisons import strain_slip_difference, stress_resultant
 
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")
@@ -176,6 +177,19 @@ def test_points_on_the_rims_are_taken():
     assert bore.radial == pytest.approx(np.sin(theta) / np.pi, abs=1e-12)
     ring = solve(problem("ring, body"), [{"P": 1.0}], nodes=101, arc=ARC)[-1]
     assert ring.stress(Points.at_radius(1.5, theta)).radial == pytest.approx(0.0, abs=1e-12)
+
+
+def test_maps_end_at_the_rims():
+    state = solve(problem("tube"), [{"P": 1.0}], nodes=101, arc=ARC)[-1]
+    (pin,) = field_curves(state, body="pin", fineness=5)
+    radius = pin.columns["radius [R]"]
+    assert (radius.min(), radius.max()) == pytest.approx((0.5, 1.0))
+    state = solve(problem("ring, body"), [{"P": 1.0}], nodes=101, arc=ARC)[-1]
+    radius = field_curves(state, body="plate", fineness=5)[0].columns["radius [R]"]
+    assert (radius.min(), radius.max()) == pytest.approx((1.0, 1.5))
+    case = Problem.from_load_parameter(UNLIKE, 0.6, 0.3, plate_body=compliance())
+    state = solve(case, [{"P": 1.0}], nodes=101, arc=ARC)[-1]
+    assert [curve.parameters["body"] for curve in field_curves(state, fineness=5)] == ["pin"]
 
 
 # --- fatigue ---------------------------------------------------------------------------------------------------
