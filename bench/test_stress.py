@@ -18,6 +18,7 @@ import pytest
 import fastpin
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
 from fastpin.kernels import threads as work
+from fastpin.model import Bushing, Plate, Ring
 
 Timed = Callable[..., Any]
 
@@ -26,6 +27,17 @@ POINTS, FEW = 1_000_000, 50_000
 
 SUMMED = 20_000
 """Points of the plain sum over all nodes; one thread computes them."""
+
+WALL = 0.5
+"""Walls of the ring and of the bush, in units of R."""
+
+BODIES = {
+    "plate": Plate(),
+    "reaction": Plate((0.0, -4.0)),
+    "ring": Ring(1.0 + WALL, "half"),
+    "bush": Bushing(fastpin.Material(1.5, 0.3), 1.0 + WALL),
+}
+"""The plates that are timed, by name."""
 
 ANGLES = np.linspace(-np.pi, np.pi, 720, endpoint=False)
 """Angles of a curve round the hole, rad."""
@@ -52,6 +64,20 @@ def test_points(benchmark: Any, request: pytest.FixtureRequest, monkeypatch: Any
     other = state.stress(points)
     for name in ("radial", "hoop", "shear"):
         assert np.array_equal(getattr(found, name), getattr(other, name))
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.benchmark(group="stress of bodies")
+def test_bodies(benchmark: Any, request: pytest.FixtureRequest, nodes: int, name: str) -> None:
+    """Time the stress at many points of other plates, under the tractions of the steady state."""
+    state = cases.steady_state(nodes)[-1]
+    state = dataclasses.replace(state, problem=dataclasses.replace(state.problem, plate_body=BODIES[name]))
+    theta, depth = places(FEW if request.config.getoption("benchmark_disable") else POINTS)
+    points = fastpin.Points.at_depth(np.minimum(depth, 0.99) * WALL, theta)
+    assert state.stress(points).hoop.size == theta.size  # makes power laws, blocks and harmonics
+    found = benchmark.pedantic(lambda: state.stress(points), rounds=3)
+    benchmark.extra_info.update(nodes=nodes, points=theta.size)
+    assert np.isfinite(found.hoop).all()
 
 
 @pytest.mark.parametrize("way", ["blocks", "all nodes"])

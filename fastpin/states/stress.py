@@ -108,7 +108,8 @@ class HoopPeak:
     bearing_stress : float
         Force on the pin over the projected area, F/(2 R), Pa.
     gross_stress : float
-        Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin.
+        Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin. The own loads of a compliance
+        count as remote stresses.
     bypass : float
         Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin. The hole is that of
         the problem's plate: of a ring, of a bush, or of a compliance under its own loads.
