@@ -1,0 +1,297 @@
+"""Boundary integrals of plane elasticity over the edges of a plate: panels, kernels, quadrature.
+
+Edges are cut into straight and circular panels with Gauss-Legendre nodes. Panels shrink by halves towards corners and
+towards other edges. On a closed edge with the plate to the left, Somigliana's identity reads
+
+    u(x)/2 + int T(x, y) u(y) ds = int U(x, y) t(y) ds
+
+at a smooth point x. U and T are Kelvin's displacement and traction. A node takes each panel near it in subintervals no
+longer than two thirds of their distance, so that no singular quadrature is needed. Lengths are in hole radii,
+displacements u stand for 2G u.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.lug import Part
+
+MOST_NODES = 4000
+"""Most nodes of all edges. The two matrices then take one gigabyte."""
+
+WIDEST = math.pi / 4 * (1.0 + 1e-9)
+"""Largest angle of a circular panel: ten nodes resolve it to 1e-12."""
+
+TOUCHING = 1e-8
+"""Largest distance of the ends of two parts that meet, in hole radii."""
+
+SMOOTH = 1e-6
+"""Largest difference of the unit tangents of two parts at an end that is no corner."""
+
+ROWS, NEAR_PANELS = 200, 32
+"""Rows of nodes, and panels with their near nodes, that are computed at once. They limit the memory."""
+
+DROPPED, ROUNDING = 2e-12, 1e-13
+"""Subintervals at a node that are left out: parts of the panel, and hole radii. The integrands are integrable there."""
+
+REACH = 1.1
+"""Lengths of a panel within which it is near a node."""
+
+APART = 1.5
+"""Least distance of a node from the middle of a subinterval, in lengths of the subinterval."""
+
+MOST_HALVINGS = 60
+"""Most halvings of a panel; :data:`DROPPED` ends them sooner."""
+
+
+class Fineness(NamedTuple):
+    """How finely edges are cut: nodes of a panel, and halvings of a part towards a corner."""
+
+    points: int
+    halvings: int
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed edge: its parts in order, the plate to the left.
+
+    Attributes
+    ----------
+    parts : tuple of Part
+        In hole radii.
+    marks : tuple of object
+        Something for each part, equal where support and loads are equal.
+    turn : float
+        Largest angle of a circular panel.
+    """
+
+    parts: tuple[Part, ...]
+    marks: tuple[object, ...]
+    turn: float = WIDEST
+
+    def halvings(self, place: int, most: int) -> int:
+        """Halvings towards the start of the part at `place`: none where the edge goes on as it is."""
+        before, after = self.parts[place - 1], self.parts[place]
+        turned = before.direction(np.ones(1)) - after.direction(np.zeros(1))
+        if np.abs(turned[0]) > SMOOTH or self.marks[place - 1] != self.marks[place]:
+            return most
+        if before.circle is None or after.circle is None:
+            same = before.circle is after.circle
+        else:
+            same = abs(before.circle[0] - after.circle[0]) < TOUCHING
+        return 0 if same else most // 3  # a jump of the curvature is a weak singularity
+
+
+class Edges:
+    """Panels and nodes of all edges.
+
+    Attributes
+    ----------
+    parts : list of Part
+        All parts, in the order of the loops.
+    part : ndarray of int, shape (panels,)
+        The part of each panel.
+    z, normals : ndarray of complex, shape (nodes,)
+        Nodes, and outward unit normals.
+    weights : ndarray, shape (nodes,)
+        Lengths that belong to the nodes.
+
+    Raises
+    ------
+    InputError
+        If more than :data:`MOST_NODES` nodes are needed.
+    """
+
+    def __init__(self, loops: Sequence[Loop], fineness: Fineness) -> None:
+        self.parts = [part for loop in loops for part in loop.parts]
+        self.points = fineness.points
+        panels = _panels(loops, self.parts, fineness)
+        part, share, width = np.array(panels).T
+        self.part = part.astype(int)
+        circles = [each.circle or (0j, 0.0, 0.0, 0.0) for each in self.parts]
+        centre, radius, first, sweep = (np.array(values)[self.part] for values in zip(*circles, strict=True))
+        self.is_straight = np.array([each.circle is None for each in self.parts])[self.part]
+        start, end = (np.array([getattr(each, key) for each in self.parts])[self.part] for key in ("start", "end"))
+        self._origin = np.where(self.is_straight, start + (end - start) * share, centre)
+        self._span = np.where(self.is_straight, 0.5 * width * (end - start), radius)
+        self._angle, self._turn = first + sweep * share, 0.5 * width * sweep
+        self.half = np.abs(self._span) * np.where(self.is_straight, 1.0, np.abs(self._turn))
+        self.panel = np.repeat(np.arange(self.part.size), self.points)
+        gauss, weights = self.rule
+        self.z, along = self.at(self.panel, np.tile(gauss, self.part.size))
+        self.normals = -1j * along
+        self.weights = np.tile(weights, self.part.size) * self.half[self.panel]
+
+    @cached_property
+    def rule(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes and weights on [-1, 1]."""
+        gauss, weights = np.polynomial.legendre.leggauss(self.points)
+        return gauss, weights
+
+    @property
+    def part_of_node(self) -> np.ndarray:
+        """The part of each node."""
+        return self.part[self.panel]
+
+    @property
+    def extent(self) -> float:
+        """Largest distance of a node from the hole's centre."""
+        return float(np.abs(self.z).max())
+
+    def at(self, panel: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points and unit tangents of panels at s from -1 to 1."""
+        straight, origin, span = self.is_straight[panel], self._origin[panel], self._span[panel]
+        ray = np.exp(1j * (self._angle[panel] + self._turn[panel] * s))
+        along = np.where(straight, span / np.abs(span), 1j * np.sign(self._turn[panel]) * ray)
+        return origin + span * np.where(straight, s, ray), along
+
+    def lagrange(self, s: np.ndarray) -> np.ndarray:
+        """The polynomials that are 1 at one node of a panel and 0 at the others, at s; shape (..., points)."""
+        legendre = np.polynomial.legendre.legvander
+        found: np.ndarray = legendre(s, self.points - 1) @ np.linalg.inv(legendre(self.rule[0], self.points - 1))
+        return found
+
+
+def _panels(loops: Sequence[Loop], parts: list[Part], fineness: Fineness) -> list[tuple[int, float, float]]:
+    """Part, middle and width (in shares of the part's length) of each panel."""
+    found: list[tuple[int, float, float]] = []
+    for loop in loops:
+        for place in range(len(loop.parts)):
+            halvings = loop.halvings(place, fineness.halvings)
+            following = loop.halvings((place + 1) % len(loop.parts), fineness.halvings)
+            for low, high in _cuts(parts, loop.parts[place], (halvings, following), loop.turn):
+                found.append((parts.index(loop.parts[place]), 0.5 * (low + high), high - low))
+                if len(found) * fineness.points > MOST_NODES:
+                    raise InputError(
+                        "outline",
+                        f"needs more than {MOST_NODES} nodes: edges are too near one another, or there are too many "
+                        "parts or harmonics",
+                    )
+    return found
+
+
+def _cuts(parts: list[Part], part: Part, halvings: tuple[int, int], most_turn: float) -> list[tuple[float, float]]:
+    """Ends of a part's panels, in shares of its length. A panel is no longer than its distance from other parts."""
+    others = [other for other in parts if other is not part]
+    at_start = [min(abs(other.start - part.start), abs(other.end - part.start)) < TOUCHING for other in others]
+    at_end = [min(abs(other.start - part.end), abs(other.end - part.end)) < TOUCHING for other in others]
+    sweep = abs(part.circle[3]) if part.circle is not None else 0.0
+    found, waiting = [], [(0.0, 1.0, *halvings)]
+    while waiting and len(found) < MOST_NODES:
+        low, high, left, right = waiting.pop()
+        points = part.at(np.linspace(low, high, 7))
+        too_long = sweep * (high - low) > most_turn or left > 0 or right > 0
+        for other, starts, ends in zip(others, at_start, at_end, strict=True):
+            met = (starts and (low == 0.0 or halvings[0] == 0)) or (ends and (high == 1.0 or halvings[1] == 0))
+            if too_long or met:
+                continue
+            too_long = (high - low) * part.length > 1.01 * float(other.distance(points).min())
+        if too_long:
+            middle = 0.5 * (low + high)
+            waiting += [(low, middle, left - 1, 0), (middle, high, 0, right - 1)]
+        else:
+            found.append((low, high))
+    return found
+
+
+# -- the two matrices -----------------------------------------------------------------------------------------
+
+
+def kernels(r: np.ndarray, normals: np.ndarray, kolosov: float, scale: float) -> np.ndarray:
+    """Kelvin's 2G U (xx, xy, yy) and T (xx, xy, yx, yy) at distances `r` = y - x, shape (7, ...).
+
+    The first index of T is the direction of the unit force at x. Distances in the logarithm are in units of `scale`.
+    """
+    k, square = kolosov, r.real**2 + r.imag**2
+    distance = np.sqrt(square)
+    x, y = r.real / distance, r.imag / distance
+    factor = 1.0 / (math.pi * (1.0 + k))
+    log = -0.5 * k * np.log(square / scale**2)
+    shear = 0.5 * (k - 1.0)
+    along = x * normals.real + y * normals.imag
+    across = shear * (normals.real * y - normals.imag * x)
+    found = np.empty((7, *np.shape(along)))
+    found[0], found[1], found[2] = log + x * x, x * y, log + y * y
+    found[3], found[6] = along * (shear + 2.0 * x * x), along * (shear + 2.0 * y * y)
+    found[4], found[5] = 2.0 * x * y * along + across, 2.0 * x * y * along - across
+    found[:3] *= factor
+    found[3:] *= -factor / distance
+    return found
+
+
+PLACES = ((0, 0, 0), (0, 0, 1), (0, 1, 1), (1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1))
+"""Matrix (U or T), and components of x and y, of each of the seven kernels."""
+
+
+def matrices(edges: Edges, kolosov: float, scale: float, progress: Callable[[float], None]) -> np.ndarray:
+    """The matrices of U and T between nodes, shape (2, 2, nodes, 2, nodes); T holds u/2 too.
+
+    A rigid motion has no tractions, so that each row of T has the sum 0. It gives the entry of the node itself.
+    """
+    count = edges.z.size
+    both = np.empty((2, 2, count, 2, count))
+    for first in range(0, count, ROWS):
+        rows = slice(first, first + ROWS)
+        with np.errstate(divide="ignore", invalid="ignore"):  # the node itself comes later
+            values = kernels(edges.z - edges.z[rows, None], edges.normals, kolosov, scale) * edges.weights
+        for value, (matrix, i, j) in zip(values, PLACES, strict=True):
+            both[matrix, i, rows, j] = value
+        progress(0.5 * first / count)
+    for first in range(0, edges.part.size, NEAR_PANELS):
+        _near(edges, np.arange(first, min(first + NEAR_PANELS, edges.part.size)), kolosov, scale, both)
+        progress(0.5 + 0.5 * first / edges.part.size)
+    both[0, 1, :, 0] = both[0, 0, :, 1]
+    here = np.arange(count)
+    for i in range(2):
+        for j in range(2):
+            both[1, i, here, j, here] = 0.0
+            both[1, i, here, j, here] = -both[1, i, :, j].sum(axis=1)
+    return both
+
+
+def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: np.ndarray) -> None:
+    """Replace the entries between some panels and the nodes near them."""
+    samples, _ = edges.at(panels[:, None], np.linspace(-1.0, 1.0, 9))
+    distance = np.abs(edges.z[:, None] - samples[:, None, :]).min(axis=2)
+    place, node = np.nonzero(distance < 2.0 * REACH * edges.half[panels][:, None])
+    panel = panels[place]
+    pair, middle, size = _subintervals(edges, panel, node)
+    gauss, weights = edges.rule
+    inner = middle[:, None] + size[:, None] * gauss
+    y, along = edges.at(panel[pair][:, None], inner)
+    values = kernels(y - edges.z[node[pair]][:, None], -1j * along, kolosov, scale)
+    values *= weights * (size * edges.half[panel[pair]])[:, None]
+    integrals = values.transpose(1, 0, 2) @ edges.lagrange(inner)  # subintervals, kernels, nodes of the panel
+    starts = np.flatnonzero(np.r_[True, pair[1:] != pair[:-1]])
+    sums = np.add.reduceat(integrals, starts, axis=0)
+    rows = node[pair[starts]][:, None]
+    columns = panel[pair[starts]][:, None] * edges.points + np.arange(edges.points)
+    for place, (matrix, i, j) in enumerate(PLACES):
+        both[matrix, i, rows, j, columns] = sums[:, place]
+
+
+def _subintervals(edges: Edges, panel: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Subintervals of panels that are apart from nodes: the pair of panel and node in order, middle, half width."""
+    pair = np.arange(panel.size)
+    middle, size = np.zeros(panel.size), np.ones(panel.size)
+    found = []
+    for _ in range(MOST_HALVINGS):
+        centre, _ = edges.at(panel[pair], middle)
+        half = edges.half[panel[pair]]
+        apart = np.abs(centre - edges.z[node[pair]]) >= 2.0 * APART * size * half
+        found.append((pair[apart], middle[apart], size[apart]))
+        left = ~apart & (size > np.maximum(DROPPED, ROUNDING / half))
+        if not left.any():
+            break
+        pair, size = np.tile(pair[left], 2), np.tile(0.5 * size[left], 2)
+        middle = np.tile(middle[left], 2) + np.repeat([-1.0, 1.0], size.size // 2) * size
+    pair, middle, size = (np.concatenate(values) for values in zip(*found, strict=True))
+    order = np.argsort(pair, kind="stable")
+    return pair[order], middle[order], size[order]

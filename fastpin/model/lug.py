@@ -1,0 +1,410 @@
+"""A finite plate with a hole: its outline, further holes, supports and loads.
+
+Points are complex numbers x + iy, in metres. The hole of the pin has its centre at 0. The outline is a closed curve of
+straight and circular parts. Parts and further holes have names; supports and loads refer to the names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, choice, number, positive, string
+from fastpin.model.compliance import COLUMNS
+from fastpin.model.materials import PLANES, Material, Plane
+
+HOLD = ("both", "x", "y", "normal")
+"""Components of the displacement that a support holds."""
+
+FLAT = 1e-9
+"""Distance of an arc's middle point from the chord, in parts of the chord, below which three points lie on a line."""
+
+CHORDS = 96
+"""Chords of a full circle in the search for crossings."""
+
+LEAST_LIGAMENT = 0.01
+"""Least distance of the hole's edge from another edge, in hole radii. The harmonics decay too slowly below it."""
+
+MOST_EXTENT = 1000.0
+"""Largest distance of a point from the hole's centre, in hole radii."""
+
+SAME_PLACE = 1e-9
+"""Largest distance of two ends that count as one point, in hole radii."""
+
+MOST_PARTS = 200
+"""Most parts of the outline and most further holes."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A straight or circular part of an outline.
+
+    Parameters
+    ----------
+    name : str
+    start, end : complex
+        Ends, m.
+    through : complex, optional
+        A third point of a circular part, between the ends. Without it the part is straight.
+    """
+
+    name: str
+    start: complex
+    end: complex
+    through: complex | None = None
+
+    @cached_property
+    def circle(self) -> tuple[complex, float, float, float] | None:
+        """Centre, radius, first angle and swept angle (positive: counter-clockwise); None for a straight part."""
+        if self.through is None:
+            return None
+        a, b = self.through - self.start, self.end - self.start
+        across = (a.conjugate() * b).imag
+        centre = self.start + 1j * (a * abs(b) ** 2 - b * abs(a) ** 2) / (2.0 * across)
+        first = _angle(self.start - centre)
+        sweep = (_angle(self.end - centre) - first) % (2.0 * math.pi)
+        return centre, abs(self.start - centre), first, sweep if across > 0.0 else sweep - 2.0 * math.pi
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether the three points of a circular part lie on a line, or two points are one."""
+        if self.through is None:
+            return self.start == self.end
+        a, b = self.through - self.start, self.end - self.start
+        return abs((a.conjugate() * b).imag) <= FLAT * max(abs(a), abs(b)) ** 2
+
+    @property
+    def length(self) -> float:
+        """Length, m."""
+        if self.circle is None:
+            return abs(self.end - self.start)
+        return self.circle[1] * abs(self.circle[3])
+
+    def at(self, share: np.ndarray) -> np.ndarray:
+        """Points at shares (0 to 1) of the length, complex, m."""
+        if self.circle is None:
+            return self.start + (self.end - self.start) * share
+        centre, radius, first, sweep = self.circle
+        return centre + radius * np.exp(1j * (first + sweep * share))
+
+    def direction(self, share: np.ndarray) -> np.ndarray:
+        """Unit tangents at shares of the length, from start to end."""
+        if self.circle is None:
+            return np.full(np.shape(share), (self.end - self.start) / abs(self.end - self.start))
+        _, _, first, sweep = self.circle
+        return 1j * math.copysign(1.0, sweep) * np.exp(1j * (first + sweep * share))
+
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """Distances of points from this part, m."""
+        ends = np.minimum(np.abs(points - self.start), np.abs(points - self.end))
+        if self.circle is None:
+            along = (self.end - self.start) / abs(self.end - self.start)
+            place = np.conj(along) * (points - self.start)
+            return np.where((place.real > 0.0) & (place.real < self.length), np.abs(place.imag), ends)
+        centre, radius, first, sweep = self.circle
+        turned = np.angle((points - centre) * np.exp(-1j * (first + 0.5 * sweep)))
+        return np.where(np.abs(turned) < 0.5 * abs(sweep), np.abs(np.abs(points - centre) - radius), ends)
+
+    def scaled(self, factor: float) -> Part:
+        """The same part with all lengths times `factor`."""
+        through = None if self.through is None else self.through * factor
+        return Part(self.name, self.start * factor, self.end * factor, through)
+
+    def reversed(self) -> Part:
+        """The same part from its end to its start."""
+        return replace(self, start=self.end, end=self.start)
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A further hole: name, centre (complex, m) and radius (m)."""
+
+    name: str
+    centre: complex
+    radius: float
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Its edge in four arcs, clockwise: the plate lies to the left."""
+        turns = [self.centre + self.radius * 1j ** (-0.5 * k) for k in range(9)]
+        return tuple(Part(self.name, turns[2 * k], turns[2 * k + 2], turns[2 * k + 1]) for k in range(4))
+
+
+@dataclass(frozen=True)
+class PartLoad:
+    """A traction on some parts, per unit of a load.
+
+    Parameters
+    ----------
+    name : {"sxx", "syy", "sxy"}
+        The load of a case that this traction follows.
+    parts : sequence of str
+        Names of the parts.
+    x, y, normal : float
+        Components of the traction along x, y and the outward normal, Pa per Pa of the load.
+    """
+
+    name: str
+    parts: tuple[str, ...]
+    x: float = 0.0
+    y: float = 0.0
+    normal: float = 0.0
+
+
+@dataclass(frozen=True)
+class Lug:
+    """A finite plate with a hole for a pin.
+
+    Parameters
+    ----------
+    nu : float
+        Poisson's ratio.
+    plane : {"strain", "stress"}
+    hole_radius : float
+        Radius of the pin's hole, whose centre is 0, m.
+    outline : sequence of Part
+        A closed curve. Each part begins where the one before ends. Clockwise outlines are turned round.
+    supports : mapping of str to str
+        What is held, a word of :data:`HOLD`, by the name of the part or hole.
+    loads : sequence of PartLoad
+    holes : sequence of Hole
+        Further holes.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, the outline is open or crosses itself, a hole is not inside, a name is unknown, or
+        the supports leave a rigid motion.
+    """
+
+    nu: float
+    plane: Plane
+    hole_radius: float
+    outline: tuple[Part, ...]
+    supports: Mapping[str, str] = field(default_factory=dict)
+    loads: Sequence[PartLoad] = ()
+    holes: tuple[Hole, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
+        choice("plane", self.plane, PLANES)
+        object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
+        _check_outline(self.outline, self.hole_radius)
+        if _area(self.outline) < 0.0:
+            object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))
+        _check_holes(self)
+        self._check_names()
+        motion = self.rigid_motion
+        if motion:
+            raise InputError("support", f"the supports leave a rigid motion: the plate can {motion}; hold more of it")
+
+    def _check_names(self) -> None:
+        names = [part.name for part in self.outline] + [hole.name for hole in self.holes]
+        for name, hold in self.supports.items():
+            _check_name("support", name, names)
+            choice("hold", hold, HOLD)
+        for load in self.loads:
+            choice("load", load.name, COLUMNS)
+            for name in load.parts:
+                _check_name("load", name, names)
+                lost = _held_component(load, self.supports.get(name))
+                if lost:
+                    raise InputError(
+                        "load", f"the support of {as_toml(name)} takes up its component {lost}: leave it out"
+                    )
+            for direction in ("x", "y", "normal"):
+                number(direction, getattr(load, direction))
+
+    @property
+    def kolosov(self) -> float:
+        """Kolosov's constant of the plate."""
+        return Material(1.0, self.nu).kolosov(self.plane)
+
+    @property
+    def contact_edge(self) -> tuple[Part, ...]:
+        """The edge of the pin's hole in four arcs."""
+        return Hole("", 0j, self.hole_radius).parts
+
+    @property
+    def edges(self) -> tuple[Part, ...]:
+        """All other parts, with the plate to the left: outline, then further holes."""
+        return self.outline + tuple(part for hole in self.holes for part in hole.parts)
+
+    @property
+    def nearest(self) -> float:
+        """Distance of the nearest other edge from the hole's centre, m."""
+        return min(float(part.distance(np.zeros(1, complex))[0]) for part in self.edges)
+
+    @property
+    def rigid_motion(self) -> str:
+        """The rigid motion that the supports leave, in words; empty if there is none."""
+        size = max(float(np.abs(part.at(np.linspace(0.0, 1.0, 9))).max()) for part in self.edges)
+        rows = [np.zeros((1, 3))]
+        for part in self.edges:
+            hold = self.supports.get(part.name)
+            points, tangents = part.at(np.linspace(0.0, 1.0, 9)) / size, part.direction(np.linspace(0.0, 1.0, 9))
+            for along in held_directions(hold, -1j * tangents):
+                rows.append(np.stack([along.real, along.imag, (np.conj(along) * 1j * points).real], axis=1))
+        _, values, modes = np.linalg.svd(np.concatenate(rows), full_matrices=True)
+        values = np.r_[values, np.zeros(3 - values.size)]
+        free = modes[values <= 1e-9 * max(1.0, values[0])]
+        return _motion_in_words(free, size)
+
+
+def held_directions(hold: str | None, normals: np.ndarray) -> list[np.ndarray]:
+    """Directions in which a support holds, complex unit vectors shaped like the outward normals."""
+    x, y = np.ones_like(normals), np.full_like(normals, 1j)
+    return {None: [], "both": [x, y], "x": [x], "y": [y], "normal": [normals]}[hold]
+
+
+def rectangle(x: tuple[float, float], y: tuple[float, float]) -> tuple[Part, ...]:
+    """The outline of a rectangle between two x and two y; its parts are called bottom, right, top and left."""
+    corners = [complex(x[0], y[0]), complex(x[1], y[0]), complex(x[1], y[1]), complex(x[0], y[1])]
+    names = ("bottom", "right", "top", "left")
+    return tuple(Part(name, corners[k], corners[(k + 1) % 4]) for k, name in enumerate(names))
+
+
+def _angle(z: complex) -> float:
+    return math.atan2(z.imag, z.real)
+
+
+def _check_name(place: str, name: str, names: Sequence[str]) -> None:
+    if name not in names:
+        raise InputError(place, f"no part is called {as_toml(name)}; the parts are {', '.join(map(as_toml, names))}")
+
+
+def _held_component(load: PartLoad, hold: str | None) -> str:
+    """A component of the load that the support takes up; empty if there is none."""
+    lost = {"both": ("x", "y", "normal"), "x": ("x", "normal"), "y": ("y", "normal"), "normal": ("x", "y", "normal")}
+    return next((name for name in lost.get(hold or "", ()) if getattr(load, name) != 0.0), "")
+
+
+def _motion_in_words(free: np.ndarray, size: float) -> str:
+    """Words for the rigid motions of the rows (x, y, turn by `size`)."""
+    if not len(free):
+        return ""
+    if len(free) == 3:
+        return "move and turn freely"
+    if len(free) == 2:
+        return "move along x and y" if np.abs(free[:, 2]).max() < 1e-9 else "move, and turn"
+    x, y, turn = free[0]
+    if abs(turn) < 1e-9:
+        return f"move along ({x:.3g}, {y:.3g})"
+    centre = 1j * complex(x, y) / turn * size
+    return f"turn about the point [{centre.real:.4g}, {centre.imag:.4g}]"
+
+
+def _check_outline(outline: Sequence[Part], radius: float) -> None:
+    if not 2 <= len(outline) <= MOST_PARTS:
+        raise InputError("outline", f"must have 2 to {MOST_PARTS} parts, not {len(outline)}")
+    for part in outline:
+        string("name", part.name)
+        points = [part.start, part.end] + ([part.through] if part.through is not None else [])
+        for point in points:
+            if not abs(point) <= MOST_EXTENT * radius:
+                raise InputError(
+                    "outline", f"part {as_toml(part.name)} lies more than {MOST_EXTENT:g} hole radii from the hole"
+                )
+        if part.is_flat or part.length <= SAME_PLACE * radius:
+            kind = "two of its points are one" if part.through is None else "its three points lie on a line"
+            raise InputError("outline", f"part {as_toml(part.name)} has no shape: {kind}")
+    for part, following in zip(outline, (*outline[1:], outline[0]), strict=True):
+        if abs(part.end - following.start) > SAME_PLACE * radius:
+            raise InputError(
+                "outline",
+                f"is not closed: {as_toml(part.name)} ends at {_point(part.end)}, and {as_toml(following.name)} begins at "
+                f"{_point(following.start)}",
+            )
+    crossing = _crossing(outline)
+    if crossing is not None:
+        raise InputError("outline", f"crosses itself near {_point(crossing)}")
+
+
+def _point(z: complex) -> str:
+    return f"[{z.real:.6g}, {z.imag:.6g}]"
+
+
+def _polygon(outline: Sequence[Part]) -> np.ndarray:
+    """Points on the outline in order, close enough for crossings and areas."""
+    pieces = []
+    for part in outline:
+        sweep = abs(part.circle[3]) if part.circle is not None else 0.0
+        count = max(1, math.ceil(CHORDS * sweep / (2.0 * math.pi)))
+        pieces.append(part.at(np.arange(count) / count))
+    return np.concatenate(pieces)
+
+
+def _area(outline: Sequence[Part]) -> float:
+    points = _polygon(outline)
+    return 0.5 * float(np.sum((np.conj(points) * np.roll(points, -1)).imag))
+
+
+def _crossing(outline: Sequence[Part]) -> complex | None:
+    """A place where the outline crosses or touches itself; None if it is simple."""
+    a = _polygon(outline)
+    b = np.roll(a, -1)
+    count = len(a)
+    if count < 3:
+        return None
+    d = b - a
+
+    def side(k: int, points: np.ndarray) -> np.ndarray:
+        return (np.conj(d[k]) * (points - a[k])).imag
+
+    for k in range(count):
+        others = np.array([j for j in range(count) if j not in (k, (k + 1) % count, (k - 1) % count)], dtype=int)
+        if not others.size:
+            continue
+        one = side(k, a[others]) * side(k, b[others]) <= 0.0
+        mine = (np.conj(d[others]) * (a[k] - a[others])).imag * (np.conj(d[others]) * (b[k] - a[others])).imag <= 0.0
+        apart = (  # segments of one line have all four products zero, and cross only if their boxes meet
+            (np.minimum(a[others].real, b[others].real) > max(a[k].real, b[k].real))
+            | (np.maximum(a[others].real, b[others].real) < min(a[k].real, b[k].real))
+            | (np.minimum(a[others].imag, b[others].imag) > max(a[k].imag, b[k].imag))
+            | (np.maximum(a[others].imag, b[others].imag) < min(a[k].imag, b[k].imag))
+        )
+        hit = np.flatnonzero(one & mine & ~apart)
+        if hit.size:
+            return complex(0.5 * (a[k] + b[k]))
+    return None
+
+
+def _is_inside(outline: Sequence[Part], point: complex) -> bool:
+    points = _polygon(outline) - point
+    turn = float(np.sum(np.angle(np.roll(points, -1) / points)))
+    return abs(turn) > math.pi
+
+
+def _check_holes(lug: Lug) -> None:
+    """Check that all holes lie inside the outline, apart from it and from one another."""
+    if len(lug.holes) > MOST_PARTS:
+        raise InputError("holes", f"must be at most {MOST_PARTS}, not {len(lug.holes)}")
+    least = LEAST_LIGAMENT * lug.hole_radius
+    circles = [("the pin's hole", 0j, lug.hole_radius)]
+    for hole in lug.holes:
+        string("name", hole.name)
+        circles.append((f"the hole {as_toml(hole.name)}", hole.centre, positive("radius", hole.radius)))
+    for place, (words, centre, radius) in enumerate(circles):
+        if not abs(centre) <= MOST_EXTENT * lug.hole_radius or not _is_inside(lug.outline, centre):
+            raise InputError("outline", f"{words} does not lie inside the outline")
+        for part in lug.outline:
+            if float(part.distance(np.array([centre]))[0]) < radius + least:
+                raise InputError(
+                    "outline", f"{words} must keep {LEAST_LIGAMENT:g} hole radii from the part {as_toml(part.name)}"
+                )
+        for other, middle, size in circles[:place]:
+            if abs(centre - middle) < radius + size + least:
+                raise InputError("holes", f"{words} must keep {LEAST_LIGAMENT:g} hole radii from {other}")
+
+
+def named_parts(lug: Lug) -> Iterator[tuple[str, tuple[Part, ...]]]:
+    """Each name with its parts."""
+    for part in lug.outline:
+        yield part.name, (part,)
+    for hole in lug.holes:
+        yield hole.name, hole.parts
