@@ -51,6 +51,7 @@ def parser() -> argparse.ArgumentParser:
     add_plot(commands)
     add_converge(commands)
     add_sweep(commands)
+    add_compliance(commands)
     add_paper(commands)
     add_verify(commands)
     return root
@@ -223,6 +224,21 @@ def add_sweep(commands: Any) -> None:
     merge = _command(commands, "merge", "sweep", "merge", "join the directories of the parts of a sweep")
     merge.add_argument("parts", metavar="DIR", type=Path, nargs="+", help="directories of the parts")
     merge.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="directory of the whole")
+
+
+def add_compliance(commands: Any) -> None:
+    """Add ``compliance``."""
+    compliance = _command(
+        commands, "compliance", "compliance", "run", "make the compliance file of a finite plate with a hole"
+    )
+    compliance.add_argument("lug", type=Path, nargs="?", help="lug file (TOML): outline, supports and loads")
+    compliance.add_argument("--example", action="store_true", help="print a commented lug file")
+    compliance.add_argument(
+        "-o", "--output", metavar="FILE", type=Path, help="the compliance file (default: the lug's name with .json)"
+    )
+    compliance.add_argument(
+        "--plot", metavar="FILE", type=Path, help="draw outline, supports and loads (png, pdf, svg)"
+    )
 
 
 def add_paper(commands: Any) -> None:

@@ -183,7 +183,8 @@ def _cuts(parts: list[Part], part: Part, halvings: tuple[int, int], most_turn: f
     at_start = [min(abs(other.start - part.start), abs(other.end - part.start)) < TOUCHING for other in others]
     at_end = [min(abs(other.start - part.end), abs(other.end - part.end)) < TOUCHING for other in others]
     sweep = abs(part.circle[3]) if part.circle is not None else 0.0
-    found, waiting = [], [(0.0, 1.0, *halvings)]
+    found: list[tuple[float, float]] = []
+    waiting = [(0.0, 1.0, *halvings)]
     while waiting and len(found) < MOST_NODES:
         low, high, left, right = waiting.pop()
         points = part.at(np.linspace(low, high, 7))
@@ -273,8 +274,8 @@ def _near(edges: Edges, panels: np.ndarray, kolosov: float, scale: float, both: 
     sums = np.add.reduceat(integrals, starts, axis=0)
     rows = node[pair[starts]][:, None]
     columns = panel[pair[starts]][:, None] * edges.points + np.arange(edges.points)
-    for place, (matrix, i, j) in enumerate(PLACES):
-        both[matrix, i, rows, j, columns] = sums[:, place]
+    for kernel, (matrix, i, j) in enumerate(PLACES):
+        both[matrix, i, rows, j, columns] = sums[:, kernel]
 
 
 def _subintervals(edges: Edges, panel: np.ndarray, node: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

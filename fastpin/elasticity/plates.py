@@ -96,7 +96,10 @@ class Response:
 
 
 def plate_compliance(
-    lug: Lug, order: int | None = None, progress: Callable[[float, float], None] | None = None
+    lug: Lug,
+    order: int | None = None,
+    progress: Callable[[float, float], None] | None = None,
+    made_by: str = f"fastpin {__version__}",
 ) -> PlateResult:
     """Compute the compliance of a finite plate.
 
@@ -107,6 +110,8 @@ def plate_compliance(
         Highest harmonic K. Without it harmonics are taken until they are below 1e-7 of the largest.
     progress : callable, optional
         ``progress(done, total)`` is called from time to time.
+    made_by : str
+        Origin of the numbers, for the file.
 
     Raises
     ------
@@ -131,7 +136,7 @@ def plate_compliance(
     cut = 2 + 4 * kept
     columns = {name: whole[:cut, size + place] for place, name in enumerate(fine.loads)}
     largest = float(np.abs(matrix).max())
-    compliance = _compliance(lug, 0.5 * (matrix + matrix.T)[:cut, :cut], columns)
+    compliance = _compliance(lug, 0.5 * (matrix + matrix.T)[:cut, :cut], columns, made_by)
     return PlateResult(
         compliance,
         float(np.abs(matrix - matrix.T).max()) / largest,
@@ -141,9 +146,9 @@ def plate_compliance(
     )
 
 
-def _compliance(lug: Lug, matrix: np.ndarray, columns: dict[str, np.ndarray]) -> Compliance:
+def _compliance(lug: Lug, matrix: np.ndarray, columns: dict[str, np.ndarray], made_by: str) -> Compliance:
     try:
-        return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, columns, f"fastpin compliance {__version__}")
+        return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, columns, made_by)
     except InputError as error:
         raise InputError("harmonics" if "more harmonics" in error.reason else error.field, error.reason) from None
 

@@ -7,7 +7,7 @@ straight and circular parts. Parts and further holes have names; supports and lo
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -204,21 +204,22 @@ class Lug:
             raise InputError("support", f"the supports leave a rigid motion: the plate can {motion}; hold more of it")
 
     def _check_names(self) -> None:
-        names = [part.name for part in self.outline] + [hole.name for hole in self.holes]
+        names = self.names
         for name, hold in self.supports.items():
-            _check_name("support", name, names)
+            check_name("support", name, names)
             choice("hold", hold, HOLD)
         for load in self.loads:
             choice("load", load.name, COLUMNS)
             for name in load.parts:
-                _check_name("load", name, names)
-                lost = _held_component(load, self.supports.get(name))
-                if lost:
-                    raise InputError(
-                        "load", f"the support of {as_toml(name)} takes up its component {lost}: leave it out"
-                    )
+                check_name("load", name, names)
+            check_not_held(load, self.supports)
             for direction in ("x", "y", "normal"):
                 number(direction, getattr(load, direction))
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all parts and further holes."""
+        return [part.name for part in self.outline] + [hole.name for hole in self.holes]
 
     @property
     def kolosov(self) -> float:
@@ -273,15 +274,20 @@ def _angle(z: complex) -> float:
     return math.atan2(z.imag, z.real)
 
 
-def _check_name(place: str, name: str, names: Sequence[str]) -> None:
+def check_name(field: str, name: str, names: Sequence[str]) -> None:
+    """Check that a part or further hole of this name exists."""
     if name not in names:
-        raise InputError(place, f"no part is called {as_toml(name)}; the parts are {', '.join(map(as_toml, names))}")
+        known = ", ".join(map(as_toml, dict.fromkeys(names)))
+        raise InputError(field, f"no part or hole is called {as_toml(name)}; the names are {known}")
 
 
-def _held_component(load: PartLoad, hold: str | None) -> str:
-    """A component of the load that the support takes up; empty if there is none."""
+def check_not_held(load: PartLoad, supports: Mapping[str, str]) -> None:
+    """Check that no support takes up a component of a load."""
     lost = {"both": ("x", "y", "normal"), "x": ("x", "normal"), "y": ("y", "normal"), "normal": ("x", "y", "normal")}
-    return next((name for name in lost.get(hold or "", ()) if getattr(load, name) != 0.0), "")
+    for name in load.parts:
+        for component in lost.get(supports.get(name, ""), ()):
+            if getattr(load, component) != 0.0:
+                raise InputError(component, f"the support of {as_toml(name)} takes up this component; leave it out")
 
 
 def _motion_in_words(free: np.ndarray, size: float) -> str:
@@ -317,8 +323,8 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
         if abs(part.end - following.start) > SAME_PLACE * radius:
             raise InputError(
                 "outline",
-                f"is not closed: {as_toml(part.name)} ends at {_point(part.end)}, and {as_toml(following.name)} begins at "
-                f"{_point(following.start)}",
+                f"is not closed: {as_toml(part.name)} ends at {_point(part.end)}, and {as_toml(following.name)} begins "
+                f"at {_point(following.start)}",
             )
     crossing = _crossing(outline)
     if crossing is not None:
@@ -400,11 +406,3 @@ def _check_holes(lug: Lug) -> None:
         for other, middle, size in circles[:place]:
             if abs(centre - middle) < radius + size + least:
                 raise InputError("holes", f"{words} must keep {LEAST_LIGAMENT:g} hole radii from {other}")
-
-
-def named_parts(lug: Lug) -> Iterator[tuple[str, tuple[Part, ...]]]:
-    """Each name with its parts."""
-    for part in lug.outline:
-        yield part.name, (part,)
-    for hole in lug.holes:
-        yield hole.name, hole.parts

@@ -1,0 +1,259 @@
+"""The reader of lug files: a finite plate with a hole, its supports and loads, in one TOML file.
+
+All faults of a file are reported at once, each with its line. :data:`LUG_EXAMPLE` is a commented lug file.
+``fastpin compliance --example`` prints it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from fastpin.casefile.reader import read_text
+from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.checks import as_toml, choice, closest, file_path, number, positive, string, whole_number
+from fastpin.model.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
+from fastpin.model.lug import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
+from fastpin.model.materials import MATERIALS, PLANES
+
+LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
+"""A commented lug file: a lug with a round end."""
+
+SHAPES = ("parts", "rectangle")
+"""Shapes of an outline; the first one is meant if none is given."""
+
+LUG_KEYS: dict[str, tuple[str, ...]] = {
+    "plate": ("material", "nu", "plane", "hole_radius"),
+    "outline": ("shape", "x", "y", "start"),
+    "part": ("name", "to", "through"),
+    "hole": ("name", "centre", "radius"),
+    "support": ("parts", "hold"),
+    "load": ("name", "parts", "x", "y", "normal"),
+    "solve": ("harmonics",),
+}
+"""Sections of a lug file and their keys."""
+
+BLOCKS = ("part", "hole", "support", "load")
+"""Sections that may appear several times."""
+
+
+class LugFile(NamedTuple):
+    """The content of a lug file.
+
+    Attributes
+    ----------
+    lug : Lug
+    title : str
+    harmonics : int or None
+        The highest harmonic; None: chosen by the decay.
+    """
+
+    lug: Lug
+    title: str
+    harmonics: int | None
+
+
+def read_lug(path: str | Path) -> LugFile:
+    """Read a lug file.
+
+    Raises
+    ------
+    CaseFileError
+        If the file can't be read or has faults. It lists all faults with their lines.
+    InputError
+        If `path` is no path.
+    """
+    path = file_path("path", path)
+    return parse_lug(read_text(path), str(path))
+
+
+def parse_lug(text: str, name: str = "lug file") -> LugFile:
+    """Read a lug from a TOML text. `name` is the name of the file in error messages.
+
+    Raises
+    ------
+    CaseFileError
+        If the text has faults. It lists all faults with their lines.
+    InputError
+        If an argument is of the wrong kind.
+    """
+    source, shown = CaseText(text), string("name", name)
+    found = _lug_file(source) if source.readable else None
+    if source.faults:
+        raise CaseFileError(shown, source.faults)
+    assert found is not None
+    return found
+
+
+def _lug_file(source: CaseText) -> LugFile | None:
+    _check_keys(source)
+    title = source.root.checked("title", string) or ""
+    plate = source.section("plate", required=True)
+    nu, plane = _poisson_ratio(plate), plate.choice("plane", PLANES)
+    radius = plate.checked("hole_radius", positive)
+    if plate.present:
+        plate.require("hole_radius")
+    outline = _outline(source)
+    holes = [_hole(section) for section in source.blocks("hole")]
+    names = [part.name for part in outline or ()] + [hole.name for hole in holes if hole is not None]
+    known = names if outline is not None and None not in holes else None
+    supports = _supports(source, known)
+    loads = [_load(section, known, supports) for section in source.blocks("load")]
+    harmonics = source.section("solve").checked("harmonics", whole_number, LEAST_ORDER, MOST_ORDER)
+    if source.faults or nu is None or radius is None or outline is None:
+        return None
+    given = [load for load in loads if load is not None], [hole for hole in holes if hole is not None]
+    try:
+        lug = Lug(nu, plane, radius, outline, supports, tuple(given[0]), tuple(given[1]))  # type: ignore[arg-type]
+    except InputError as error:
+        section, *key = PLACES.get(error.field, (error.field,))
+        source.report(str(error), section, *key)
+        return None
+    return LugFile(lug, title, harmonics)
+
+
+PLACES = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hole_radius")}
+"""Place in the file of a field of the lug, where it has another name."""
+
+
+def _check_keys(source: CaseText) -> None:
+    """Report unknown sections and keys."""
+    for name, value in source.root.table.items():
+        if name == "title":
+            continue
+        shown = f"[[{name}]]" if name in BLOCKS else f"[{name}]"
+        if name not in LUG_KEYS:
+            hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(LUG_KEYS)}"
+            kind = f"section [{name}]" if isinstance(value, (dict, list)) else f'key "{name}" before the first section'
+            source.report(f"unknown {kind}{hint}", name)
+        elif not (isinstance(value, dict) or (name in BLOCKS and _are_tables(value))):
+            source.report(f"{name}: must be a section {shown}, not {as_toml(value)}", name)
+        else:
+            for section in source.blocks(name):
+                for key in section.table:
+                    if key not in LUG_KEYS[name]:
+                        hint = closest(key, LUG_KEYS[name]) or f"; the keys are {', '.join(LUG_KEYS[name])}"
+                        section.report(f'unknown key "{key}" in {shown}{hint}', key)
+
+
+def _are_tables(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(table, dict) for table in value)
+
+
+def _poisson_ratio(plate: Section) -> float | None:
+    """Poisson's ratio, of `material` or `nu`."""
+    if not plate.present:
+        return None
+    if "material" in plate and "nu" in plate:
+        plate.report("[plate]: nu can't be given together with material", "nu")
+    if "material" in plate:
+        name = plate.checked("material", choice, tuple(MATERIALS))
+        return None if name is None else MATERIALS[name].nu
+    plate.require("nu", "; give nu or material")
+    return plate.checked("nu", number, 0.0, 0.5)
+
+
+def _outline(source: CaseText) -> tuple[Part, ...] | None:
+    """The outline; None if it is missing or wrong (reported)."""
+    section = source.section("outline", required=True)
+    if not section.present:
+        return None
+    shape = section.choice("shape", SHAPES)
+    if shape == "rectangle":
+        if "start" in section:
+            section.report("start: has no meaning for a rectangle", "start")
+        for block in source.blocks("part"):
+            block.report("[[part]]: has no meaning for a rectangle, whose parts are bottom, right, top and left")
+        for key in ("x", "y"):
+            section.require(key)
+        x, y = section.checked("x", _limits), section.checked("y", _limits)
+        return None if x is None or y is None else rectangle(x, y)
+    for key in ("x", "y"):
+        if key in section:
+            section.report(f'{key}: is for shape = "rectangle" only', key)
+    section.require("start")
+    point = section.checked("start", _point)
+    parts: list[Part] = []
+    blocks = source.blocks("part")
+    if not blocks:
+        section.report("[outline]: [[part]] blocks are missing")
+    for block in blocks:
+        block.require("name")
+        block.require("to")
+        name, end = block.checked("name", string), block.checked("to", _point)
+        through = block.checked("through", _point)
+        if name is not None and end is not None and point is not None:
+            parts.append(Part(name, point, end, through))
+        point = end
+    return tuple(parts) if len(parts) == len(blocks) and parts else None
+
+
+def _limits(field: str, value: object) -> tuple[float, float]:
+    """Check a lower and an upper limit."""
+    low, high = _two_numbers(field, value, "two numbers [lower, upper]")
+    if low >= high:
+        raise InputError(field, f"its first number must be below its second, not {as_toml(value)}")
+    return low, high
+
+
+def _point(field: str, value: object) -> complex:
+    """Check a point [x, y], m."""
+    return complex(*_two_numbers(field, value, "a point [x, y]"))
+
+
+def _two_numbers(field: str, value: object, words: str) -> tuple[float, float]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(field, f"must be {words}, not {as_toml(value)}")
+    return number(field, value[0]), number(field, value[1])
+
+
+def _names(field: str, value: object, known: Sequence[str] | None) -> tuple[str, ...]:
+    """Check a name or a list of names. They are among the `known` ones, if these could be read."""
+    names = value if isinstance(value, list) else [value]
+    if not names:
+        raise InputError(field, "must name at least one part")
+    for name in names:
+        string(field, name)
+        if known is not None:
+            check_name(field, name, known)
+    return tuple(names)
+
+
+def _hole(section: Section) -> Hole | None:
+    for key in LUG_KEYS["hole"]:
+        section.require(key)
+    name, centre = section.checked("name", string), section.checked("centre", _point)
+    radius = section.checked("radius", positive)
+    return None if name is None or centre is None or radius is None else Hole(name, centre, radius)
+
+
+def _supports(source: CaseText, known: Sequence[str] | None) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for section in source.blocks("support"):
+        hold = section.choice("hold", HOLD)
+        section.require("parts")
+        for name in section.checked("parts", _names, known) or ():
+            if name in found:
+                section.report(f"parts: {as_toml(name)} has a support already", "parts")
+            elif hold is not None:
+                found[name] = hold
+    return found
+
+
+def _load(section: Section, known: Sequence[str] | None, supports: dict[str, str]) -> PartLoad | None:
+    for key in ("name", "parts"):
+        section.require(key)
+    name, parts = section.checked("name", choice, COLUMNS), section.checked("parts", _names, known)
+    components = {key: section.number(key) or 0.0 for key in ("x", "y", "normal")}
+    if not any(key in section for key in components):
+        section.report("[[load]]: has no traction; give x, y or normal")
+    if name is None or parts is None:
+        return None
+    load = PartLoad(name, parts, **components)
+    try:
+        check_not_held(load, supports)
+    except InputError as error:
+        section.report(str(error), error.field)
+    return load

@@ -1,0 +1,50 @@
+"""``fastpin compliance``: from the outline of a finite plate to its compliance file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from fastpin import casefile, elasticity
+from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.terminal import EXIT_OK, check_outputs, write_files, write_text
+from fastpin.errors import CaseFileError, InputError
+from fastpin.version import __version__
+
+DOUBTFUL = 1e-5
+"""Estimated error above which a note is printed. Contact tractions have errors of this size with 401 nodes."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make a compliance file, and print how good it is; or print a commented lug file."""
+    if options.example:
+        print(casefile.LUG_EXAMPLE, end="")
+        return EXIT_OK
+    if options.lug is None:
+        raise InputError("lug", "the lug file is missing; start with: fastpin compliance --example > lug.toml")
+    output = options.lug.with_suffix(".json") if options.output is None else options.output
+    check_outputs({"--output": output}, options.lug)
+    found = casefile.read_lug(options.lug)
+    made_by = f"fastpin {__version__}, {found.title or options.lug.name}"
+    with bar(1, "compliance") as progress_bar:
+        try:
+            result = elasticity.plate_compliance(found.lug, found.harmonics, progress_to(progress_bar), made_by)
+        except InputError as error:
+            raise CaseFileError(str(options.lug), [(0, str(error))]) from None
+    code = write_files([(output, lambda path: write_text(path, result.compliance.to_text()))])
+    if code == EXIT_OK:
+        _print_report(result, output)
+    return code
+
+
+def _print_report(result: elasticity.PlateResult, output: object) -> None:
+    compliance = result.compliance
+    print(f"harmonics        {compliance.order}")
+    print(f"last harmonic    {result.last:.1e} of the largest")
+    print(f"symmetry error   {result.asymmetry:.1e}")
+    print(f"estimated error  {result.error:.1e}, from a coarser discretisation")
+    print(f"nodes            {result.nodes:,} on all edges")
+    print(f"loads            {', '.join(compliance.columns) or 'none of its own'}")
+    print(f"wrote {output}")
+    if result.error > DOUBTFUL:
+        print(f"note: the estimated error is above {DOUBTFUL:g}; edges may be too near one another", file=sys.stderr)
