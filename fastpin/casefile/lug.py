@@ -211,14 +211,12 @@ def _two_numbers(field: str, value: object, words: str) -> tuple[float, float]:
 
 def _names(field: str, value: object, known: Sequence[str] | None) -> tuple[str, ...]:
     """Check a name or a list of names. They are among the `known` ones, if these could be read."""
-    names = value if isinstance(value, list) else [value]
+    names = tuple(string(field, name) for name in (value if isinstance(value, list) else [value]))
     if not names:
         raise InputError(field, "must name at least one part")
-    for name in names:
-        string(field, name)
-        if known is not None:
-            check_name(field, name, known)
-    return tuple(names)
+    for name in names if known is not None else ():
+        check_name(field, name, known or ())
+    return names
 
 
 def _hole(section: Section) -> Hole | None:

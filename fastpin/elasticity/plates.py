@@ -28,12 +28,12 @@ FINE, COARSE = Fineness(10, 16), Fineness(8, 12)
 """The discretisation, and a coarser one for its error. Measured for a rectangle with one held edge: 3e-11 and 2e-9; for
 an edge that is held in its middle only: 2e-7 and 4e-6."""
 
-MOST_CHOSEN = 120
-"""Most harmonics that are chosen by themselves. The file of more is larger than readers take."""
+FIRST_TRIED, MOST_CHOSEN = 16, 120
+"""Harmonics that are tried first, then twice as many, and most that are chosen. The file of more is too large."""
 
-EXPECTED, KEPT = 1e-8, 1e-7
-"""Expected size of the first harmonic that is not computed, and least size of the last one that is kept, in parts of
-the largest. A contact changes by 1e-6 of its peak pressure when harmonics of 1e-5 are left out."""
+KEPT = 1e-7
+"""Least size of the last harmonic that is kept, in parts of the largest. The peak pressure of a contact changes by 1e-6
+when harmonics below 1e-5 are left out."""
 
 PHASE = 4.0
 """Largest angle of a panel on the hole's edge times the highest harmonic, rad: ten nodes integrate to 1e-10."""
@@ -120,27 +120,31 @@ def plate_compliance(
     """
     if order is not None:
         order = whole_number("harmonics", order, LEAST_ORDER, MOST_ORDER)
-    computed = order or expected_order(lug.hole_radius / lug.nearest)
 
     def share(start: float, length: float) -> Callable[[float], None]:
         return lambda done: None if progress is None else progress(start + length * done, 1.0)
 
-    coarse = respond(lug, computed, COARSE, share(0.0, 0.3))
-    fine = respond(lug, computed, FINE, share(0.3, 0.7))
-    share(1.0, 0.0)(1.0)
-    less = fine.projected() - coarse.projected()
-    whole = fine.projected()
-    size = 2 + 4 * computed
-    matrix = whole[:, :size] - hole_compliance(computed, lug.kolosov)
-    kept = computed if order is not None else decayed_order(matrix)
+    computed = FIRST_TRIED if order is None else order
+    tried = 0
+    while True:
+        coarse = respond(lug, computed, COARSE, share(0.1 * tried, 0.1)).projected()
+        size = 2 + 4 * computed
+        rough = coarse[:, :size] - hole_compliance(computed, lug.kolosov)
+        if order is not None or computed == MOST_CHOSEN or harmonic_sizes(rough)[-1] <= KEPT:
+            break
+        computed, tried = min(2 * computed, MOST_CHOSEN), tried + 1
+    kept = decayed_order(rough) if order is None else order
+    fine = respond(lug, kept, FINE, share(0.1 * (tried + 1), 0.9 - 0.1 * tried))
     cut = 2 + 4 * kept
-    columns = {name: whole[:cut, size + place] for place, name in enumerate(fine.loads)}
+    whole = fine.projected()
+    less = whole - np.hstack([coarse[:cut, :cut], coarse[:cut, size:]])
+    matrix = whole[:, :cut] - hole_compliance(kept, lug.kolosov)
+    columns = {name: whole[:, cut + place] for place, name in enumerate(fine.loads)}
     largest = float(np.abs(matrix).max())
-    compliance = _compliance(lug, 0.5 * (matrix + matrix.T)[:cut, :cut], columns, made_by)
     return PlateResult(
-        compliance,
+        _compliance(lug, 0.5 * (matrix + matrix.T), columns, made_by),
         float(np.abs(matrix - matrix.T).max()) / largest,
-        float(harmonic_sizes(matrix)[kept]),
+        float(harmonic_sizes(matrix)[-1]),
         float(np.max(np.abs(less) / np.maximum(largest, np.abs(whole).max(axis=0)))),
         fine.edges.z.size,
     )
@@ -151,14 +155,6 @@ def _compliance(lug: Lug, matrix: np.ndarray, columns: dict[str, np.ndarray], ma
         return Compliance(lug.nu, lug.plane, lug.hole_radius, matrix, columns, made_by)
     except InputError as error:
         raise InputError("harmonics" if "more harmonics" in error.reason else error.field, error.reason) from None
-
-
-def expected_order(ratio: float) -> int:
-    """The highest harmonic to compute, when the next edge is at the distance R/ratio from the hole's centre."""
-    order = LEAST_ORDER
-    while order < MOST_CHOSEN and order * ratio**order > EXPECTED:
-        order += 1
-    return order
 
 
 def harmonic_sizes(matrix: np.ndarray) -> np.ndarray:
