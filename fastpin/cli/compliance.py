@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from fastpin import casefile, elasticity
+from fastpin import casefile, elasticity, figures
 from fastpin.cli.progress import bar, progress_to
 from fastpin.cli.terminal import EXIT_OK, check_outputs, write_files, write_text
 from fastpin.errors import CaseFileError, InputError
@@ -23,8 +23,9 @@ def run(options: argparse.Namespace) -> int:
     if options.lug is None:
         raise InputError("lug", "the lug file is missing; start with: fastpin compliance --example > lug.toml")
     output = options.lug.with_suffix(".json") if options.output is None else options.output
-    check_outputs({"--output": output}, options.lug)
+    check_outputs({"--output": output, "--plot": options.plot}, options.lug)
     found = casefile.read_lug(options.lug)
+    drawn = write_files([(options.plot, lambda path: figures.plot_lug(found.lug, path, found.title))])
     made_by = f"fastpin {__version__}, {found.title or options.lug.name}"
     with bar(1, "compliance") as progress_bar:
         try:
@@ -34,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     code = write_files([(output, lambda path: write_text(path, result.compliance.to_text()))])
     if code == EXIT_OK:
         _print_report(result, output)
-    return code
+    return code or drawn
 
 
 def _print_report(result: elasticity.PlateResult, output: object) -> None:

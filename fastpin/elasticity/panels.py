@@ -16,6 +16,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -184,11 +185,12 @@ def _cuts(parts: list[Part], part: Part, halvings: tuple[int, int], most_turn: f
     at_end = [min(abs(other.start - part.end), abs(other.end - part.end)) < TOUCHING for other in others]
     sweep = abs(part.circle[3]) if part.circle is not None else 0.0
     found: list[tuple[float, float]] = []
-    waiting = [(0.0, 1.0, *halvings)]
+    ends_of = np.linspace(0.0, 1.0, max(1, math.ceil(sweep / most_turn)) + 1).tolist()
+    waiting = [(low, high, halvings[0] * (low == 0.0), halvings[1] * (high == 1.0)) for low, high in pairwise(ends_of)]
     while waiting and len(found) < MOST_NODES:
         low, high, left, right = waiting.pop()
         points = part.at(np.linspace(low, high, 7))
-        too_long = sweep * (high - low) > most_turn or left > 0 or right > 0
+        too_long = left > 0 or right > 0
         for other, starts, ends in zip(others, at_start, at_end, strict=True):
             met = (starts and (low == 0.0 or halvings[0] == 0)) or (ends and (high == 1.0 or halvings[1] == 0))
             if too_long or met:

@@ -35,8 +35,8 @@ KEPT = 1e-7
 """Least size of the last harmonic that is kept, in parts of the largest. The peak pressure of a contact changes by 1e-6
 when harmonics below 1e-5 are left out."""
 
-PHASE = 4.0
-"""Largest angle of a panel on the hole's edge times the highest harmonic, rad: ten nodes integrate to 1e-10."""
+PHASE = 5.0
+"""Largest angle of a panel on the hole's edge times the highest harmonic, rad: ten nodes integrate a product of two to 1e-10."""
 
 FAR = 8.0
 """Unit of length in the logarithm, in extents of the plate. No plate has then the size at which a purely logarithmic

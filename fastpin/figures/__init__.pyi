@@ -3,6 +3,7 @@ from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
+from .lug import plot_lug as plot_lug
 from .notebook import result_html as result_html
 from .notebook import state_html as state_html
 from .states import drawn_places as drawn_places

@@ -237,14 +237,14 @@ class Lug:
         return self.outline + tuple(part for hole in self.holes for part in hole.parts)
 
     @property
-    def nearest(self) -> float:
-        """Distance of the nearest other edge from the hole's centre, m."""
-        return min(float(part.distance(np.zeros(1, complex))[0]) for part in self.edges)
+    def extent(self) -> float:
+        """Largest distance of a point of the outline from the hole's centre, m."""
+        return max(float(np.abs(part.at(np.linspace(0.0, 1.0, 9))).max()) for part in self.outline)
 
     @property
     def rigid_motion(self) -> str:
         """The rigid motion that the supports leave, in words; empty if there is none."""
-        size = max(float(np.abs(part.at(np.linspace(0.0, 1.0, 9))).max()) for part in self.edges)
+        size = self.extent
         rows = [np.zeros((1, 3))]
         for part in self.edges:
             hold = self.supports.get(part.name)

@@ -1,0 +1,25 @@
+"""Finite plates for tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.lug import Lug, Part, rectangle
+
+
+def disc(radius: float, gap: float = 0.0) -> tuple[Part, ...]:
+    """A circle about the hole's centre in four arcs; with a `gap` (rad) in a fifth part "gap" at the angle 0."""
+    angles = np.array([gap, 0.5 * np.pi, np.pi, 1.5 * np.pi, 2.0 * np.pi])
+    ends = radius * np.exp(1j * angles)
+    middles = radius * np.exp(0.5j * (angles[1:] + angles[:-1]))
+    arcs = [Part("rim", complex(ends[k]), complex(ends[k + 1]), complex(middles[k])) for k in range(4)]
+    closing = [Part("gap", arcs[-1].end, arcs[0].start, complex(radius * np.exp(0.5j * gap)))] if gap else []
+    return (*arcs, *closing)
+
+
+def plate(x: tuple[float, float] = (-2.5, 2.5), y: tuple[float, float] = (-2.5, 6.0), **fields: Any) -> Lug:
+    """A rectangle with a hole of radius 1, held at its top."""
+    return Lug(**{"nu": 0.3, "plane": "strain", "hole_radius": 1.0, "outline": rectangle(x, y),
+                  "supports": {"top": "both"}, **fields})  # fmt: skip
