@@ -36,7 +36,12 @@ KEPT = 1e-7
 when harmonics below 1e-5 are left out."""
 
 PHASE = 5.0
-"""Largest angle of a panel on the hole's edge times the highest harmonic, rad: ten nodes integrate a product of two to 1e-10."""
+"""Largest angle of a panel on the hole's edge times the highest harmonic, rad. Ten nodes integrate a product of two
+such harmonics to 1e-10."""
+
+LEAST_KOLOSOV = 1.0 + 1e-7
+"""Least Kolosov constant in the integral equations. At 1 (nu = 0.5 in plane strain) the pressure on an outline that is
+held all round moves nothing, and the equations have no unique solution. The matrix changes by 1e-7."""
 
 FAR = 8.0
 """Unit of length in the logarithm, in extents of the plate. No plate has then the size at which a purely logarithmic
@@ -187,9 +192,10 @@ def respond(lug: Lug, order: int, fineness: Fineness, progress: Callable[[float]
     """Solve the integral equations for the harmonics up to `order` and for the loads."""
     edges = Edges(_loops(lug, order), fineness)
     held, frame = _supports(lug, edges)
+    kolosov = max(lug.kolosov, LEAST_KOLOSOV)
     tractions, loads = _tractions(lug, edges, order)
     with threadpool_limits(limits=1, user_api="blas"):  # the same bits with any number of cores
-        both = matrices(edges, lug.kolosov, FAR * edges.extent, lambda done: progress(0.7 * done))
+        both = matrices(edges, kolosov, FAR * edges.extent, lambda done: progress(0.7 * done))
         for matrix in both:  # both components of u and t at a node along the support's frame
             x, y = matrix[:, :, 0], matrix[:, :, 1]
             turned = -x * frame.imag + y * frame.real

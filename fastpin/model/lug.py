@@ -363,7 +363,7 @@ def _crossing(outline: Sequence[Part]) -> complex | None:
         return (np.conj(d[k]) * (points - a[k])).imag
 
     for k in range(count):
-        others = np.array([j for j in range(count) if j not in (k, (k + 1) % count, (k - 1) % count)], dtype=int)
+        others = np.arange(k + 2, count - (k == 0))  # without the neighbours; pairs before k are done
         if not others.size:
             continue
         one = side(k, a[others]) * side(k, b[others]) <= 0.0
@@ -391,18 +391,18 @@ def _check_holes(lug: Lug) -> None:
     if len(lug.holes) > MOST_PARTS:
         raise InputError("holes", f"must be at most {MOST_PARTS}, not {len(lug.holes)}")
     least = LEAST_LIGAMENT * lug.hole_radius
-    circles = [("the pin's hole", 0j, lug.hole_radius)]
+    circles = [("outline", "the pin's hole", 0j, lug.hole_radius)]
     for hole in lug.holes:
         string("name", hole.name)
-        circles.append((f"the hole {as_toml(hole.name)}", hole.centre, positive("radius", hole.radius)))
-    for place, (words, centre, radius) in enumerate(circles):
+        circles.append(("holes", f"the hole {as_toml(hole.name)}", hole.centre, positive("radius", hole.radius)))
+    for place, (at_fault, words, centre, radius) in enumerate(circles):
         if not abs(centre) <= MOST_EXTENT * lug.hole_radius or not _is_inside(lug.outline, centre):
-            raise InputError("outline", f"{words} does not lie inside the outline")
+            raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
             if float(part.distance(np.array([centre]))[0]) < radius + least:
                 raise InputError(
-                    "outline", f"{words} must keep {LEAST_LIGAMENT:g} hole radii from the part {as_toml(part.name)}"
+                    at_fault, f"{words} must keep {LEAST_LIGAMENT:g} hole radii from the part {as_toml(part.name)}"
                 )
-        for other, middle, size in circles[:place]:
+        for _, other, middle, size in circles[:place]:
             if abs(centre - middle) < radius + size + least:
-                raise InputError("holes", f"{words} must keep {LEAST_LIGAMENT:g} hole radii from {other}")
+                raise InputError(at_fault, f"{words} must keep {LEAST_LIGAMENT:g} hole radii from {other}")

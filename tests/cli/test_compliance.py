@@ -1,0 +1,100 @@
+"""``fastpin compliance``: the file, the report, the figure and wrong input."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fastpin.casefile.lug import LUG_EXAMPLE
+from fastpin.cli import compliance
+from fastpin.cli.main import main
+from fastpin.model.compliance import Compliance
+
+TEXT = """\
+title = "a small plate"
+[plate]
+nu = 0.3
+hole_radius = 1.0
+[outline]
+shape = "rectangle"
+x = [-5.0, 5.0]
+y = [-5.0, 5.0]
+[[support]]
+parts = "top"
+[[load]]
+name = "syy"
+parts = "bottom"
+normal = 1.0
+[solve]
+harmonics = 6
+"""
+
+
+@pytest.fixture
+def lug(tmp_path: Path) -> Path:
+    path = tmp_path / "small.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+def test_the_example_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["compliance", "--example"]) == 0
+    assert capsys.readouterr().out == LUG_EXAMPLE
+
+
+def test_a_file_a_figure_and_a_report(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    figure = lug.with_name("small.svg")
+    assert main(["compliance", str(lug), "--plot", str(figure)]) == 0
+    found = Compliance.from_file(lug.with_suffix(".json"))
+    assert (found.order, found.nu, found.hole_radius, list(found.columns)) == (6, 0.3, 1.0, ["syy"])
+    assert "a small plate" in found.made_by
+    assert "bottom" in figure.read_text(encoding="utf-8")
+    out, err = capsys.readouterr()
+    assert [line.split("  ")[0] for line in out.splitlines()[:-1]] == [
+        "harmonics", "last harmonic", "symmetry error", "estimated error", "nodes", "loads",
+    ]  # fmt: skip
+    assert out.endswith(f"wrote {lug.with_suffix('.json')}\n")
+    assert err == ""
+
+
+def test_the_same_file_gives_the_same_bits(lug: Path) -> None:
+    outputs = [lug.with_name(name) for name in ("a.json", "b.json")]
+    for output in outputs:
+        assert main(["compliance", str(lug), "-o", str(output)]) == 0
+    assert outputs[0].read_bytes() == outputs[1].read_bytes()
+
+
+def test_a_doubtful_result_has_a_note(
+    lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compliance, "DOUBTFUL", 1e-12)
+    assert main(["compliance", str(lug)]) == 0
+    assert capsys.readouterr().err.startswith("note: the estimated error is above 1e-12")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "fastpin: lug: the lug file is missing; start with: fastpin compliance --example > lug.toml"),
+        (["LUG", "-o", "other.toml"], "fastpin: --output: won't overwrite the case file other.toml"),
+        (["LUG", "--plot", "lug.doc"], "fastpin: --plot: the figure's name must end in .png, .pdf, .svg"),
+        (["LUG", "-o", "no/where.json"], "fastpin: no/where.json"),
+        (["no.toml"], "no.toml: can't be read"),
+    ],
+)
+def test_wrong_arguments(arguments: list[str], message: str, lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["compliance", *[str(lug) if word == "LUG" else word for word in arguments]]) == 2
+    assert capsys.readouterr().err.startswith(message)
+
+
+def test_a_fault_names_its_line(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lug.write_text(TEXT.replace('"top"', '"tip"'), encoding="utf-8")
+    assert main(["compliance", str(lug)]) == 2
+    assert capsys.readouterr().err.startswith(f'{lug}, line 10: parts: no part or hole is called "tip"')
+
+
+def test_too_few_harmonics_name_the_file(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lug.write_text(TEXT.replace("= 6", "= 2").replace("5.0", "1.5"), encoding="utf-8")
+    assert main(["compliance", str(lug)]) == 2
+    assert capsys.readouterr().err.startswith(f"{lug}: harmonics: its last harmonic 2 is ")

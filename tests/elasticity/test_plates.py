@@ -1,0 +1,257 @@
+"""Compliances of finite plates: closed forms of rings, finite elements, reciprocity, symmetry and decay."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity import panels, plates
+from fastpin.elasticity.panels import Edges, Fineness
+from fastpin.elasticity.plates import COARSE, KEPT, hole_compliance, plate_compliance, respond
+from fastpin.errors import InputError
+from fastpin.kernels import harmonics
+from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
+from tests.support.lugs import disc, plate
+
+ORDER = 8
+
+FINITE_ELEMENTS = {  # whole entries G v/R of the rectangle: triangles of second degree, 73,658 unknowns
+    (0, 0): 0.609327247730502,
+    (2, 2): 12.629200790680283,
+    (3, 3): 1.708846627717525,
+    (5, 5): 12.626130515913506,
+    (7, 7): 1.0077608781099416,
+}
+
+
+def nothing(_: float) -> None:
+    """Progress that nobody watches."""
+
+
+def block(a: float, b: float, d: float) -> np.ndarray:
+    """The entries (r cos, r sin, theta cos, theta sin) of one harmonic from the compliances of (t_n, conj t_-n)."""
+    rr, tt, rt = 0.5 * (a + d) + b, 0.5 * (a + d) - b, 0.5 * (a - d)
+    return -0.5 * np.array([[rr, 0, 0, rt], [0, rr, -rt, 0], [0, -rt, tt, 0], [rt, 0, 0, tt]])
+
+
+def harmonic(matrix: np.ndarray, n: int, m: int | None = None) -> np.ndarray:
+    m = n if m is None else m
+    return matrix[4 * n - 2 : 4 * n + 2, 4 * m - 2 : 4 * m + 2]
+
+
+@pytest.fixture(scope="module")
+def made():
+    load = PartLoad("syy", ("bottom",), normal=1.0), PartLoad("sxy", ("left", "right"), x=0.3, y=1.0)
+    return plate_compliance(plate(loads=load), 10)
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_a_held_ring_agrees_with_its_closed_form(plane):
+    lug = Lug(0.3, plane, 5e-3, disc(10e-3), {"rim": "both"})
+    k = lug.kolosov
+    made = plate_compliance(lug, ORDER).compliance.matrix
+    expected = np.zeros_like(made)
+    expected[0, 0] = -0.5 * (harmonics.uniform(2.0, k, "held") + 1.0)
+    expected[1, 1] = 0.5 * (1.0 - 0.25) - 0.5  # 2G u_theta/r = -(1 - 1/q) s_rtheta with 1/q = 1/4
+    first = harmonics.first(2.0, k, "held")
+    own, moved = first.displacement(), first.translation(2.0)
+    expected[2:6, 2:6] = block(own[0] + 0.5, own[1], moved[1])
+    assert moved[0] == pytest.approx(own[1])  # the closed form is symmetric itself
+    a, b, d = harmonics.ring(np.arange(2.0, ORDER + 1.0), 2.0, k, "held")
+    for n in range(2, ORDER + 1):
+        expected[4 * n - 2 : 4 * n + 2, 4 * n - 2 : 4 * n + 2] = block(a[n - 2], b[n - 2], d[n - 2])
+    assert np.abs(made - expected).max() < 1e-9  # measured: 3e-10
+
+
+def test_a_free_ring_agrees_with_its_closed_form():
+    """The ring is held on a tiny arc. It takes up no force while the tractions are in equilibrium."""
+    lug = Lug(0.3, "strain", 1.0, disc(2.0, gap=1e-4), {"gap": "both"})
+    made = plate_compliance(lug, ORDER).compliance.matrix
+    a, b, d = harmonics.ring(np.arange(2.0, ORDER + 1.0), 2.0, lug.kolosov, "free")
+    for n in range(2, ORDER + 1):
+        expected = block(a[n - 2], b[n - 2], d[n - 2])
+        assert np.abs(harmonic(made, n) - expected).max() < 1e-6  # measured: 4e-8
+
+
+def test_the_hole_is_that_of_the_closed_form():
+    k = 1.7
+    found = hole_compliance(6, k)
+    whole = harmonics.hole(np.arange(2.0, 7.0), k, 1.0)
+    for n in range(2, 7):
+        expected = 2.0 * whole[n - 2]
+        assert np.allclose(harmonic(found, n), block(expected[0, 0], expected[0, 1], expected[1, 1]))
+    assert np.allclose(harmonic(found, 1), block(-0.5, 0.0, 0.0))
+    assert np.allclose(found[:2, :2], 0.5 * np.eye(2))
+
+
+def test_the_rectangle_agrees_with_finite_elements(made):
+    whole = made.compliance.matrix + hole_compliance(10, 1.8)
+    for place, value in FINITE_ELEMENTS.items():
+        assert whole[place] == pytest.approx(
+            value, rel=4e-6
+        )  # finite elements converge from below; their last halving changes 1e-5
+
+
+def test_the_matrix_is_symmetric_and_decays(made):
+    assert made.asymmetry < 1e-9  # measured: 2e-11
+    assert made.error < 1e-7  # measured: 2e-9
+    sizes = plates.harmonic_sizes(made.compliance.matrix)
+    assert made.last == pytest.approx(sizes[-1], rel=1e-4)
+    assert np.all(sizes[4:] < 0.7 * sizes[3:-1])
+
+
+def test_the_plate_is_softer_than_the_infinite_one(made):
+    """Less material and a support: harmonics from 2 on do more work."""
+    values = np.linalg.eigvalsh(made.compliance.matrix[6:, 6:])
+    assert values.min() > -1e-9
+
+
+def test_the_estimated_error_covers_the_error():
+    """An edge that is held in its middle only has the strongest singularity: the square root."""
+    outline = rectangle((-2.5, 2.5), (-2.5, 4.0))
+    top = (Part("a", 2.5 + 4j, 1 + 4j), Part("held", 1 + 4j, -1 + 4j), Part("b", -1 + 4j, -2.5 + 4j))
+    lug = plate(outline=(*outline[:2], *top, outline[3]), supports={"held": "both"})
+    made = plate_compliance(lug, 4)
+    better = respond(lug, 4, Fineness(8, 20), nothing).projected() - hole_compliance(4, lug.kolosov)
+    error = np.abs(better - made.compliance.matrix).max() / np.abs(better).max()
+    assert error < made.error < 1e-4
+    assert error < 1e-6  # measured: 2e-7
+
+
+@pytest.mark.parametrize("hold", ["both", "x", "y"])
+def test_loads_and_displacements_are_reciprocal(hold):
+    """The work of the load on the displacement of the pin's tractions, and the other way round."""
+    load = PartLoad("sxx", ("left", "bolt"), normal=1.0), PartLoad("sxx", ("bottom",), x=0.4, y=-0.7)
+    supports = {"top": "both", "right": hold}
+    found = respond(plate(supports=supports, loads=load, holes=(Hole("bolt", 3j, 0.8),)), 3, COARSE, nothing)
+    size = 2 + 4 * 3
+    of_load = np.einsum("in,inc,n->c", found.t[:, :, size], found.u[:, :, :size], found.edges.weights)
+    of_pin = np.einsum("inc,in,n->c", found.t[:, :, :size], found.u[:, :, size], found.edges.weights)
+    assert np.abs(of_load - of_pin).max() < 1e-7 * np.abs(of_pin).max()  # measured: 8e-9
+
+
+def test_held_components_do_not_move():
+    found = respond(plate(supports={"top": "normal", "left": "x"}), 2, COARSE, nothing)
+    names = np.array([part.name for part in found.edges.parts])[found.edges.part_of_node]
+    assert np.abs(found.u[1, names == "top"]).max() == 0.0
+    assert np.abs(found.u[0, names == "left"]).max() == 0.0
+    assert np.abs(found.u[0, names == "top"]).max() > 0.1
+
+
+def test_a_wide_plate_under_tension_has_the_displacement_of_the_infinite_plate():
+    supports, load = {"left": "x", "bottom": "y"}, (PartLoad("sxx", ("right",), x=1.0),)
+    made = plate_compliance(plate((-30.0, 30.0), (-30.0, 30.0), supports=supports, loads=load), 4)
+    column = made.compliance.columns["sxx"]
+    size = 0.125 * (1.8 + 1.0)  # v_r = (k + 1)/8G (1 + 2 cos 2 theta), v_theta = -(k + 1)/4G sin 2 theta
+    expected = np.zeros(18)
+    expected[[0, 6, 9]] = math.sqrt(2.0) * size, 2.0 * size, -2.0 * size
+    inner = np.r_[0:2, 6:18]
+    assert np.abs(column - expected)[inner].max() < 3e-3 * size * 2.0  # (R/30 R)^2, and some
+
+
+def test_lengths_and_modulus_do_not_matter(made):
+    scaled = tuple(part.scaled(0.007) for part in plate().outline)
+    load = PartLoad("syy", ("bottom",), normal=1.0)
+    small = plate_compliance(plate(hole_radius=0.007, outline=scaled, loads=(load,)), 10).compliance
+    assert np.allclose(small.matrix, made.compliance.matrix, atol=1e-9, rtol=0.0)
+    assert np.allclose(small.columns["syy"], made.compliance.columns["syy"], atol=1e-9, rtol=0.0)
+
+
+def test_a_turned_plate_turns_its_matrix():
+    lug = plate((-2.0, 3.0), (-2.0, 2.5))
+    turned = tuple(Part(part.name, 1j * part.start, 1j * part.end) for part in lug.outline)
+    one, other = (plate_compliance(each, 6).compliance.matrix for each in (lug, plate(outline=turned)))
+    # by a right angle: cos n(theta - pi/2), and sin, in cos and sin n theta
+    turn = np.eye(26)
+    for n in range(1, 7):
+        c, s = math.cos(0.5 * n * math.pi), math.sin(0.5 * n * math.pi)
+        turn[4 * n - 2 : 4 * n + 2, 4 * n - 2 : 4 * n + 2] = np.kron(np.eye(2), [[c, -s], [s, c]])
+    assert np.abs(other - turn @ one @ turn.T).max() < 1e-8
+
+
+def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole():
+    made = plate_compliance(plate(nu=0.5, supports=dict.fromkeys(("top", "left", "right", "bottom"), "both")), 6)
+    assert made.compliance.matrix[0, 0] == pytest.approx(-0.5, abs=1e-6)
+    assert made.error < 1e-6  # measured: 4e-9
+
+
+def test_harmonics_are_taken_until_they_have_decayed():
+    made = plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0)))
+    sizes = plates.harmonic_sizes(made.compliance.matrix)
+    assert sizes[-1] > KEPT
+    assert 5 <= made.compliance.order <= 16
+    longer = plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0)), made.compliance.order + 2).compliance.matrix
+    assert plates.harmonic_sizes(longer)[-1] < KEPT
+
+
+def test_more_harmonics_are_tried_near_an_edge(monkeypatch):
+    monkeypatch.setattr(plates, "FIRST_TRIED", 4)
+    assert plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0))).compliance.order > 4
+
+
+def test_progress_goes_from_zero_to_one():
+    steps = []
+    plate_compliance(plate(), 6, lambda done, total: steps.append(done / total))
+    assert steps == sorted(steps)
+    assert steps[-1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("order", "message"),
+    [(1, "harmonics: must be a whole number from 2 to 200"), (2.5, "harmonics: must be a whole number")],
+)
+def test_a_wrong_number_of_harmonics_is_refused(order, message):
+    with pytest.raises(InputError, match=message):
+        plate_compliance(plate(), order)
+
+
+def test_too_few_harmonics_are_refused():
+    with pytest.raises(InputError, match=r"harmonics: its last harmonic 2 is .* take more harmonics"):
+        plate_compliance(plate((-1.3, 1.3), (-1.3, 1.3)), 2)
+
+
+def test_too_many_nodes_are_refused(monkeypatch):
+    monkeypatch.setattr(panels, "MOST_NODES", 300)
+    with pytest.raises(InputError, match="outline: needs more than 300 nodes"):
+        plate_compliance(plate(), 4)
+
+
+# -- panels and kernels ---------------------------------------------------------------------------------------
+
+
+def loops():
+    return plates._loops(plate(holes=(Hole("bolt", 3j, 0.8),)), 4)
+
+
+def test_panels_cover_all_edges():
+    edges = Edges(loops(), COARSE)
+    lengths = [edges.weights[edges.part_of_node == place].sum() for place in range(len(edges.parts))]
+    assert lengths == pytest.approx([part.length for part in edges.parts], rel=1e-12)
+    area = 0.5 * np.sum((np.conj(edges.z) * 1j * edges.normals * edges.weights).imag)
+    assert area == pytest.approx(5.0 * 8.5 - math.pi * (1.0 + 0.64), rel=1e-12)
+
+
+def test_panels_shrink_towards_corners_and_other_edges():
+    edges = Edges(loops(), COARSE)
+    top = edges.half[edges.part == [part.name for part in edges.parts].index("top")]
+    assert 2.0 * top.min() == pytest.approx(5.0 * 2.0**-COARSE.halvings)
+    ligament = np.abs(edges.z - 1.6j) < 0.7  # between the two holes, 1.2 apart
+    assert 2.0 * edges.half[edges.panel[ligament]].max() < 1.3
+
+
+@pytest.mark.parametrize("kolosov", [1.0001, 1.8, 3.0])
+def test_the_matrices_reproduce_linear_and_quadratic_fields(kolosov):
+    """2G u = k phi - z conj(phi') - conj(psi) with phi = a z^2 + b z, psi = c z satisfies Somigliana's identity."""
+    edges = Edges(loops(), COARSE)
+    U, T = panels.matrices(edges, kolosov, 50.0, nothing).reshape(2, 2 * edges.z.size, 2 * edges.z.size)
+    a, b, c = 0.3 - 0.2j, 0.7, 0.4 + 0.5j
+    z, n = edges.z, edges.normals
+    phi, slope, psi = a * z**2 + b * z, 2.0 * a * z + b, c * z
+    u = kolosov * phi - z * np.conj(slope) - np.conj(psi)
+    mean = 2.0 * slope.real  # (sxx + syy)/2
+    deviator = np.conj(z) * 2.0 * a + c  # (syy - sxx)/2 + i sxy
+    t = mean * n - np.conj(deviator) * np.conj(n)
+    left, right = T @ np.r_[u.real, u.imag], U @ np.r_[t.real, t.imag]
+    assert np.abs(left - right).max() < 1e-8 * np.abs(right).max()
