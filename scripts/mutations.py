@@ -1,10 +1,10 @@
 """Change input files at random: does fastpin answer with a result or one sentence, and leave the files alone?
 
 ``python -m scripts.mutations [--count 1000] [--first 0] [KIND ...]`` changes case files, CSV histories, results,
-unfinished results with their journals, and the indices of sweeps. It reads each changed file through Python and the
-command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash, a run without an end,
-too much memory, a long or empty message, or a file that was changed without a right to it. Changed bytes can crash the
-HDF5 library itself, or catch it in a loop. Such cases are counted apart: no code of Python can prevent them.
+unfinished results with their journals, the indices of sweeps, and lug files. It reads each changed file through Python
+and the command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash, a run without
+an end, too much memory, a long or empty message, or a file that was changed without a right to it. Changed bytes can
+crash the HDF5 library itself, or catch it in a loop. Such cases are counted apart: no code of Python can prevent them.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ import h5py
 import numpy as np
 
 import fastpin
+from fastpin.casefile.lug import LUG_EXAMPLE, read_lug
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.main import main as fastpin_command
 from fastpin.errors import FastpinError
@@ -148,6 +149,7 @@ def prepare(folder: Path) -> None:
     for number, text in enumerate(CASES):
         (folder / f"case{number}.toml").write_text(text)
     (folder / "loads.csv").write_text(CSV)
+    (folder / "lug.toml").write_text(LUG_EXAMPLE)
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
     problem = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4)
     history = fastpin.LoadHistory([{"P": 1.0}]) + fastpin.LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(4)
@@ -409,6 +411,13 @@ def examine_csv(rng: np.random.Generator, folder: Path, seen: Examination) -> No
     _try_case(folder / "case2.toml", seen)
 
 
+def examine_lug(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
+    """Change a lug file."""
+    path = folder / "lug.toml"
+    _change_text_file(rng, path)
+    seen.python("read_lug", lambda: read_lug(path))
+
+
 def _change_text_file(rng: np.random.Generator, path: Path) -> None:
     if rng.random() < 0.3:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
@@ -504,6 +513,7 @@ KINDS: dict[str, Callable[[np.random.Generator, Path, Examination], None]] = {
     "result": examine_result,
     "unfinished": examine_unfinished,
     "index": examine_index,
+    "lug": examine_lug,
 }
 """The kinds of files."""
 

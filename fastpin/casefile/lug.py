@@ -17,6 +17,7 @@ from fastpin.model.checks import as_toml, choice, closest, file_path, number, po
 from fastpin.model.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
 from fastpin.model.lug import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.materials import MATERIALS, PLANES
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 
 LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""
@@ -92,7 +93,7 @@ def _lug_file(source: CaseText) -> LugFile | None:
     title = source.root.checked("title", string) or ""
     plate = source.section("plate", required=True)
     nu, plane = _poisson_ratio(plate), plate.choice("plane", PLANES)
-    radius = plate.checked("hole_radius", positive)
+    radius = plate.checked("hole_radius", number, LEAST_RADIUS, MOST_RADIUS)
     if plate.present:
         plate.require("hole_radius")
     outline = _outline(source)

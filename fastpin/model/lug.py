@@ -17,6 +17,7 @@ from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, number, positive, string
 from fastpin.model.compliance import COLUMNS
 from fastpin.model.materials import PLANES, Material, Plane
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 
 HOLD = ("both", "x", "y", "normal")
 """Components of the displacement that a support holds."""
@@ -30,8 +31,11 @@ CHORDS = 96
 LEAST_LIGAMENT = 0.01
 """Least distance of the hole's edge from another edge, in hole radii. The harmonics decay too slowly below it."""
 
+LEAST_HOLE = 1e-3
+"""Least radius of a further hole, in radii of the pin's hole."""
+
 MOST_EXTENT = 1000.0
-"""Largest distance of a point from the hole's centre, in hole radii."""
+"""Largest coordinate of a point, in hole radii."""
 
 SAME_PLACE = 1e-9
 """Largest distance of two ends that count as one point, in hole radii."""
@@ -193,7 +197,7 @@ class Lug:
     def __post_init__(self) -> None:
         object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
         choice("plane", self.plane, PLANES)
-        object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
+        object.__setattr__(self, "hole_radius", number("hole_radius", self.hole_radius, LEAST_RADIUS, MOST_RADIUS))
         _check_outline(self.outline, self.hole_radius)
         if _area(self.outline) < 0.0:
             object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))
@@ -312,9 +316,9 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
         string("name", part.name)
         points = [part.start, part.end] + ([part.through] if part.through is not None else [])
         for point in points:
-            if not abs(point) <= MOST_EXTENT * radius:
+            if not max(abs(point.real), abs(point.imag)) <= MOST_EXTENT * radius:
                 raise InputError(
-                    "outline", f"part {as_toml(part.name)} lies more than {MOST_EXTENT:g} hole radii from the hole"
+                    "outline", f"part {as_toml(part.name)} has a point more than {MOST_EXTENT:g} hole radii away"
                 )
         if part.is_flat or part.length <= SAME_PLACE * radius:
             kind = "two of its points are one" if part.through is None else "its three points lie on a line"
@@ -382,7 +386,7 @@ def _crossing(outline: Sequence[Part]) -> complex | None:
 
 def _is_inside(outline: Sequence[Part], point: complex) -> bool:
     points = _polygon(outline) - point
-    turn = float(np.sum(np.angle(np.roll(points, -1) / points)))
+    turn = float(np.sum(np.angle(np.roll(points, -1) * np.conj(points))))
     return abs(turn) > math.pi
 
 
@@ -393,10 +397,14 @@ def _check_holes(lug: Lug) -> None:
     least = LEAST_LIGAMENT * lug.hole_radius
     circles = [("outline", "the pin's hole", 0j, lug.hole_radius)]
     for hole in lug.holes:
-        string("name", hole.name)
-        circles.append(("holes", f"the hole {as_toml(hole.name)}", hole.centre, positive("radius", hole.radius)))
+        words = f"the hole {as_toml(string('name', hole.name))}"
+        if positive("radius", hole.radius) < LEAST_HOLE * lug.hole_radius:
+            raise InputError("holes", f"{words} must have a radius of at least {LEAST_HOLE:g} of the pin's hole")
+        circles.append(("holes", words, hole.centre, hole.radius))
     for place, (at_fault, words, centre, radius) in enumerate(circles):
-        if not abs(centre) <= MOST_EXTENT * lug.hole_radius or not _is_inside(lug.outline, centre):
+        if not max(abs(centre.real), abs(centre.imag)) <= MOST_EXTENT * lug.hole_radius or not _is_inside(
+            lug.outline, centre
+        ):
             raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
             if float(part.distance(np.array([centre]))[0]) < radius + least:

@@ -132,6 +132,8 @@ def test_check_prints_all_faults_and_nothing_else(case: Path, capsys: pytest.Cap
         (["sweep", "CASE", "--shard", "3/2"], []),
         (["sweep", "CASE"], ["numpy"]),
         (["example"], ["numpy"]),
+        (["compliance", "--example"], ["numpy"]),
+        (["compliance", "CASE"], ["numpy"]),
         (["check", "CASE"], ["numpy"]),
         (["run", "CASE", "--nodes", "1"], ["numpy"]),
     ],

@@ -74,7 +74,10 @@ BULGING = (*rectangle((-3.0, 3.0), (-4.0, 4.0))[:3], Part("left", -3 + 4j, -3 - 
         ({"outline": rectangle((2.0, 5.0), (-3.0, 3.0))}, "outline: the pin's hole does not lie inside the outline"),
         ({"outline": rectangle((-0.5, 5.0), (-3.0, 3.0))}, 'outline: the pin\'s hole must keep 0.01 .* part "left"'),
         ({"outline": rectangle((-1.005, 5.0), (-3.0, 3.0))}, 'outline: the pin\'s hole must keep 0.01 .* part "left"'),
-        ({"outline": rectangle((-3.0, 5000.0), (-3.0, 3.0))}, 'outline: part "bottom" lies more than 1000 hole radii'),
+        (
+            {"outline": rectangle((-3.0, 5000.0), (-3.0, 3.0))},
+            'outline: part "bottom" has a point more than 1000 hole radii away',
+        ),
         ({"outline": ()}, f"outline: must have 2 to {MOST_PARTS} parts, not 0"),
         ({"outline": (Part("a", 1j, 1j), *OPEN)}, 'outline: part "a" has no shape: two of its points are one'),
         (
@@ -85,6 +88,7 @@ BULGING = (*rectangle((-3.0, 3.0), (-4.0, 4.0))[:3], Part("left", -3 + 4j, -3 - 
         ({"holes": (Hole("b", 5.5j, 1.0),)}, 'holes: the hole "b" must keep 0.01 hole radii from the part "top"'),
         ({"holes": (Hole("b", 1.5j, 1.0),)}, 'holes: the hole "b" must keep 0.01 hole radii from the pin\'s hole'),
         ({"holes": (Hole("b", 3j, -1.0),)}, "radius: must be positive, not -1"),
+        ({"holes": (Hole("b", 3j, 1e-4),)}, 'holes: the hole "b" must have a radius of at least 0.001 of the pin'),
         ({"supports": {"tob": "both"}}, 'support: no part or hole is called "tob"; the names are "bottom", "right"'),
         ({"supports": {"top": "all"}}, 'hold: must be "both" or "x" or "y" or "normal", not "all"'),
         ({"loads": (PartLoad("sxx", ("side",)),)}, 'load: no part or hole is called "side"'),
@@ -93,7 +97,7 @@ BULGING = (*rectangle((-3.0, 3.0), (-4.0, 4.0))[:3], Part("left", -3 + 4j, -3 - 
         ({"loads": (PartLoad("sxx", ("left",), y=float("nan")),)}, "y: must be a finite number, not nan"),
         ({"nu": 0.6}, "nu: must lie between 0 and 0.5, not 0.6"),
         ({"plane": "flat"}, 'plane: must be "strain" or "stress", not "flat"'),
-        ({"hole_radius": 0.0}, "hole_radius: must be positive, not 0"),
+        ({"hole_radius": 0.0}, "hole_radius: must lie between 1e-30 and 1e.30, not 0"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
