@@ -10,6 +10,7 @@ from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.cli import compliance
 from fastpin.cli.main import main
 from fastpin.model.compliance import Compliance
+from tests.support.lugs import make_coarse
 
 TEXT = """\
 title = "a small plate"
@@ -32,7 +33,8 @@ harmonics = 6
 
 
 @pytest.fixture
-def lug(tmp_path: Path) -> Path:
+def lug(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    make_coarse(monkeypatch)
     path = tmp_path / "small.toml"
     path.write_text(TEXT, encoding="utf-8")
     return path
@@ -43,7 +45,10 @@ def test_the_example_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == LUG_EXAMPLE
 
 
-def test_a_file_a_figure_and_a_report(lug: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_a_figure_and_a_report(
+    lug: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compliance, "DOUBTFUL", 1e-2)  # the nodes are few here
     figure = lug.with_name("small.svg")
     assert main(["compliance", str(lug), "--plot", str(figure)]) == 0
     found = Compliance.from_file(lug.with_suffix(".json"))

@@ -13,7 +13,7 @@ from fastpin.elasticity.plates import COARSE, KEPT, hole_compliance, plate_compl
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
-from tests.support.lugs import disc, plate
+from tests.support.lugs import disc, make_coarse, plate
 
 ORDER = 8
 
@@ -102,12 +102,12 @@ def test_the_matrix_is_symmetric_and_decays(made):
     assert np.all(sizes[4:] < 0.7 * sizes[3:-1])
 
 
-def test_the_plate_is_softer_than_the_infinite_one(made):
-    """Less material and a support: harmonics from 2 on do more work."""
-    values = np.linalg.eigvalsh(made.compliance.matrix[6:, 6:])
-    assert values.min() > -1e-9
+def test_all_tractions_do_positive_work(made):
+    whole = made.compliance.matrix + hole_compliance(10, 1.8)
+    assert np.linalg.eigvalsh(whole).min() > 0.2 / 11.0  # about 1/2(n + 1) for the last harmonic
 
 
+@pytest.mark.slow
 def test_the_estimated_error_covers_the_error():
     """An edge that is held in its middle only has the strongest singularity: the square root."""
     outline = rectangle((-2.5, 2.5), (-2.5, 4.0))
@@ -187,11 +187,13 @@ def test_harmonics_are_taken_until_they_have_decayed():
 
 
 def test_more_harmonics_are_tried_near_an_edge(monkeypatch):
+    make_coarse(monkeypatch)
     monkeypatch.setattr(plates, "FIRST_TRIED", 4)
     assert plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0))).compliance.order > 4
 
 
-def test_progress_goes_from_zero_to_one():
+def test_progress_goes_from_zero_to_one(monkeypatch):
+    make_coarse(monkeypatch)
     steps = []
     plate_compliance(plate(), 6, lambda done, total: steps.append(done / total))
     assert steps == sorted(steps)
@@ -207,7 +209,8 @@ def test_a_wrong_number_of_harmonics_is_refused(order, message):
         plate_compliance(plate(), order)
 
 
-def test_too_few_harmonics_are_refused():
+def test_too_few_harmonics_are_refused(monkeypatch):
+    make_coarse(monkeypatch)
     with pytest.raises(InputError, match=r"harmonics: its last harmonic 2 is .* take more harmonics"):
         plate_compliance(plate((-1.3, 1.3), (-1.3, 1.3)), 2)
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
+from fastpin.elasticity import plates
+from fastpin.elasticity.panels import Fineness
 from fastpin.model.lug import Lug, Part, rectangle
 
 
@@ -23,3 +26,9 @@ def plate(x: tuple[float, float] = (-2.5, 2.5), y: tuple[float, float] = (-2.5, 
     """A rectangle with a hole of radius 1, held at its top."""
     return Lug(**{"nu": 0.3, "plane": "strain", "hole_radius": 1.0, "outline": rectangle(x, y),
                   "supports": {"top": "both"}, **fields})  # fmt: skip
+
+
+def make_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compute compliances with fewer nodes, where their accuracy does not matter: errors of 1e-5."""
+    monkeypatch.setattr(plates, "FINE", Fineness(8, 8))
+    monkeypatch.setattr(plates, "COARSE", Fineness(6, 6))
