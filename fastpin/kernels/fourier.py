@@ -97,6 +97,17 @@ def _hats(begin: int, count: int, nodes: np.ndarray, h_left: np.ndarray, h_right
     return hat_moments(order, h_left, h_right) * np.conj(waves(nodes, begin, count))
 
 
+def hat_coefficients(
+    order: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray, values: np.ndarray
+) -> np.ndarray:
+    """int f exp(-i n xi) dxi of piecewise linear functions f, shape (m, ...), from their nodal `values` (k, ...).
+
+    `order`, shape (m,), holds whole numbers one after the other.
+    """
+    hats = _hats(int(order[0]), order.size, nodes, h_left, h_right)
+    return np.tensordot(hats, values, axes=(0, 0))
+
+
 def product(
     seen: np.ndarray,
     nodes: np.ndarray,
@@ -112,7 +123,8 @@ def product(
     found = np.zeros((2, seen.size))
     for begin in range(0, coefficients.shape[1], BLOCK):
         first, second, cross = coefficients[:, begin : begin + BLOCK]
-        pressure, shear = tractions @ _hats(begin, first.size, nodes, h_left, h_right)
+        order = np.arange(begin, begin + first.size, dtype=float)
+        pressure, shear = hat_coefficients(order, nodes, h_left, h_right, tractions.T).T
         sums = np.column_stack([first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure])
         found += (waves(seen, begin, first.size) @ sums).real.T
     return found
