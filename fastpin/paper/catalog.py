@@ -29,7 +29,8 @@ PAPER = tuple(str(number) for number in range(3, 18))
 """Names of the figures of the paper (1 and 2 are sketches)."""
 
 BEYOND = (
-    "memory", "sliding-onset", "half-plane", "rigid-pin", "rings", "supports", "hollow-pins", "interference", "regimes",
+    "memory", "sliding-onset", "half-plane", "rigid-pin", "rings", "supports", "hollow-pins", "rectangular-lug",
+    "interference", "regimes",
 )  # fmt: skip
 """Names of the figures that the paper does not have."""
 
