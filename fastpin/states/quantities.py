@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
+from fastpin.model.bodies import Bushing
 from fastpin.states.state import State
 from fastpin.states.zones import Interval, is_all_round
 
 if TYPE_CHECKING:  # this module imports compiled code
+    from fastpin.states.bush import BushFit
     from fastpin.states.stress import HoopPeak
 
 
@@ -56,6 +58,15 @@ def _hoop(read: Callable[[HoopPeak], float]) -> Callable[[State], float]:
     return of
 
 
+def _bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
+    """A reading of the interface between bush and plate; NaN without a bush."""
+
+    def of(state: State) -> float:
+        return read(state.bush_fit()) if isinstance(state.problem.plate_body, Bushing) else math.nan
+
+    return of
+
+
 QUANTITIES: dict[str, Quantity] = {
     "peak_pressure": Quantity("peak N", "traction", lambda state: state.peak_pressure),
     "peak_pressure_angle": Quantity("peak N at", "angle", lambda state: state.peak_pressure_angle),
@@ -78,11 +89,17 @@ QUANTITIES: dict[str, Quantity] = {
     "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle)),
     "kt_gross": Quantity("Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross)),
     "kt_bearing": Quantity("Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing)),
+    "joint_ux": Quantity("joint ux", "displacement", lambda state: state.joint_displacement()["ux"]),
+    "joint_uy": Quantity("joint uy", "displacement", lambda state: state.joint_displacement()["uy"]),
+    "bush_open_margin": Quantity("bush open margin", "traction", _bush(lambda fit: fit.open_margin)),
+    "bush_slip_margin": Quantity("bush slip margin", "traction", _bush(lambda fit: fit.slip_margin)),
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
 "peak_hoop" is the largest hoop stress of the plate round the hole, "kt_gross" and "kt_bearing" are its ratios to the
 remote stress and to the bearing stress, see :class:`fastpin.states.HoopPeak`. All are NaN for a rigid plate.
+"joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
+:class:`fastpin.states.BushFit`, NaN without a bush, and without its friction.
 
 A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",
 "stick_1_start" and so on. They are angles in rad, counted along +theta, in the order of :attr:`State.contact` and

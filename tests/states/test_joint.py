@@ -12,6 +12,7 @@ from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
+from fastpin.states.quantities import QUANTITIES
 from fastpin.states.state import State
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
@@ -152,3 +153,13 @@ def test_the_friction_of_an_interface_is_checked():
     state = solve(Problem.from_load_parameter(LIKE, 0.1, 0.0, pin_body=Disk(), plate_body=body), [{"P": 1.0}], nodes=41)
     with pytest.raises(InputError, match="friction: must"):
         state[-1].bush_fit(-0.1)
+
+
+def test_joint_and_bush_are_quantities_of_a_state():
+    state = bushed(0.0, 0.2)
+    assert QUANTITIES["joint_uy"].of(state) == state.joint_displacement()["uy"] < 0.0
+    assert QUANTITIES["joint_ux"].of(state) == pytest.approx(0.0, abs=1e-12)
+    assert QUANTITIES["bush_open_margin"].of(state) == state.bush_fit().open_margin
+    assert QUANTITIES["bush_slip_margin"].of(state) == state.bush_fit().slip_margin < state.bush_fit().open_margin
+    plain = solve(problem("solid pin, held ring"), [{"P": 1.0}], nodes=41)[-1]
+    assert math.isnan(QUANTITIES["bush_open_margin"].of(plain))
