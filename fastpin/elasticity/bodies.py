@@ -355,13 +355,13 @@ def _compliance_terms(body: Compliance) -> tuple[np.ndarray, Displacements]:
         P: -body.matrix @ rows[1] / (math.pi * math.sqrt(2.0)),
         **{LOADS.index(name): column for name, column in body.columns.items()},
     }
-    return keep @ body.matrix @ keep, {place: as_complex(keep @ column) for place, column in columns.items()}
+    return keep @ body.matrix @ keep, {place: complex_coefficients(keep @ column) for place, column in columns.items()}
 
 
-def as_complex(column: np.ndarray) -> np.ndarray:
-    """Fourier coefficients of v_r + i v_theta, n = -K to K, from coefficients in the real basis (2 + 4K,)."""
-    order = (column.size - 2) // 4
-    found = np.zeros(2 * order + 1, dtype=complex)
+def complex_coefficients(column: np.ndarray) -> np.ndarray:
+    """Fourier coefficients of v_r + i v_theta, n = -K to K, from coefficients in the real basis (2 + 4K, ...)."""
+    order = (len(column) - 2) // 4
+    found = np.zeros((2 * order + 1, *column.shape[1:]), dtype=complex)
     found[order] = (column[0] + 1j * column[1]) / math.sqrt(2.0)
     cos, sin = column[2::4] + 1j * column[4::4], column[3::4] + 1j * column[5::4]
     found[order + 1 :], found[order - 1 :: -1] = 0.5 * (cos - 1j * sin), 0.5 * (cos + 1j * sin)

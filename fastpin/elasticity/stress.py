@@ -92,7 +92,7 @@ def _compliance_hoop(
         moved = moved + value * body.columns_of(LOADS[place])
     order = np.arange(-body.order, body.order + 1.0)
     waves = np.exp(1j * np.multiply.outer(theta, order))
-    hoop: np.ndarray = 8.0 / (kolosov + 1.0) * np.real(waves @ ((1.0 + order) * bodies.as_complex(moved)))
+    hoop: np.ndarray = 8.0 / (kolosov + 1.0) * np.real(waves @ ((1.0 + order) * bodies.complex_coefficients(moved)))
     return hoop
 
 

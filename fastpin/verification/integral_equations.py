@@ -3,6 +3,9 @@
 The solvers work with displacements and logarithmic kernels. The paper applies the operator [[1, d], [-d, 1]] to the
 displacements, which leaves Cauchy kernels cot((theta - xi)/2). The equations have separate matrices, so they check a
 solved state inside its contact independently.
+
+Finite bodies add smooth terms X to gap and slip. With gap and slip h_X and s_X, (46) gains s_X' - h_X and (47) gains
+h_X' + s_X.
 """
 
 from __future__ import annotations
@@ -12,10 +15,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients
 from fastpin.errors import InputError
-from fastpin.kernels import influence
+from fastpin.kernels import fourier, influence
 from fastpin.model.checks import number
 from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
 
 
@@ -53,7 +58,7 @@ def residuals(
     Parameters
     ----------
     problem : Problem
-        Gives the materials, R, R - R_D and the load on the pin: at the centre (39) or as body forces (56).
+        Gives the materials, the bodies, R, R - R_D and the load on the pin: at the centre (39) or as body forces (56).
     force : float
         Reference force F, N/m, positive. It only scales the result.
     grid : Grid
@@ -88,8 +93,9 @@ def residuals(
     s = _nodal("total_slip", total_slip, grid) / length
     C_omega = number("rotation", rotation) * radius / length
     clearance = problem.assembled_clearance / length
-    A = (number("sxx", sxx) + number("syy", syy)) * radius / unit
-    D = (number("sxx", sxx) - number("syy", syy) + 2j * number("sxy", sxy)) * radius / unit
+    remote = {
+        place: number(LOADS[place], value) * radius / unit for place, value in ((SXX, sxx), (SYY, syy), (SXY, sxy))
+    }
 
     # Composite constants over beta*: kappa'/G of the plate, and (39) or (56).
     alpha = pair.alpha_star / pair.beta_star
@@ -110,12 +116,72 @@ def residuals(
     cauchy = cauchy_matrix(grid)
     cot_N, cot_T = _principal_value(cauchy, N), _principal_value(cauchy, T)
 
-    G = 0.5 * plate * (0.5 * A - D * np.exp(-2j * theta))  # G_s + i G_p, (44), (45), (T16)
+    G = np.zeros(grid.size, dtype=complex)
+    bodies = body_terms(problem)
+    if bodies is None:
+        A, D = remote[SXX] + remote[SYY], remote[SXX] - remote[SYY] + 2j * remote[SXY]
+        G = 0.5 * plate * (0.5 * A - D * np.exp(-2j * theta))  # G_s + i G_p, (44), (45), (T16)
     left_46 = -clearance * (1.0 + sin) - _derivative(s, grid) - G.real
     right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
     left_47 = C_omega - s + clearance * cos - G.imag
     right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
-    return left_46 - right_46 / (4.0 * math.pi), left_47 - right_47 / (4.0 * math.pi)
+    r46, r47 = left_46 - right_46 / (4.0 * math.pi), left_47 - right_47 / (4.0 * math.pi)
+    if bodies is not None:
+        share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4, which (39) and (56) hold
+        point = bodies.force_factor - share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
+        remote |= {Q: N_cos + T_sin, P: T_cos - N_sin}
+        r46 += 2.0 * point * (cos * remote[Q] - sin * remote[P])
+        r47 += 2.0 * point * (sin * remote[Q] + cos * remote[P])
+        added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(bodies, theta, remote)
+        r46, r47 = r46 + added[0], r47 + added[1]
+    return r46, r47
+
+
+def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.ndarray:
+    """Terms of (46) and (47), shape (2, n), by which tractions (N, T), shape (2, n), move finite bodies."""
+    left, right = grid.knots()
+    highest = max(bodies.coefficients.shape[1] - 1, (len(bodies.matrix) - 2) // 4)
+    order = np.arange(highest + 1.0)
+    spectra = fourier.hat_coefficients(order, grid.theta, grid.theta - left, right - grid.theta, tractions.T)
+    first, second, cross = bodies.coefficients
+    pressure, shear = spectra[: first.size].T
+    gap, slip = first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure
+    n = order[: first.size]
+    waves = np.exp(1j * np.multiply.outer(grid.theta, n))
+    found = np.array([waves @ (1j * n * slip - gap), waves @ (1j * n * gap + slip)]).real
+    if bodies.matrix.size:
+        moved = complex_coefficients(bodies.matrix @ plate_coefficients(bodies, spectra))
+        found += _of_displacement(moved, grid.theta)
+    return found
+
+
+def plate_coefficients(bodies: BodyTerms, spectra: np.ndarray) -> np.ndarray:
+    """Coefficients of the traction (N, -T) on the plate in the basis of a compliance, shape (2 + 4 K, ...).
+
+    `spectra`, shape (m, 2, ...), are the integrals of N and T times exp(-i n xi), for n = 0 to at least K.
+    """
+    order = (len(bodies.matrix) - 2) // 4
+    pressure, shear = np.moveaxis(spectra[: order + 1], 1, 0) / math.pi
+    found = np.empty((len(bodies.matrix), *pressure.shape[1:]))
+    found[0], found[1] = pressure[0].real / math.sqrt(2.0), -shear[0].real / math.sqrt(2.0)
+    found[2::4], found[3::4] = pressure[1:].real, -pressure[1:].imag
+    found[4::4], found[5::4] = -shear[1:].real, shear[1:].imag
+    return found
+
+
+def _load_terms(bodies: BodyTerms, theta: np.ndarray, load: dict[int, float]) -> np.ndarray:
+    """Terms of (46) and (47), shape (2, n), by which loads, by their places, move finite bodies."""
+    found = np.zeros((2, theta.size))
+    for place, column in bodies.columns.items():
+        found += _of_displacement(load[place] * column, theta)
+    return found
+
+
+def _of_displacement(column: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """Terms of (46) and (47) from Fourier coefficients of v_r + i v_theta, n = -K to K: the gap v_r, the slip -v_theta."""
+    order = np.arange(column.size) - column.size // 2
+    moved = np.exp(1j * np.multiply.outer(theta, order)) @ ((order + 1.0) * column)
+    return -np.array([moved.real, moved.imag])
 
 
 def _principal_value(cauchy: np.ndarray, traction: np.ndarray) -> np.ndarray:

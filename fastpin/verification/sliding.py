@@ -9,6 +9,8 @@ contact. The dominant part of (58) determines the exponents, with r + l = 1. The
 in closed form. The rest of the kernel is smooth and is integrated by Gauss-Jacobi quadrature. (58) is collocated at the
 zeros of P_m^(l, r). The ends follow from equilibrium (50).
 
+Finite bodies add a smooth kernel with the harmonics n of their compliances, times 1 - n^2, and columns of the loads.
+
 With alpha* = 0 the error falls faster than any power of the number of terms. Otherwise the pressure has terms
 x^(r + 1) log x at the ends, and the error falls with the fourth power of the number of terms.
 """
@@ -27,11 +29,14 @@ from scipy.optimize import minimize_scalar, root
 from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
+from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.model.angles import interval_near_bottom, near_bottom
 from fastpin.model.checks import as_toml, number, whole_number
+from fastpin.model.loads import SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
+from fastpin.verification.integral_equations import plate_coefficients
 
 SLIDING_LOADS = ("P", "Q", "sxx", "syy", "sxy")
 """Loads of a sliding contact, as in :data:`fastpin.model.loads.LOADS`. Its moment and rotation are results."""
@@ -224,6 +229,7 @@ class _Case:
     mu: float
     alpha: float
     plate: float
+    bodies: BodyTerms | None
 
     @classmethod
     def of(cls, problem: Problem, load: dict[str, float], sign: float) -> _Case:
@@ -240,6 +246,7 @@ class _Case:
             problem.friction,
             pair.alpha_star / pair.beta_star,
             0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star,
+            body_terms(problem),
         )
 
     @property
@@ -248,11 +255,24 @@ class _Case:
         turn = math.atan(0.5 * self.sign * self.mu * self.alpha) / math.pi
         return 0.5 + turn, 0.5 - turn
 
-    def remote(self, theta: np.ndarray) -> np.ndarray:
-        """The term H of Eq. (58), from the remote stress."""
+    def hole(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The displacement v_r of the hole under the loads, up to a translation, and the term H of (58), v_r + v_r''."""
+        if self.bodies is not None:
+            return _hole_of_bodies(self.bodies, self._loads, theta)
         cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
-        oval = 3.0 * self.difference_stress * cos + 6.0 * self.shear_stress * sin
-        return 0.5 * self.plate * (0.5 * self.sum_stress - oval)
+        mean, oval = 0.5 * self.sum_stress, self.difference_stress * cos + 2.0 * self.shear_stress * sin
+        return 0.5 * self.plate * (mean + oval), 0.5 * self.plate * (mean - 3.0 * oval)
+
+    @property
+    def _loads(self) -> dict[int, float]:
+        """The loads by their places."""
+        return {
+            P: -float(self.force[1]),
+            Q: float(self.force[0]),
+            SXX: 0.5 * (self.sum_stress + self.difference_stress),
+            SYY: 0.5 * (self.sum_stress - self.difference_stress),
+            SXY: self.shear_stress,
+        }
 
     def radial_force(self, theta: np.ndarray) -> np.ndarray:
         """Component of the force along the outward normal at `theta`."""
@@ -319,17 +339,55 @@ def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Patch:
         + 0.5 * half * (case.alpha * (1.0 + case.mu**2) * basis.local + 2.0 * mu * basis.cauchy)
         - half**2 / (2.0 * math.pi) * (case.plate + mu * kernel - slope) @ basis.weighted
     )
+    theta = centre + half * basis.points
+    if case.bodies is not None:
+        smooth = _kernels(case.bodies, case.sign * case.mu, theta, centre + half * basis.nodes)[1]
+        matrix[:-1, :-1] -= 2.0 * half**2 * smooth @ basis.weighted
     matrix[:-1, -1] = -2.0 * half
     matrix[-1, :-1] = half * np.cos(half * basis.nodes) @ basis.weighted
     matrix[-1, -1] = 0.0
-    theta = centre + half * basis.points
     along, across = case.normal_resultants(centre)
-    known = 2.0 * half * case.remote(theta)
+    known = 2.0 * half * case.hole(theta)[1]
     known += half * (case.alpha + 2.0) / (2.0 * math.pi) * case.radial_force(theta)
     *coefficients, clearance = np.linalg.solve(matrix, np.r_[known, along])
     tractions = half * basis.weighted @ coefficients
     unbalanced = float(np.sin(half * basis.nodes) @ tractions) - across
     return _Patch(np.array(coefficients), float(clearance), unbalanced, float(tractions.sum()))
+
+
+def _kernels(bodies: BodyTerms, mu: float, theta: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The gap g that finite bodies add at `theta` (m,) per pressure at `xi` (k,), and g + g''; each (m, k).
+
+    The shear traction is `mu` times the pressure.
+    """
+    first, _, cross = bodies.coefficients
+    order = np.arange(first.size)
+    seen, acting = (np.exp(1j * np.multiply.outer(angle, order)) for angle in (theta, xi))
+    both = (first - 1j * mu * cross) * np.conj(acting)
+    gap, sum_gap = ((seen * part) @ both.T for part in (1.0, 1.0 - order**2.0))
+    found = np.array([gap.real, sum_gap.real])
+    if bodies.matrix.size:
+        n = np.arange((len(bodies.matrix) - 2) // 4 + 1)
+        waves = np.exp(-1j * np.multiply.outer(n, xi))
+        acting = plate_coefficients(bodies, np.stack([waves, mu * waves], axis=1))
+        moved = complex_coefficients(bodies.matrix @ acting)
+        found += np.array(_radial(moved, theta))
+    return found[0], found[1]
+
+
+def _radial(column: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """v_r and v_r + v_r'' at `theta` (m,) from coefficients of v_r + i v_theta, n = -K to K, shape (2K + 1, ...)."""
+    order = np.arange(len(column)) - len(column) // 2
+    waves = np.exp(1j * np.multiply.outer(theta, order))
+    return (waves @ column).real, (waves * (1.0 - order**2.0) @ column).real
+
+
+def _hole_of_bodies(bodies: BodyTerms, loads: Mapping[int, float], theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """v_r and v_r + v_r'' at `theta` under loads by their places."""
+    found = np.zeros((2, theta.size))
+    for place, column in bodies.columns.items():
+        found += np.array(_radial(loads[place] * column, theta))
+    return found[0], found[1]
 
 
 def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -467,13 +525,13 @@ def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
         C, S, L = np.cos(phi), np.sin(phi), np.log(4.0 * np.sin(0.5 * phi) ** 2)
         A = 0.5 * phi - 0.5 * math.pi * np.sign(phi)
         elastic = (case.alpha * S * A - C * L) @ pressure + (case.alpha * C * A + S * L) @ shear
-        return (elastic - (1.0 - case.plate) * pressure.sum()) / (4.0 * math.pi)
+        added = (elastic - (1.0 - case.plate) * pressure.sum()) / (4.0 * math.pi)
+        if case.bodies is not None:
+            added += _kernels(case.bodies, case.sign * case.mu, angle, xi)[0] @ pressure
+        return added
 
     def hole(angle: np.ndarray) -> np.ndarray:
-        """Part of the gap from the clearance and the remote stress."""
-        cos, sin = np.cos(2.0 * angle), np.sin(2.0 * angle)
-        remote = 0.5 * case.sum_stress + case.difference_stress * cos + 2.0 * case.shear_stress * sin
-        return case.clearance + 0.5 * case.plate * remote
+        return case.clearance + case.hole(angle)[0]
 
     touching = np.array([start, 0.5 * (start + stop), stop])
     panels = [[(start, stop)], [(start, touching[1]), (touching[1], stop)], [(start, stop)]]
