@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients
 from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
-from fastpin.model.checks import number
+from fastpin.model.checks import number, positive
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
@@ -83,9 +83,7 @@ def residuals(
     InputError
         If an array does not have one number per node or `force` is not positive.
     """
-    unit = number("force", force)
-    if unit <= 0.0:
-        raise InputError("force", f"must be positive, not {unit:g}")
+    unit = positive("force", force)
     pair, radius = problem.surfaces, problem.hole_radius
     length = unit * pair.beta_star
     N = _nodal("pressure", pressure, grid) * radius / unit
@@ -93,17 +91,13 @@ def residuals(
     s = _nodal("total_slip", total_slip, grid) / length
     C_omega = number("rotation", rotation) * radius / length
     clearance = problem.assembled_clearance / length
-    remote = {
-        place: number(LOADS[place], value) * radius / unit for place, value in ((SXX, sxx), (SYY, syy), (SXY, sxy))
-    }
+    stresses = {SXX: sxx, SYY: syy, SXY: sxy}
+    remote = {place: number(LOADS[place], stress) * radius / unit for place, stress in stresses.items()}
 
-    # Composite constants over beta*: kappa'/G of the plate, and (39) or (56).
+    # Composite constants over beta*, with kappa'/G of the plate.
     alpha = pair.alpha_star / pair.beta_star
     plate = 0.5 * (pair.plate_kolosov + 1.0) * pair.plate_compliance / pair.beta_star
-    if problem.pin_load == "centre":
-        gamma, gamma_prime = pair.gamma / pair.beta_star, pair.gamma_prime / pair.beta_star
-    else:
-        gamma, gamma_prime = pair.gamma_body / pair.beta_star, pair.gamma_body_prime / pair.beta_star
+    gamma, gamma_prime = _pin_constants(problem)
 
     theta = grid.theta
     cos, sin = np.cos(theta), np.sin(theta)
@@ -116,25 +110,32 @@ def residuals(
     cauchy = cauchy_matrix(grid)
     cot_N, cot_T = _principal_value(cauchy, N), _principal_value(cauchy, T)
 
-    G = np.zeros(grid.size, dtype=complex)
+    left_46 = -clearance * (1.0 + sin) - _derivative(s, grid)
+    right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
+    left_47 = C_omega - s + clearance * cos
+    right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
     bodies = body_terms(problem)
     if bodies is None:
-        A, D = remote[SXX] + remote[SYY], remote[SXX] - remote[SYY] + 2j * remote[SXY]
-        G = 0.5 * plate * (0.5 * A - D * np.exp(-2j * theta))  # G_s + i G_p, (44), (45), (T16)
-    left_46 = -clearance * (1.0 + sin) - _derivative(s, grid) - G.real
-    right_46 = cot_T - math.pi * alpha * N - gamma * S_T + plate * N_total + gamma * C_N
-    left_47 = C_omega - s + clearance * cos - G.imag
-    right_47 = -T_total - gamma_prime * C_T + math.pi * alpha * T + cot_N - gamma_prime * S_N
-    r46, r47 = left_46 - right_46 / (4.0 * math.pi), left_47 - right_47 / (4.0 * math.pi)
-    if bodies is not None:
-        share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4, which (39) and (56) hold
-        point = bodies.force_factor - share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
-        remote |= {Q: N_cos + T_sin, P: T_cos - N_sin}
-        r46 += 2.0 * point * (cos * remote[Q] - sin * remote[P])
-        r47 += 2.0 * point * (sin * remote[Q] + cos * remote[P])
-        added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(bodies, theta, remote)
-        r46, r47 = r46 + added[0], r47 + added[1]
-    return r46, r47
+        added = _remote_terms(plate, theta, remote)
+    else:
+        remote |= {Q: float(N_cos + T_sin), P: float(T_cos - N_sin)}
+        added = _traction_terms(bodies, grid, np.array([N, T])) + _load_terms(problem, bodies, theta, remote)
+    return left_46 - right_46 / (4.0 * math.pi) + added[0], left_47 - right_47 / (4.0 * math.pi) + added[1]
+
+
+def _pin_constants(problem: Problem) -> tuple[float, float]:
+    """The composite constants gamma and gamma' over beta*, (39) or (56)."""
+    pair = problem.surfaces
+    if problem.pin_load == "centre":
+        return pair.gamma / pair.beta_star, pair.gamma_prime / pair.beta_star
+    return pair.gamma_body / pair.beta_star, pair.gamma_body_prime / pair.beta_star
+
+
+def _remote_terms(plate: float, theta: np.ndarray, stress: dict[int, float]) -> np.ndarray:
+    """Terms -G_s of (46) and -G_p of (47), shape (2, n), of remote stresses in an infinite plate; (44), (45), (T16)."""
+    A, D = stress[SXX] + stress[SYY], stress[SXX] - stress[SYY] + 2j * stress[SXY]
+    G = 0.5 * plate * (0.5 * A - D * np.exp(-2j * theta))
+    return -np.array([G.real, G.imag])
 
 
 def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.ndarray:
@@ -169,16 +170,23 @@ def plate_coefficients(bodies: BodyTerms, spectra: np.ndarray) -> np.ndarray:
     return found
 
 
-def _load_terms(bodies: BodyTerms, theta: np.ndarray, load: dict[int, float]) -> np.ndarray:
-    """Terms of (46) and (47), shape (2, n), by which loads, by their places, move finite bodies."""
-    found = np.zeros((2, theta.size))
+def _load_terms(problem: Problem, bodies: BodyTerms, theta: np.ndarray, load: dict[int, float]) -> np.ndarray:
+    """Terms of (46) and (47), shape (2, n), by which loads, by their places, move finite bodies.
+
+    The first harmonic of P and Q counts beyond that of a solid pin, which (39) and (56) hold.
+    """
+    pair, share = problem.surfaces, 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
+    point = bodies.force_factor - share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
+    force = load[Q] - 1j * load[P]
+    moved = 2.0 * point * np.conj(force) * np.exp(1j * theta)
+    found = np.array([moved.real, moved.imag])
     for place, column in bodies.columns.items():
         found += _of_displacement(load[place] * column, theta)
     return found
 
 
 def _of_displacement(column: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Terms of (46) and (47) from Fourier coefficients of v_r + i v_theta, n = -K to K: the gap v_r, the slip -v_theta."""
+    """Terms of (46) and (47) from coefficients of v_r + i v_theta, n = -K to K. The gap is v_r, the slip -v_theta."""
     order = np.arange(column.size) - column.size // 2
     moved = np.exp(1j * np.multiply.outer(theta, order)) @ ((order + 1.0) * column)
     return -np.array([moved.real, moved.imag])

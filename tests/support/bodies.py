@@ -10,8 +10,7 @@ from fastpin.elasticity.bodies import body_terms
 from fastpin.kernels import harmonics
 from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.compliance import Compliance
-from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, REMOTE, P, Q
+from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 
