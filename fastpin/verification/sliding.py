@@ -50,6 +50,12 @@ NEGLIGIBLE = 1e-13
 LEAST_TERMS = 4
 """Least number of Jacobi polynomials."""
 
+WIDER = (1.0, 2.0, 3.0)
+"""Half-widths to start from with finite bodies, in parts of Hertz's: thin walls bend, and their contact is wider.
+
+A tube with the bore 0.8 R in a ring to 1.5 R has a contact 2.5 times as wide as Hertz's at L_p = 1.
+"""
+
 # Half-widths, rad: a narrower contact can't be told from a point, a wider one has no two ends.
 _NARROWEST, _WIDEST = 1e-7, 0.995 * math.pi
 _MOST_STEPS = 200  # of a continuation from one case to another
@@ -256,7 +262,7 @@ class _Case:
         return 0.5 + turn, 0.5 - turn
 
     def hole(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The displacement v_r of the hole under the loads, up to a translation, and the term H of (58), v_r + v_r''."""
+        """v_r of the hole under the loads, up to a translation, and the term H = v_r + v_r'' of (58)."""
         if self.bodies is not None:
             return _hole_of_bodies(self.bodies, self._loads, theta)
         cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
@@ -425,13 +431,14 @@ def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> 
     stressed = replace(case, clearance=loose.clearance)
     tight = replace(loose, clearance=case.clearance)
     direction = math.atan2(case.force[1], case.force[0]) + math.atan(case.sign * case.mu)
-    first = (direction, min(1.0 / math.sqrt(math.pi * loose.clearance), 1.0))
-    for stations in ([loose, case], [loose, stressed, case], [loose, tight, case]):
-        place: tuple[float, float] | None = first
-        for before, after in pairwise(stations):
-            place = place and _along(before, after, basis, place)
-        if place is not None:
-            return place
+    guess = min(1.0 / math.sqrt(math.pi * loose.clearance), 1.0)
+    for half in [guess] if case.bodies is None else [part * guess for part in WIDER]:
+        for stations in ([loose, case], [loose, stressed, case], [loose, tight, case]):
+            place: tuple[float, float] | None = (direction, half)
+            for before, after in pairwise(stations):
+                place = place and _along(before, after, basis, place)
+            if place is not None:
+                return place
     raise ConvergenceError(
         "no contact with two ends was found that slides under this load: the hole may close round the pin, or the "
         "contact may have several parts"
