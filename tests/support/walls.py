@@ -123,8 +123,8 @@ class Layers:
         """The whole compliance (2, 2) of the contact rim."""
         return np.array([self.solve(t) for t in ((1, 0), (0, 1))]).T
 
-    def uniform(self, contact=1, jump=0):
-        """u_r of the contact rim under the traction s_rr = `contact` and a radial jump, for n = 0."""
+    def uniform(self, contact=1, jump=0, outer=0):
+        """u_r of the contact rim under s_rr = `contact` there, `outer` on the last rim and a radial jump, for n = 0."""
         assert self.n == 0
         with mpmath.workdps(60):
             starts = range(0, 2 * len(self.layers), 2)
@@ -146,6 +146,6 @@ class Layers:
             last = self.layers[-1][0]
             if math.isfinite(last):
                 rows.append(at(len(self.layers) - 1, last)[1 if self.kind == HELD else 0])
-                right.append(0)
+                right.append(outer)
             amplitudes = solved([list(row[:size]) for row in rows], right)
             return sum(u * a for u, a in zip(at(0, 1)[1][:size], amplitudes, strict=True))
