@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -16,13 +16,14 @@ from scipy.optimize import minimize_scalar
 
 from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
+from fastpin.model.bodies import Ring
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import closed_forms, interference
+from fastpin.verification import body_cases, closed_forms, interference
 from fastpin.verification.comparisons import (
     all_round_difference,
     cattaneo_mindlin,
@@ -86,6 +87,17 @@ TOLERANCES: dict[str, dict[str, float]] = {
         "peak hoop stress": 4e-3,
         "its place": 6e-4,
     },
+    "bodies": {
+        "peak N": 1.6e-5,
+        "int N": 1e-5,
+        "half-angle": 5e-4,
+        "peak N, elements": 7e-5,  # the finite elements themselves: 5e-5
+        "peak N, (58)": 9e-6,
+        "half-angle, (58)": 1.6e-4,
+        "N, stuck": 8e-6,
+        "T, stuck": 5e-6,
+    },
+    "bodies, exact": {"peak N": 4e-14, "N, T": 3e-12, "compliance": 1e-15},
     "mirror": {"N": 1.5e-12, "T": 1.5e-12, "slip": 1.5e-14},
     "energy": {"work": 1.5e-5},
     "parts": {"differing numbers": 0.0},
@@ -313,15 +325,10 @@ def _open_hole(solving: _Solving) -> Rows:
 
 
 def _interference_fit(solving: _Solving) -> Rows:
-    """An oversized pin, loaded a little and unloaded.
-
-    The pressure p moves the edge by u_r = p R/(2 G) of the hole and by -p R (kappa - 1)/(4 G) of the pin.
-    """
+    """An oversized pin, loaded a little and unloaded."""
     problem = Problem.from_load_parameter(UNLIKE, -0.1, 0.3)
     state = solving(problem, [{"P": 0.01}, {"P": 0.0}])[-1]
-    pair = problem.pair
-    compliance = 0.5 / pair.plate.shear_modulus + 0.25 * (pair.pin_kolosov - 1.0) / pair.pin.shear_modulus
-    pressure = -problem.clearance / compliance
+    pressure = -problem.clearance / problem.joint.uniform_compliance
     yield _value("peak N", state.peak_pressure, pressure)
     theta = np.linspace(-3.0, 3.0, 37)
     radii = 1.0 + np.geomspace(1e-6, 10.0, 20), np.linspace(0.05, 1.0, 20)
@@ -437,6 +444,51 @@ def _cattaneo_mindlin_stress(solving: _Solving) -> Rows:
             yield _value("its place", (found.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
 
 
+def _finite_bodies(name: str, solving: _Solving) -> Rows:
+    """A joint with finite bodies against values of 1,601 nodes, finite elements, and without friction Eq. (58)."""
+    case = body_cases.CASES[name]
+    state = solving(case.problem, case.history)[-1]
+    yield _value("peak N", state.peak_pressure, case.peak)
+    yield _value("int N", float(state.grid.weights @ state.pressure), case.total)
+    yield _angle("half-angle", _half_width(state.contact[0]), case.half_angle)
+    if case.elements is not None:
+        yield _value("peak N, elements", state.peak_pressure, case.elements)
+    if case.problem.frictionless:
+        series = solve_sliding(case.problem, {"P": 1.0})
+        yield _value("peak N, (58)", state.peak_pressure, series.peak_pressure)
+        yield _angle("half-angle, (58)", _half_width(state.contact[0]), _half_width(series.contact))
+
+
+def _stuck_bodies(solving: _Solving) -> Rows:
+    """A hollow pin pressed into a bush in a ring, under a force below the first slip at P = 0.67."""
+    force = 0.1
+    (state,) = solving(body_cases.STUCK, [{"P": force}])
+    _, pressure, shear = body_cases.stuck_tractions(force, state.theta)
+    yield _Row("N, stuck", float(np.abs(state.pressure - pressure).max()) / force, "P/R")
+    yield _Row("T, stuck", float(np.abs(state.shear - shear).max()) / force, "P/R")
+
+
+def _pressed_bodies(solving: _Solving) -> Rows:
+    """The same fit, loaded a little and unloaded."""
+    state = solving(body_cases.STUCK, [{"P": 0.01}, {"P": 0.0}])[-1]
+    yield _value("peak N", state.peak_pressure, body_cases.stuck_tractions(0.0, state.theta)[0])
+
+
+def _ring_compliance(solving: _Solving) -> Rows:
+    """A ring by its closed forms, and by the compliance between Fourier coefficients."""
+    ring = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
+    by_matrix = replace(ring, plate_body=body_cases.ring_compliance(ring, 32))
+    (one,), (two,) = (solving(problem, [{"P": 1.0, "Q": 0.2, "sxx": 0.05}]) for problem in (ring, by_matrix))
+    difference = np.abs([one.pressure - two.pressure, one.shear - two.shear]).max()
+    yield _Row("N, T", float(difference) / one.peak_pressure, "peak N")
+
+
+def _cut_layer(solving: _Solving) -> Rows:
+    """A bush in a ring, and the same bush cut into two layers."""
+    for kind in ("free", "held"):
+        yield _Row("compliance", body_cases.cut_layer_difference(kind), "the largest", case=f"cut bush, {kind} rim")
+
+
 def _energy(problem: Problem, solving: _Solving) -> Rows:
     """Work of the loads against stored plus dissipated energy, for the state with the largest difference."""
     rows = [
@@ -543,6 +595,14 @@ TOPICS: dict[str, tuple[str, Cases]] = {
     "stresses, half-plane": (
         "Stresses of half-planes, half-angle 0.001: Hertz, Cattaneo, Mindlin",
         {"P": _hertz_stress, "P, Q": _cattaneo_mindlin_stress},
+    ),
+    "bodies": (
+        "Hollow pins, rings and bushes: 1,601 nodes, finite elements, Eq. (58), closed form",
+        {name: partial(_finite_bodies, name) for name in body_cases.CASES} | {"stuck interference fit": _stuck_bodies},
+    ),
+    "bodies, exact": (
+        "Hollow pins, rings and bushes: exact relations",
+        {"interference fit": _pressed_bodies, "ring by its compliance": _ring_compliance, "cut bush": _cut_layer},
     ),
     "mirror": (
         "A history with -Q in place of Q: the mirror image",

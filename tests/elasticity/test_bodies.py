@@ -17,8 +17,9 @@ from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
+from fastpin.verification.body_cases import ring_compliance
 from tests.support import walls
-from tests.support.bodies import JOINTS, UNLIKE, joint_problem, ring_compliance
+from tests.support.bodies import JOINTS, UNLIKE, joint_problem
 from tests.support.potentials import Potentials, plate
 
 GRIDS = {
