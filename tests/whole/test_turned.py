@@ -13,6 +13,7 @@ import pytest
 
 import fastpin
 from fastpin.model.angles import BOTTOM
+from fastpin.model.bodies import Plate
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
@@ -20,6 +21,7 @@ from fastpin.model.problem import Problem
 from fastpin.report.case import load_columns
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
+from tests.support.bodies import joint_problem
 
 HISTORY = [
     {"P": 1.0, "Q": 0.1, "sxx": 0.02},
@@ -95,6 +97,28 @@ def test_any_angle_on_the_circle(titanium_in_aluminium, parameter):
     one = solve(problem, HISTORY, grid=grid)
     two = solve(problem, turned(HISTORY, 0.7), grid=turned_grid(grid, 0.7))
     assert_turned(one, two, 0.7, 1e-9)
+
+
+@pytest.mark.parametrize("angle", ANGLES[:3])
+@pytest.mark.parametrize("name", ["tube", "tube in a ring", "tube, bush, ring", "ring, compliance"])
+def test_any_angle_with_round_bodies(name, angle):
+    """The bodies, and the stresses on their rims, know no direction: also through the matrix of a compliance."""
+    problem, grid = joint_problem(name, 0.3, 0.4), Grid.arc(BOTTOM - 2.3, BOTTOM + 2.3, 121)
+    one = solve(problem, HISTORY, grid=grid)
+    two = solve(problem, turned(HISTORY, angle), grid=turned_grid(grid, angle))
+    assert_turned(one, two, angle, 1e-9)
+
+
+@pytest.mark.parametrize("angle", ANGLES[:3])
+def test_a_reaction_turns_with_its_point(titanium_in_aluminium, angle):
+    grid, place = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121), complex(0.7, 2.5)
+    points = [(place.real, place.imag)]
+    moved = place * cmath.exp(1j * angle)
+    points.append((moved.real, moved.imag))
+    first, second = (Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, plate_body=Plate(p)) for p in points)
+    one = solve(first, HISTORY, grid=grid)
+    two = solve(second, turned(HISTORY, angle), grid=turned_grid(grid, angle))
+    assert_turned(one, two, angle, 1e-10)
 
 
 @pytest.mark.parametrize("angle", ANGLES[:2])
