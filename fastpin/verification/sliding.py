@@ -168,7 +168,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
         If a load is unknown or not a number, no force acts, or `slip` or `terms` is out of range.
     ConvergenceError
         If no sliding contact with two ends was found. The hole may close round the pin, the contact may have several
-        parts, or it is too narrow for the digits of an angle.
+        parts, or it is too narrow for the digits of an angle. Walls of 2% have more harmonics than 128 terms resolve.
     """
     if not isinstance(problem, Problem):
         raise InputError("problem", f"must be a Problem, not {as_toml(problem)}")
