@@ -100,11 +100,8 @@ def _hats(begin: int, count: int, nodes: np.ndarray, h_left: np.ndarray, h_right
 def hat_coefficients(
     order: np.ndarray, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray, values: np.ndarray
 ) -> np.ndarray:
-    """int f exp(-i n xi) dxi of piecewise linear functions f, shape (m, ...), from their nodal `values` (k, ...).
-
-    `order`, shape (m,), holds whole numbers one after the other.
-    """
-    hats = _hats(int(order[0]), order.size, nodes, h_left, h_right)
+    """int f exp(-i n xi) dxi of piecewise linear functions f, shape (m, ...), from their nodal `values` (k, ...)."""
+    hats = hat_moments(order, h_left, h_right) * np.exp(-1j * np.multiply.outer(nodes, order))
     return np.tensordot(hats, values, axes=(0, 0))
 
 
@@ -123,8 +120,7 @@ def product(
     found = np.zeros((2, seen.size))
     for begin in range(0, coefficients.shape[1], BLOCK):
         first, second, cross = coefficients[:, begin : begin + BLOCK]
-        order = np.arange(begin, begin + first.size, dtype=float)
-        pressure, shear = hat_coefficients(order, nodes, h_left, h_right, tractions.T).T
+        pressure, shear = tractions @ _hats(begin, first.size, nodes, h_left, h_right)
         sums = np.column_stack([first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure])
         found += (waves(seen, begin, first.size) @ sums).real.T
     return found

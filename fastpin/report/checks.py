@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from fastpin.verification.checks import Check
+from fastpin.verification.rows import Check
 
 UNITS = "Dimensionless (R = F = beta* = 1): N and T in F/R, angles in rad, moments in F R, energies in F^2 beta*."
 """The first line of the table."""

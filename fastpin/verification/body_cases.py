@@ -84,20 +84,6 @@ STUCK = Problem.from_load_parameter(
 """An interference fit of a hollow pin in a bush in a ring."""
 
 
-def stuck_tractions(force: float, theta: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Uniform pressure of :data:`STUCK`, and N and T (on the pin) under P = `force` while all round sticks.
-
-    The first harmonics of the bodies are g11 and g12. With m = -g12/g11 and tau = P/2 pi the tractions are
-    N = N0 - tau (1 + m) sin theta and T = tau (1 - m) cos theta.
-    """
-    joint, surfaces = STUCK.joint, STUCK.surfaces
-    of_pin, of_bush = joint.pin_first.displacement(), joint.bush_first.displacement()
-    g11, g12 = surfaces.pin_compliance * of_pin - surfaces.plate_compliance * of_bush
-    ratio, tau = -g12 / g11, force / (2.0 * np.pi)
-    uniform = -STUCK.assembled_clearance / joint.uniform_compliance
-    return uniform, uniform - tau * (1.0 + ratio) * np.sin(theta), tau * (1.0 - ratio) * np.cos(theta)
-
-
 def cut_layer_difference(kind: str) -> float:
     """Difference of a bush cut into two layers from one layer, in a ring whose rim is free or held.
 

@@ -6,39 +6,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
-from fastpin.model.bodies import Ring
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
-from fastpin.solver.result import Result
-from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.verification import body_cases, closed_forms, interference
+from fastpin.verification import body_cases, body_rows, closed_forms
 from fastpin.verification.comparisons import (
-    all_round_difference,
     cattaneo_mindlin,
     cattaneo_mindlin_differences,
-    event_load,
     half_plane_stress_difference,
     residuals_away,
     strain_slip_difference,
     stress_resultant,
 )
 from fastpin.verification.finite_elements import FRETTING, LIKE, UNLIKE, FiniteElements
+from fastpin.verification.rows import Check, Row, Rows, Solving, angle_row, half_width, relative_row
 from fastpin.verification.sliding import solve_sliding
-
-NODES = 401
-"""Number of nodes of all cases, except the cases on the nodes of finite elements."""
 
 STATED = 1.2
 """Factor on the stated errors of the finite-element models, which are given as "about"."""
@@ -106,40 +96,6 @@ TOLERANCES: dict[str, dict[str, float]] = {
 """Largest differences that pass, by key of the topic and quantity. A key "quantity, case" holds for that case only."""
 
 
-@dataclass(frozen=True)
-class Check:
-    """One check: a quantity of one case against its reference.
-
-    Attributes
-    ----------
-    topic, case, quantity : str
-        Names of the topic, the case and the compared quantity. The quantity is empty if the case ended in an error.
-    reference, ours : float or None
-        The two values, dimensionless (R = F = beta* = 1, angles in rad). None if whole functions are compared.
-    difference, tolerance : float or None
-        The difference and the largest one that passes, >= 0, in `unit`. None if the case ended in an error.
-    unit : str
-        "relative" (to the reference), or the unit of `difference`.
-    message : str
-        The error in which the case ended, else empty.
-    """
-
-    topic: str
-    case: str
-    quantity: str = ""
-    reference: float | None = None
-    ours: float | None = None
-    difference: float | None = None
-    tolerance: float | None = None
-    unit: str = ""
-    message: str = ""
-
-    @property
-    def passed(self) -> bool:
-        """Whether the difference is a number within the tolerance."""
-        return self.difference is not None and self.tolerance is not None and self.difference <= self.tolerance
-
-
 def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
     """Compare the solver of this installation with its references.
 
@@ -154,7 +110,7 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
         The checks in the order of the topics. A case that ends in an error gives a check that has not passed; the other
         cases still run.
     """
-    solving = _Solving()
+    solving = Solving()
     checks: list[Check] = []
     cases = [(key, title, name, rows) for key, (title, topic) in TOPICS.items() for name, rows in topic.items()]
     for done, (key, title, name, rows) in enumerate(cases):
@@ -168,78 +124,34 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
     return checks
 
 
-class _Solving:
-    """The solver with a record of its states: their number and their largest residual."""
-
-    def __init__(self) -> None:
-        self.states = 0
-        self.largest = 0.0
-
-    def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
-        result = solve(problem, history, **{"nodes": NODES, **options})
-        self.states += len(result)
-        residuals = [residual for state in result for residual in state.residuals.values()]
-        self.largest = float(np.max([self.largest, *residuals]))
-        return result
-
-
-class _Row(NamedTuple):
-    quantity: str
-    difference: float
-    unit: str
-    reference: float | None = None
-    ours: float | None = None
-    case: str = ""
-
-    def check(self, topic: str, name: str, tolerances: dict[str, float]) -> Check:
-        case = self.case or name
-        tolerance = tolerances.get(f"{self.quantity}, {case}", tolerances[self.quantity])
-        return Check(topic, case, self.quantity, self.reference, self.ours, self.difference, tolerance, self.unit)
-
-
-Rows = Iterator[_Row]
-
-
-def _value(quantity: str, ours: float, reference: float, case: str = "") -> _Row:
-    return _Row(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
-
-
-def _angle(quantity: str, ours: float, reference: float) -> _Row:
-    return _Row(quantity, abs(ours - reference), "rad", reference, ours)
-
-
-def _half_width(interval: tuple[float, float]) -> float:
-    return 0.5 * (interval[1] - interval[0])
-
-
-def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, solving: _Solving) -> Rows:
+def _frictionless(pair: MaterialPair, load_parameter: float, mismatch: float, solving: Solving) -> Rows:
     (state,) = solving(Problem.from_load_parameter(pair, load_parameter, 0.0), [{"P": 1.0}])
     half = float(closed_forms.persson_half_angle(load_parameter, mismatch))
-    yield _value("peak N", state.peak_pressure, float(closed_forms.persson_pressure(0.0, half)))
-    yield _angle("half-angle", _half_width(state.contact[0]), half)
+    yield relative_row("peak N", state.peak_pressure, float(closed_forms.persson_pressure(0.0, half)))
+    yield angle_row("half-angle", half_width(state.contact[0]), half)
 
 
-def _coupled(pair: MaterialPair, load_parameter: float, solving: _Solving) -> Rows:
+def _coupled(pair: MaterialPair, load_parameter: float, solving: Solving) -> Rows:
     problem = Problem.from_load_parameter(pair, load_parameter, 0.0)
     (state,) = solving(problem, [{"P": 1.0}])
     series = solve_sliding(problem, {"P": 1.0})
-    yield _value("peak N", state.peak_pressure, series.peak_pressure)
-    yield _angle("half-angle", _half_width(state.contact[0]), _half_width(series.contact))
+    yield relative_row("peak N", state.peak_pressure, series.peak_pressure)
+    yield angle_row("half-angle", half_width(state.contact[0]), half_width(series.contact))
 
 
-def _finite_elements(name: str, solving: _Solving) -> Rows:
+def _finite_elements(name: str, solving: Solving) -> Rows:
     model = FiniteElements.read(name)
     states = solving(model.problem, model.history, grid=model.grid)
     cases = ("P", "+Q", "-Q", "+Q again")[: len(states)]
     differences = model.differences(states)
     for case, state, pressure, difference in zip(cases, states, model.pressure, differences, strict=True):
-        yield _Row("int |dN|", difference.normal, "int N", case=case)
+        yield Row("int |dN|", difference.normal, "int N", case=case)
         if not model.problem.frictionless:
-            yield _Row("int |dT|", difference.shear, "int N", case=case)
-        yield _value("peak N", float(state.pressure.max()), float(pressure.max()), case)
+            yield Row("int |dT|", difference.shear, "int N", case=case)
+        yield relative_row("peak N", float(state.pressure.max()), float(pressure.max()), case)
 
 
-def _half_plane(solving: _Solving) -> Rows:
+def _half_plane(solving: Solving) -> Rows:
     load_parameter, friction, ratio = 2e5, 0.5, 0.6
     half = float(closed_forms.hertz_half_angle(load_parameter))
     pushed, *fretted = solving(
@@ -247,15 +159,15 @@ def _half_plane(solving: _Solving) -> Rows:
         [{"P": 1.0}, *({"Q": part * ratio * friction} for part in (1.0, -1.0, 1.0, BACK))],
         arc=(BOTTOM - 1.2 * half, BOTTOM + 1.2 * half),
     )
-    yield _value("peak N", pushed.peak_pressure, float(closed_forms.hertz_peak_pressure(load_parameter)), "P")
+    yield relative_row("peak N", pushed.peak_pressure, float(closed_forms.hertz_peak_pressure(load_parameter)), "P")
     differences = cattaneo_mindlin_differences(fretted[:3], ratio)
     exact = float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
     for case, state, difference in zip(("+Q", "-Q", "+Q again"), fretted[:3], differences, strict=True):
-        yield _Row("int |dT|", difference, "int mu N", case=case)
-        stick = _half_width(state.stick[0]) / _half_width(state.contact[0])
-        yield _value("stick ratio", stick, exact, case)
-        yield _value("peak T", abs(state.peak_shear), _peak_shear(state, ratio, 1.0), case)
-    yield _value("peak T", abs(fretted[3].peak_shear), _peak_shear(fretted[3], ratio, BACK), "back to 0.4 Q")
+        yield Row("int |dT|", difference, "int mu N", case=case)
+        stick = half_width(state.stick[0]) / half_width(state.contact[0])
+        yield relative_row("stick ratio", stick, exact, case)
+        yield relative_row("peak T", abs(state.peak_shear), _peak_shear(state, ratio, 1.0), case)
+    yield relative_row("peak T", abs(fretted[3].peak_shear), _peak_shear(fretted[3], ratio, BACK), "back to 0.4 Q")
 
 
 def _peak_shear(state: State, ratio: float, part: float) -> float:
@@ -268,35 +180,35 @@ def _peak_shear(state: State, ratio: float, part: float) -> float:
     return abs(float(cattaneo_mindlin(state, border, part * ratio, ratio, "unloading" if part < 1.0 else "loading")))
 
 
-def _sliding(pair: MaterialPair, solving: _Solving) -> Rows:
+def _sliding(pair: MaterialPair, solving: Solving) -> Rows:
     problem = Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
     state = solving(problem, [{"P": 1.0}, {"Q": 1.0}])[-1]
     series = solve_sliding(problem, {"P": 1.0, "Q": 1.0})
-    yield _value("peak N", state.peak_pressure, series.peak_pressure)
-    yield _value("peak T", abs(state.peak_shear), problem.friction * series.peak_pressure)
-    yield _value("moment", state.resultants["M"], series.moment)
+    yield relative_row("peak N", state.peak_pressure, series.peak_pressure)
+    yield relative_row("peak T", abs(state.peak_shear), problem.friction * series.peak_pressure)
+    yield relative_row("moment", state.resultants["M"], series.moment)
     for ours, reference in zip(state.contact[0], series.contact, strict=True):
-        yield _angle("end", ours, reference)
+        yield angle_row("end", ours, reference)
 
 
-def _singular_equations(solving: _Solving) -> Rows:
+def _singular_equations(solving: Solving) -> Rows:
     (state,) = solving(Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body"), [{"P": 1.0}])
     first, second = residuals_away(state, 0.085)
-    yield _Row("(46)", first, "F beta*")
-    yield _Row("(47)", second, "F beta*")
+    yield Row("(46)", first, "F beta*")
+    yield Row("(47)", second, "F beta*")
 
 
-def _singular_equations_with_stress(solving: _Solving) -> Rows:
+def _singular_equations_with_stress(solving: Solving) -> Rows:
     problem = Problem.from_load_parameter(UNLIKE, 0.3, 0.5, "centre")
     state = solving(problem, [{"P": 1.0}, {"Q": 0.2, "sxx": 0.3, "syy": -0.1}])[-1]
-    yield _Row("(47)", residuals_away(state, 0.15)[1], "F beta*")
+    yield Row("(47)", residuals_away(state, 0.15)[1], "F beta*")
 
 
 _FREE = Problem.from_load_parameter(UNLIKE, 0.05, 0.5, "body")
 _HELD = Problem.from_load_parameter(UNLIKE, 0.5, 0.55, "centre", "fixed")
 
 
-def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
+def _mirror(problem: Problem, half_arc: float, solving: Solving) -> Rows:
     """Reversing the sign of Q mirrors the state: theta becomes -pi - theta, shear and slip change sign."""
     turned = [{name: -value if name == "Q" else value for name, value in corner.items()} for corner in FRETTING]
     arc = (BOTTOM - half_arc, BOTTOM + half_arc)
@@ -307,66 +219,36 @@ def _mirror(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
     def worst(difference: Callable[[State, State], np.ndarray]) -> float:
         return float(np.max([np.abs(difference(here, there)) for here, there in zip(states, mirrored, strict=True)]))
 
-    yield _Row("N", worst(lambda here, there: here.pressure - there.pressure[::-1]) / peak, "peak N")
-    yield _Row("T", worst(lambda here, there: here.shear + there.shear[::-1]) / peak, "peak N")
-    yield _Row("slip", worst(lambda here, there: here.slip + there.slip[::-1]) / slip, "largest slip")
+    yield Row("N", worst(lambda here, there: here.pressure - there.pressure[::-1]) / peak, "peak N")
+    yield Row("T", worst(lambda here, there: here.shear + there.shear[::-1]) / peak, "peak N")
+    yield Row("slip", worst(lambda here, there: here.slip + there.slip[::-1]) / slip, "largest slip")
 
 
 _BODIES: tuple[Body, Body] = ("plate", "pin")
 
 
-def _open_hole(solving: _Solving) -> Rows:
+def _open_hole(solving: Solving) -> Rows:
     """Remote stress, and a pin that touches nothing."""
     remote = {"sxx": 0.1, "syy": -0.05, "sxy": 0.03}
     (state,) = solving(Problem.from_load_parameter(LIKE, 0.5, 0.3, "body"), [remote])
     radius, theta = 1.0 + np.geomspace(1e-6, 20.0, 30)[:, None], np.linspace(-3.0, 3.0, 37)
     expected = closed_forms.kirsch_stress(radius, theta, **remote)
-    yield _Row("Kirsch", _stress_difference(state, "plate", radius, theta, expected) / remote["sxx"], "sxx")
+    yield Row("Kirsch", _stress_difference(state, "plate", radius, theta, expected) / remote["sxx"], "sxx")
 
 
-def _interference_fit(solving: _Solving) -> Rows:
+def _interference_fit(solving: Solving) -> Rows:
     """An oversized pin, loaded a little and unloaded."""
     problem = Problem.from_load_parameter(UNLIKE, -0.1, 0.3)
     state = solving(problem, [{"P": 0.01}, {"P": 0.0}])[-1]
     pressure = -problem.clearance / problem.joint.uniform_compliance
-    yield _value("peak N", state.peak_pressure, pressure)
+    yield relative_row("peak N", state.peak_pressure, pressure)
     theta = np.linspace(-3.0, 3.0, 37)
     radii = 1.0 + np.geomspace(1e-6, 10.0, 20), np.linspace(0.05, 1.0, 20)
     for body, radius in zip(_BODIES, radii, strict=True):
         fall = pressure * np.maximum(radius, 1.0)[:, None] ** -2.0 + 0.0 * theta
         expected = np.array([-fall, fall if body == "plate" else -fall, 0.0 * fall])
         difference = _stress_difference(state, body, radius[:, None], theta, expected)
-        yield _Row("Lame", difference / pressure, "p", case=f"interference fit, {body}")
-
-
-def _stress_of_fit(problem: Problem) -> dict[str, float]:
-    """Remote stresses that leave an interference fit closed, and stuck with a friction of 0.3."""
-    pressure = interference.uniform_pressure(problem)
-    return {"sxx": 0.1 * pressure, "syy": -0.05 * pressure, "sxy": 0.04 * pressure}
-
-
-_FITS: dict[str, tuple[float, Callable[[Problem], dict[str, float]]]] = {
-    "P, mu = 0": (0.0, lambda problem: {"P": 0.9 * interference.frictionless_opening_load(problem)}),
-    "P, mu = 0.3": (0.3, lambda problem: {"P": 0.9 * interference.first_slip_load(problem)}),
-    "stress, mu = 0": (0.0, _stress_of_fit),
-    "stress, mu = 0.3": (0.3, _stress_of_fit),
-    "M, mu = 0.3": (0.3, lambda problem: {"M": 0.9 * interference.first_slip_moment(problem)}),
-}
-"""Coefficient of friction, and loads under which the contact stays closed all round and stuck, by the case."""
-
-
-def _all_round(pair: MaterialPair, case: str, solving: _Solving) -> Rows:
-    friction, loads = _FITS[case]
-    problem = Problem.from_load_parameter(pair, -0.3, friction)
-    yield _Row("tractions", all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
-
-
-def _first_slip(pair: MaterialPair, solving: _Solving) -> Rows:
-    problem = Problem.from_load_parameter(pair, -0.3, 0.3)
-    exact = interference.first_slip_load(problem)
-    bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving)
-    yield _value("slip begins", found, exact)
+        yield Row("Lame", difference / pressure, "p", case=f"interference fit, {body}")
 
 
 def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.ndarray, expected: np.ndarray) -> float:
@@ -375,7 +257,7 @@ def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.n
     return float(np.abs(np.array([found.radial, found.hoop, found.shear]) - expected).max())
 
 
-def _edges_and_circles(name: str, problem: Problem, solving: _Solving) -> Rows:
+def _edges_and_circles(name: str, problem: Problem, solving: Solving) -> Rows:
     """Stresses on the edge against the tractions, and on circles against the loads, of all states of a history."""
     states = solving(problem, FRETTING)
     for body in _BODIES:
@@ -389,16 +271,16 @@ def _edges_and_circles(name: str, problem: Problem, solving: _Solving) -> Rows:
                 part = radius**2 if body == "pin" and problem.pin_load == "body" else 1.0
                 force.append(abs(carried - part * complex(state.load["Q"], -state.load["P"])))
                 moment.append(abs(turned - state.resultants["M"]))
-        yield _Row("on the edge", float(np.max(edge)), "peak N", case=f"{name}, {body}")
-        yield _Row("force", float(np.max(force)), "F", case=f"{name}, {body}")
-        yield _Row("moment", float(np.max(moment)), "F R", case=f"{name}, {body}")
+        yield Row("on the edge", float(np.max(edge)), "peak N", case=f"{name}, {body}")
+        yield Row("force", float(np.max(force)), "F", case=f"{name}, {body}")
+        yield Row("moment", float(np.max(moment)), "F R", case=f"{name}, {body}")
 
 
-def _strains(problem: Problem, half_arc: float, solving: _Solving) -> Rows:
+def _strains(problem: Problem, half_arc: float, solving: Solving) -> Rows:
     """Hoop strains on the edges against gap and slip of the solver, for the worst state."""
     arc = (BOTTOM - half_arc, BOTTOM + half_arc)
     states = solving(problem, [*FRETTING, {"sxx": 0.2, "sxy": 0.1}], arc=arc)
-    yield _Row("slip", float(np.max([strain_slip_difference(state) for state in states])), "largest slip")
+    yield Row("slip", float(np.max([strain_slip_difference(state) for state in states])), "largest slip")
 
 
 _NARROW = 1e-3
@@ -407,7 +289,7 @@ _NARROW = 1e-3
 _NARROW_ARC = (BOTTOM - 1.2 * _NARROW, BOTTOM + 1.2 * _NARROW)
 
 
-def _hertz_stress(solving: _Solving) -> Rows:
+def _hertz_stress(solving: Solving) -> Rows:
     """The largest shear below a contact without friction: at z/a = sqrt(g) with g = (sqrt(5) - 1)/2, z/a (1 - g) p0."""
     load_parameter, golden = 1.0 / (math.pi * _NARROW**2), 0.5 * (math.sqrt(5.0) - 1.0)
     problem = Problem.from_load_parameter(LIKE, load_parameter, 0.0)
@@ -420,11 +302,11 @@ def _hertz_stress(solving: _Solving) -> Rows:
             return -0.5 * float(np.hypot(found.radial - found.hoop, 2.0 * found.shear)) / peak
 
         largest = minimize_scalar(shear, bounds=(0.5, 1.1), method="bounded", options={"xatol": 1e-6})
-        yield _value("largest shear", -largest.fun, math.sqrt(golden) * (1.0 - golden), f"P, {body}")
-        yield _value("its depth", largest.x, math.sqrt(golden), f"P, {body}")
+        yield relative_row("largest shear", -largest.fun, math.sqrt(golden) * (1.0 - golden), f"P, {body}")
+        yield relative_row("its depth", largest.x, math.sqrt(golden), f"P, {body}")
 
 
-def _cattaneo_mindlin_stress(solving: _Solving) -> Rows:
+def _cattaneo_mindlin_stress(solving: Solving) -> Rows:
     """Stresses in partial slip below the surface, and the largest hoop stress on it, 2 p0 sqrt(mu Q/P)."""
     load_parameter, friction, ratio = 1.0 / (math.pi * _NARROW**2), 0.5, 0.6
     problem = Problem.from_load_parameter(LIKE, load_parameter, friction, "centre", "fixed")
@@ -437,68 +319,23 @@ def _cattaneo_mindlin_stress(solving: _Solving) -> Rows:
     for name, state, now, branch in branches:
         for body in _BODIES:
             difference = half_plane_stress_difference(state, body, now, ratio, branch)
-            yield _Row("stresses", difference, "p0", case=f"{name}, {body}")
+            yield Row("stresses", difference, "p0", case=f"{name}, {body}")
             found = state.peak_hoop_stress(body)
             trailing = -1.0 if (now > 0.0) == (body == "plate") else 1.0
-            yield _value("peak hoop stress", found.value, peak, f"{name}, {body}")
-            yield _value("its place", (found.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
+            yield relative_row("peak hoop stress", found.value, peak, f"{name}, {body}")
+            yield relative_row("its place", (found.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
 
 
-def _finite_bodies(name: str, solving: _Solving) -> Rows:
-    """A joint with finite bodies against values of 1,601 nodes, finite elements, and without friction Eq. (58)."""
-    case = body_cases.CASES[name]
-    state = solving(case.problem, case.history)[-1]
-    yield _value("peak N", state.peak_pressure, case.peak)
-    yield _value("int N", float(state.grid.weights @ state.pressure), case.total)
-    yield _angle("half-angle", _half_width(state.contact[0]), case.half_angle)
-    if case.elements is not None:
-        yield _value("peak N, elements", state.peak_pressure, case.elements)
-    if case.problem.frictionless:
-        series = solve_sliding(case.problem, {"P": 1.0})
-        yield _value("peak N, (58)", state.peak_pressure, series.peak_pressure)
-        yield _angle("half-angle, (58)", _half_width(state.contact[0]), _half_width(series.contact))
-
-
-def _stuck_bodies(solving: _Solving) -> Rows:
-    """A hollow pin pressed into a bush in a ring, under a force below the first slip at P = 0.67."""
-    force = 0.1
-    (state,) = solving(body_cases.STUCK, [{"P": force}])
-    _, pressure, shear = body_cases.stuck_tractions(force, state.theta)
-    yield _Row("N, stuck", float(np.abs(state.pressure - pressure).max()) / force, "P/R")
-    yield _Row("T, stuck", float(np.abs(state.shear - shear).max()) / force, "P/R")
-
-
-def _pressed_bodies(solving: _Solving) -> Rows:
-    """The same fit, loaded a little and unloaded."""
-    state = solving(body_cases.STUCK, [{"P": 0.01}, {"P": 0.0}])[-1]
-    yield _value("peak N", state.peak_pressure, body_cases.stuck_tractions(0.0, state.theta)[0])
-
-
-def _ring_compliance(solving: _Solving) -> Rows:
-    """A ring by its closed forms, and by the compliance between Fourier coefficients."""
-    ring = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
-    by_matrix = replace(ring, plate_body=body_cases.ring_compliance(ring, 32))
-    (one,), (two,) = (solving(problem, [{"P": 1.0, "Q": 0.2, "sxx": 0.05}]) for problem in (ring, by_matrix))
-    difference = np.abs([one.pressure - two.pressure, one.shear - two.shear]).max()
-    yield _Row("N, T", float(difference) / one.peak_pressure, "peak N")
-
-
-def _cut_layer(solving: _Solving) -> Rows:
-    """A bush in a ring, and the same bush cut into two layers."""
-    for kind in ("free", "held"):
-        yield _Row("compliance", body_cases.cut_layer_difference(kind), "the largest", case=f"cut bush, {kind} rim")
-
-
-def _energy(problem: Problem, solving: _Solving) -> Rows:
+def _energy(problem: Problem, solving: Solving) -> Rows:
     """Work of the loads against stored plus dissipated energy, for the state with the largest difference."""
     rows = [
-        _value("work", state.work, state.energy + state.dissipation)
+        relative_row("work", state.work, state.energy + state.dissipation)
         for state in solving(problem, [*FRETTING, {"P": 0.5, "Q": 0.1}])
     ]
     yield max(rows, key=lambda row: row.difference if math.isfinite(row.difference) else math.inf)
 
 
-def _split(problem: Problem, solving: _Solving) -> Rows:
+def _split(problem: Problem, solving: Solving) -> Rows:
     """A history in two parts, the second continuing from the first, against the whole history."""
     whole = solving(problem, FRETTING)
     first = solving(problem, FRETTING[:2], grid=whole.grid)
@@ -508,7 +345,7 @@ def _split(problem: Problem, solving: _Solving) -> Rows:
         for here, there in zip(whole, [*first, *second], strict=True)
         for expected, actual in zip(_numbers(here), _numbers(there), strict=True)
     )
-    yield _Row("differing numbers", float(differing), "", 0.0, float(differing))
+    yield Row("differing numbers", float(differing), "", 0.0, float(differing))
 
 
 def _numbers(state: State) -> list[np.ndarray]:
@@ -517,21 +354,23 @@ def _numbers(state: State) -> list[np.ndarray]:
     return [*arrays, np.array(values)]
 
 
-def _conditions(solving: _Solving) -> Rows:
+def _conditions(solving: Solving) -> Rows:
     """Conditions of Signorini, Coulomb and equilibrium for all states of the cases above, from the matrices."""
     largest = solving.largest if solving.states else math.nan
-    yield _Row("largest residual", largest, "relative", case=f"all {solving.states} states")
+    yield Row("largest residual", largest, "relative", case=f"all {solving.states} states")
 
 
-Cases = dict[str, Callable[[_Solving], Rows]]
+Cases = dict[str, Callable[[Solving], Rows]]
 
 _RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
 _SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
 _FITTED = {"like": LIKE, "Ti-6Al-4V in Al": UNLIKE}
 _FITTED_CASES: Cases = {
-    f"{case}, {name}": partial(_all_round, pair, case) for name, pair in _FITTED.items() for case in _FITS
+    f"{case}, {name}": partial(body_rows.all_round, pair, case)
+    for name, pair in _FITTED.items()
+    for case in body_rows.FITS
 }
-_FITTED_CASES |= {f"first slip, {name}": partial(_first_slip, pair) for name, pair in _FITTED.items()}
+_FITTED_CASES |= {f"first slip, {name}": partial(body_rows.first_slip, pair) for name, pair in _FITTED.items()}
 _COUPLED = {"Ti-6Al-4V in Al": UNLIKE, "rigid pin": _RIGID_PIN, "soft pin": _SOFT_PIN}
 
 TOPICS: dict[str, tuple[str, Cases]] = {
@@ -598,11 +437,16 @@ TOPICS: dict[str, tuple[str, Cases]] = {
     ),
     "bodies": (
         "Hollow pins, rings and bushes: 1,601 nodes, finite elements, Eq. (58), closed form",
-        {name: partial(_finite_bodies, name) for name in body_cases.CASES} | {"stuck interference fit": _stuck_bodies},
+        {name: partial(body_rows.finite_bodies, name) for name in body_cases.CASES}
+        | {"stuck interference fit": body_rows.stuck_bodies},
     ),
     "bodies, exact": (
         "Hollow pins, rings and bushes: exact relations",
-        {"interference fit": _pressed_bodies, "ring by its compliance": _ring_compliance, "cut bush": _cut_layer},
+        {
+            "interference fit": body_rows.pressed_bodies,
+            "ring by its compliance": body_rows.ring_by_compliance,
+            "cut bush": body_rows.cut_layer,
+        },
     ),
     "mirror": (
         "A history with -Q in place of Q: the mirror image",

@@ -19,8 +19,9 @@ from fastpin.solver import solving
 from fastpin.solver.errors import ConvergenceError
 from fastpin.states import stress
 from fastpin.verification import checks as installation
-from fastpin.verification import closed_forms, finite_elements
-from fastpin.verification.checks import TOLERANCES, TOPICS, Check
+from fastpin.verification import closed_forms, finite_elements, rows
+from fastpin.verification.checks import TOLERANCES, TOPICS
+from fastpin.verification.rows import Check
 
 MOST_SLACK = 3.0
 ROUNDING = {"mirror", "conditions", "parts", "stresses", "bodies, exact"}
@@ -243,7 +244,7 @@ def test_a_part_that_is_off_by_rounding_is_seen(only, monkeypatch) -> None:
             history = [{"Q": history[0]["Q"] * (1.0 + 1e-15)}, *history[1:]]
         return exact(problem, history, **options)
 
-    monkeypatch.setattr(installation, "solve", rounded)
+    monkeypatch.setattr(rows, "solve", rounded)
     checks = installation.verify()
     assert not any(check.passed for check in checks)
     assert all(check.ours is not None and check.ours > 100.0 for check in checks)
@@ -267,7 +268,7 @@ def test_an_error_is_a_row_that_fails_and_the_others_are_made(only, monkeypatch,
             raise ConvergenceError("the statuses\ndo not settle")
         return exact(problem, *given, **options)
 
-    monkeypatch.setattr(installation, "solve", refusing)
+    monkeypatch.setattr(rows, "solve", refusing)
     assert main(["verify"]) == 1
     lines = table_lines(capsys)
     (failed,) = [line for line in lines if "FAILED" in line]

@@ -1,0 +1,101 @@
+"""The rows of the checks of an installation, and the solver that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+
+NODES = 401
+"""Number of nodes of all cases, except the cases on the nodes of finite elements."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check: a quantity of one case against its reference.
+
+    Attributes
+    ----------
+    topic, case, quantity : str
+        Names of the topic, the case and the compared quantity. The quantity is empty if the case ended in an error.
+    reference, ours : float or None
+        The two values, dimensionless (R = F = beta* = 1, angles in rad). None if whole functions are compared.
+    difference, tolerance : float or None
+        The difference and the largest one that passes, >= 0, in `unit`. None if the case ended in an error.
+    unit : str
+        "relative" (to the reference), or the unit of `difference`.
+    message : str
+        The error in which the case ended, else empty.
+    """
+
+    topic: str
+    case: str
+    quantity: str = ""
+    reference: float | None = None
+    ours: float | None = None
+    difference: float | None = None
+    tolerance: float | None = None
+    unit: str = ""
+    message: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the difference is a number within the tolerance."""
+        return self.difference is not None and self.tolerance is not None and self.difference <= self.tolerance
+
+
+class Solving:
+    """The solver with a record of its states: their number and their largest residual."""
+
+    def __init__(self) -> None:
+        self.states = 0
+        self.largest = 0.0
+
+    def __call__(self, problem: Problem, history: Sequence[dict[str, float]], **options: Any) -> Result:
+        result = solve(problem, history, **{"nodes": NODES, **options})
+        self.states += len(result)
+        residuals = [residual for state in result for residual in state.residuals.values()]
+        self.largest = float(np.max([self.largest, *residuals]))
+        return result
+
+
+class Row(NamedTuple):
+    """A difference of one quantity, in `unit`, without its tolerance; see :class:`Check`."""
+
+    quantity: str
+    difference: float
+    unit: str
+    reference: float | None = None
+    ours: float | None = None
+    case: str = ""
+
+    def check(self, topic: str, name: str, tolerances: dict[str, float]) -> Check:
+        """The check with the tolerance of the quantity."""
+        case = self.case or name
+        tolerance = tolerances.get(f"{self.quantity}, {case}", tolerances[self.quantity])
+        return Check(topic, case, self.quantity, self.reference, self.ours, self.difference, tolerance, self.unit)
+
+
+Rows = Iterator[Row]
+"""The rows of one case."""
+
+
+def relative_row(quantity: str, ours: float, reference: float, case: str = "") -> Row:
+    """The row of a value, relative to its reference."""
+    return Row(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
+
+
+def angle_row(quantity: str, ours: float, reference: float) -> Row:
+    """The row of an angle, rad."""
+    return Row(quantity, abs(ours - reference), "rad", reference, ours)
+
+
+def half_width(interval: tuple[float, float]) -> float:
+    """Half the width of an interval."""
+    return 0.5 * (interval[1] - interval[0])
