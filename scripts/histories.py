@@ -6,6 +6,7 @@ has the load parameter of the problem.
 
 from __future__ import annotations
 
+import functools
 import math
 import zlib
 from collections.abc import Callable
@@ -14,10 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.elasticity.plates import plate_compliance
 from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube
+from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
-from fastpin.model.materials import Material, MaterialPair
+from fastpin.model.lug import Lug, Part, PartLoad
+from fastpin.model.materials import Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 
 NODES = 81
@@ -237,7 +241,7 @@ def wandering(rng: np.random.Generator, seed: int) -> RandomCase:
 
 
 def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
-    """Hollow pins, rings with all supports, bushings and plates with a reaction; clearance, neat and interference."""
+    """Hollow pins, rings with all supports, bushings, plates with a reaction, a lug; all fits."""
     del seed
     pair = MaterialPair(
         *(Material(10.0 ** rng.uniform(-1.0, 1.0), rng.uniform(0.0, 0.49)) for _ in range(2)),
@@ -250,6 +254,9 @@ def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
     if hollow:
         pin = Tube(rng.uniform(0.05, 0.95), rng.choice(TUBE_LOADS).item())
     plate = _plate_body(rng)
+    if rng.random() < 0.15:
+        plate = lug(float(rng.choice((0.2, 0.33, 0.45))), pair.plane)
+        pair = MaterialPair(pair.pin, Material(pair.plate.E, plate.nu), pair.plane)
     support = _support(rng)
     if hollow:
         hub = rng.uniform(pin.bore_radius, 1.0) if isinstance(pin, Tube) and "hub_radius" in support else None
@@ -257,11 +264,21 @@ def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
     problem = Problem.from_load_parameter(
         pair, load_parameter, _any_friction(rng), pin_body=pin, plate_body=plate, **support
     )
-    lug = problem.joint.lug
-    held = isinstance(lug, Ring) and lug.held
+    outside = problem.joint.lug
+    held = isinstance(outside, Ring) and outside.held
     stress = 0.0 if held or rng.random() < 0.6 else 0.5
     corners = _extreme_loads(rng, problem, int(rng.integers(1, 7)), stress)
     return RandomCase(problem, LoadHistory(corners), _nodes(rng))
+
+
+@functools.cache
+def lug(nu: float, plane: Plane) -> Compliance:
+    """An oblique lug that no axis divides, with tractions of its own for all remote stresses."""
+    corners = [-1.8 - 1.6j, 2.4 - 1.9j, 2.1 + 4.0j, -2.6 + 3.2j]
+    outline = tuple(Part(f"side {k}", corners[k], corners[(k + 1) % 4]) for k in range(4))
+    loads = [PartLoad("sxx", ("side 1",), normal=1.0), PartLoad("syy", ("side 0",), normal=1.0)]
+    loads.append(PartLoad("sxy", ("side 0",), x=1.0))
+    return plate_compliance(Lug(nu, plane, 1.0, outline, {"side 2": "both"}, loads)).compliance
 
 
 def _plate_body(rng: np.random.Generator) -> PlateBody:

@@ -17,6 +17,7 @@ from tqdm import tqdm
 
 from fastpin.errors import FastpinError
 from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
+from fastpin.model.compliance import Compliance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, UX, UY, M, P, Q
@@ -140,13 +141,15 @@ def enlarged(body: Any, radius: float, modulus: float, displacement: float) -> A
         return replace(body, bore_radius=body.bore_radius * radius)
     if isinstance(body, Ring):
         return replace(body, outer_radius=body.outer_radius * radius)
+    if isinstance(body, Compliance):
+        return replace(body, hole_radius=body.hole_radius * radius)
     return with_point(body, lambda point: point * radius)
 
 
 def has_side(problem: Problem) -> bool:
-    """Whether the plate is supported on a side that does not turn with the load."""
+    """Whether the plate has a side that does not turn with the load."""
     lug = problem.joint.lug
-    return isinstance(lug, Ring) and lug.support == "half"
+    return isinstance(lug, Compliance) or (isinstance(lug, Ring) and lug.support == "half")
 
 
 def turned(rng: np.random.Generator, problem: Problem, loads: np.ndarray, grid: Grid) -> Changed:
