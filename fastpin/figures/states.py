@@ -171,12 +171,11 @@ def _load_text(states: Sequence[State], index: int, name: str) -> str:
     """Return a load with its unit as text. All loads of one kind have the same unit."""
     same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
     factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
-    symbol = f"$σ_{{{name[1:]}}}$" if LOAD_KIND[name] == "traction" else name
     value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
     if states[index].load[name] == 0.0:
-        return f"{symbol} = 0"
+        return f"{name} = 0"
     value = value.lstrip("+") if name == "P" else value
-    return f"{symbol} = {value} {unit.replace('beta*', 'β*')}"
+    return f"{name} = {value} {unit.replace('beta*', 'β*')}"
 
 
 def state_lines(states: Sequence[State]) -> list[Line]:

@@ -186,3 +186,9 @@ def test_cycles(tmp_path: Path) -> None:
     assert turned.get_ylabel().endswith("[urad]")
     assert (tmp_path / "a.png").exists()
     assert [spread(count, 3) for count in (0, 1, 2, 5)] == [[], [0], [0, 1], [0, 2, 4]]
+
+
+def test_a_remote_stress_has_one_name_in_title_and_legend() -> None:
+    figure = plot_tractions(sample_result([{"P": 1e6, "sxx": 2e7, "syy": 1e7}, {"sxx": 3e7}]))
+    assert figure.get_suptitle() == "P = 1 MN/m,  syy = +10 MPa"
+    assert labels(figure)[:2] == ["1:  sxx = +20 MPa", "2:  sxx = +30 MPa"]
