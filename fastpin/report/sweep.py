@@ -49,6 +49,9 @@ _KIND = {
 }
 """The kind of every field of a case that has a unit, apart from the loads."""
 
+_ROUNDING = {"deg": 1e-7, "rad": 1e-12}
+"""By unit: smaller values are rounding, and the text table shows them as 0. A node is above 1e-2 deg wide."""
+
 _SHOWN = {
     "peak_pressure": "peak N",
     "peak_pressure_angle": "at",
@@ -253,6 +256,8 @@ def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list
     """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
     if not all(value is None or _is_number(value) for value in values):
         return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]
+    least = _ROUNDING.get(unit, 0.0)
+    values = [0.0 if value is not None and abs(value) < least else value for value in values]
     factor, label = scaled([value for value in values if value is not None], unit)
     return name, label, ["-" if value is None else f"{value * factor:.5g}" for value in values]
 

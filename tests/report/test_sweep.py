@@ -112,6 +112,14 @@ def with_outcomes(plan: Plan) -> Plan:
     return plan.with_outcomes({"mass": mass, "walk": walk, "loss": {"cycle": "dissipation"}})
 
 
+def test_rounding_is_printed_as_zero(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    small = [{**row, "peak_pressure_angle": 1.3e-10, "rotation": -4e-19} for row in rows]
+    heading, _, *lines = text(plan, small).splitlines()
+    ends = {name: heading.index(f" {name} ") + len(name) + 1 for name in ("at", "rotation")}
+    assert {line[: ends["at"]].split()[-1] for line in lines} == {"0"}
+    assert {line[: ends["rotation"]].split()[-1] for line in lines} == {"0"}
+
+
 def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any]], tmp_path: Path) -> None:
     for place, row in enumerate(rows):
         row |= {"mass": 2e6 + place, "walk": 2e3, "loss": 0.5 * place}
