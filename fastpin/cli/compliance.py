@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 from fastpin import casefile, elasticity, figures
 from fastpin.cli.progress import bar, progress_to
@@ -34,11 +35,12 @@ def run(options: argparse.Namespace) -> int:
             raise CaseFileError(str(options.lug), [(0, str(error))]) from None
     code = write_files([(output, lambda path: write_text(path, result.compliance.to_text()))])
     if code == EXIT_OK:
-        _print_report(result, output)
+        drawing = options.plot if options.plot is not None and drawn == EXIT_OK else None
+        _print_report(result, output, drawing)
     return code or drawn
 
 
-def _print_report(result: elasticity.PlateResult, output: object) -> None:
+def _print_report(result: elasticity.PlateResult, output: Path, drawing: Path | None) -> None:
     compliance = result.compliance
     print(f"harmonics        {compliance.order}")
     print(f"last harmonic    {result.last:.1e} of the largest")
@@ -46,6 +48,6 @@ def _print_report(result: elasticity.PlateResult, output: object) -> None:
     print(f"estimated error  {result.error:.1e}, from a coarser discretisation")
     print(f"nodes            {result.nodes:,} on all edges")
     print(f"loads            {', '.join(compliance.columns) or 'none of its own'}")
-    print(f"wrote {output}")
+    print(f"wrote {output}" + ("" if drawing is None else f" and {drawing}"))
     if result.error > DOUBTFUL:
         print(f"note: the estimated error is above {DOUBTFUL:g}; edges may be too near one another", file=sys.stderr)

@@ -59,7 +59,7 @@ def test_a_file_a_figure_and_a_report(
     assert [line.split("  ")[0] for line in out.splitlines()[:-1]] == [
         "harmonics", "last harmonic", "symmetry error", "estimated error", "nodes", "loads",
     ]  # fmt: skip
-    assert out.endswith(f"wrote {lug.with_suffix('.json')}\n")
+    assert out.endswith(f"wrote {lug.with_suffix('.json')} and {figure}\n")
     assert err == ""
 
 
