@@ -63,7 +63,8 @@ def _draw(lug: Lug, title: str, width: float) -> Figure:
         place = 0 if hold is None else 1 + list(HOLD_WORDS).index(hold)
         kinds[place] = ("free", line(5, 0, 1.4)) if hold is None else (HOLD_WORDS[hold], line(place - 1, 0, 4.0))
         z = 1e3 * part.at(np.linspace(0.0, 1.0, POINTS))
-        panel.plot(z.real, z.imag, **kinds[place][1], zorder=3 if hold else 2)
+        # Snapped to pixels, straight parts would not meet the arcs.
+        panel.plot(z.real, z.imag, **kinds[place][1], zorder=3 if hold else 2, snap=False)
     _write_names(panel, lug)
     for load in lug.loads:
         _draw_load(panel, lug, load)
