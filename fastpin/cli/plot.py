@@ -20,6 +20,9 @@ from fastpin.states.state import State
 Made = tuple[Callable[[Path], object], Callable[[Path], object]]
 """Two functions that write a file: the figure, and its numbers."""
 
+NO_CYCLE = "the history has no cycle that has ended; a load block with repeat = 2 has two"
+"""Refusal of a figure of a cycle."""
+
 
 def run(options: argparse.Namespace) -> int:
     """Draw one kind of figure of a stored result."""
@@ -68,7 +71,7 @@ def _states(options: argparse.Namespace, usual: str) -> list[State]:
         if cycles:
             places = _places_of(cycles[-1], path)
         elif options.states is not None:
-            raise InputError("states", "the history has no cycle that has ended")
+            raise InputError("states", NO_CYCLE)
         else:
             places = slice(None)
     elif chosen == "all":
@@ -124,7 +127,7 @@ def _with_cycles(path: Path) -> solver.Result:
     """The stored result without its states. It has at least one cycle."""
     result = storage.load(path, states=[])
     if not result.cycles:
-        raise InputError("result", "the history has no cycle that has ended")
+        raise InputError("result", NO_CYCLE)
     return result
 
 
