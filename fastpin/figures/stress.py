@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 
 from fastpin.figures.states import drawn_states, name_states, state_lines
 from fastpin.figures.style import add_heading, angle_axis, check_figure_text, draw_and_save, line, panels
+from fastpin.model.bodies import Disk
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
 from fastpin.model.units import named_loads, scaled, units
@@ -29,6 +30,9 @@ LEVELS = 15
 
 FARTHEST = 0.995
 """Part of the points of a map whose values lie within the colours. The values beyond take the end colours."""
+
+SINGULAR = 0.3
+"""Radius round a point force at the pin's centre, in hole radii. The infinite stress there does not set the colours."""
 
 
 def plot_hoop_stress(
@@ -165,7 +169,8 @@ def plot_stress_field(
 ) -> Figure:
     """Draw a map of one component of the stress in pin and plate.
 
-    The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen.
+    The hole's edge is a thin line, and the contact a thick one. The clearance is too narrow to be seen. Under a point
+    force at the pin's centre the stress is infinite; the values near the force do not set the colours.
 
     Parameters
     ----------
@@ -195,7 +200,8 @@ def _draw_field(state: State, curves: list[Curve], component: str, title: str, w
     panel = figure.subplots()
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius
     distance, angle, value = curves[0].columns
-    every = np.concatenate([curve[value] for curve in curves])
+    nearest = SINGULAR * radius if state.problem.pin_body == Disk() and state.problem.pin_load == "centre" else 0.0
+    every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
     factor, label = scaled([low, high], unit)
     signed = low < -0.02 * max(high, -low)

@@ -62,6 +62,36 @@ def test_profiles_begin_with_the_stress_on_the_edge(result):
     assert at_peak["hoop stress [Pa]"][0] == pytest.approx(state.peak_hoop_stress().value)
 
 
+def test_profiles_end_at_the_far_rim():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    bodies = {"pin_body": Tube(5e-3), "plate_body": Ring(25e-3)}
+    ring = solve(Problem(pair, 10e-3, 20e-6, 0.3, **bodies), [{"P": 1e6}], nodes=61)
+    for body, wall in (("plate", 1.5), ("pin", 0.5)):
+        assert depth_curves(ring, body, 0.0, wall)[0]["depth [m]"][-1] == pytest.approx(wall * 10e-3)
+        with pytest.raises(InputError) as refused:
+            depth_curves(ring, body, 0.0, 3.0)
+        assert str(refused.value) == f"depth: must be above 0 and at most {wall} radii, the wall of the {body}, not 3"
+
+
+def test_the_edge_of_the_hole_may_be_that_of_a_bush():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    bush = Bushing(MATERIALS["2024-T3"], 12e-3, 10e-6)
+    joint = solve(Problem(pair, 10e-3, 20e-6, 0.3, plate_body=bush), [{"P": 1e6}, {"P": 5e5}], nodes=61)
+    labels = [panel.get_ylabel() for panel in figures.plot_hoop_stress(joint).axes]
+    assert labels == ["hoop stress, bush  [MPa]", "hoop stress, pin  [MPa]"]
+    assert "below the edge of the bush" in figures.plot_stress_profile(joint).get_suptitle()
+    assert figures.plot_fatigue(fatigue(joint, "smith-watson-topper")).get_suptitle() == "bush, on the edge"
+
+
+def test_a_point_force_does_not_set_the_colours_of_a_map():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    for load in ("centre", "body"):
+        state = solve(Problem(pair, 10e-3, 20e-6, 0.3, pin_load=load), [{"P": 2e6}], nodes=121)[-1]
+        _, bar = figures.plot_stress_field(state).axes
+        assert bar.get_ylabel() == "von Mises stress  [MPa]"
+        assert bar.get_ylim()[1] < 2.0 * state.peak_pressure / 1e6
+
+
 @pytest.mark.parametrize("component", COMPONENTS)
 def test_maps_of_all_components(result, component):
     figure = figures.plot_stress_field(result[-1], component=component)
