@@ -25,6 +25,7 @@ from fastpin.figures.style import (
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance
 from fastpin.model.units import scaled, units, with_unit
+from fastpin.report.case import edge_body
 
 PLANES = 40
 """Planes that are drawn as short lines, spread over the edge."""
@@ -100,7 +101,7 @@ def _draw(found: Fatigue, title: str, width: float) -> Figure:
     fitted_legend(figure, list(handles), len(handles))
     depth = float(found.depth.ravel()[0])
     place = "on the edge" if depth == 0.0 else f"{with_unit(depth, units(found.problem)['length'], 4)} below the edge"
-    heading = f"{found.body}, {place}"
+    heading = f"{edge_body(found.problem, found.body)}, {place}"
     add_heading(figure, title, heading)
     return figure
 

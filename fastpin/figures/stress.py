@@ -20,6 +20,7 @@ from fastpin.model.bodies import Disk
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
 from fastpin.model.units import named_loads, scaled, units
+from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 from fastpin.states.quantities import load_point
@@ -85,7 +86,7 @@ def _draw_hoop(states: list[State], curves: list[Curve], title: str, width: floa
             angle = math.degrees(peak.angle) + 90.0
             panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(f"hoop stress, {body}  [{label}]")
+        panel.set_ylabel(f"hoop stress, {edge_body(states[0].problem, body)}  [{label}]")
         panel.set_xlim(-180.0, 180.0)
         angle_axis(panel)
     axes[-1, 0].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
@@ -151,9 +152,8 @@ def _draw_profile(states: list[State], curves: list[Curve], title: str, width: f
     figure.align_ylabels(axes)
     places = sorted({round(curve.parameters["angle [deg]"], 2) for curve in curves})
     where = f"at {places[0]:.2f} deg" if len(places) == 1 else "at the largest hoop stress of each state"
-    heading = "\n".join(
-        part for part in (title, f"below the edge of the {curves[0].parameters['body']}, {where}") if part
-    )
+    edge = edge_body(states[0].problem, curves[0].parameters["body"])
+    heading = "\n".join(part for part in (title, f"below the edge of the {edge}, {where}") if part)
     name_states(figure, list(axes.flat), states, heading, [])
     return figure
 

@@ -91,6 +91,15 @@ def hole_body(problem: Problem) -> str:
     return "bush" if isinstance(problem.plate_body, Bushing) else "plate"
 
 
+def edge_body(problem: Problem, body: str) -> str:
+    """Return the word for the body whose edge "plate" or "pin" names: the edge of the hole may be that of a bush."""
+    return hole_body(problem) if body == "plate" else body
+
+
+def _corners(count: int) -> str:
+    return "1 corner, reached" if count == 1 else f"{count:,} corners, reached one after the other"
+
+
 def _bodies(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows of the bodies; none for a solid pin in an infinite plate."""
     length, body, rows = units(problem)["length"], problem.plate_body, []

@@ -5,6 +5,7 @@ import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
 from fastpin.damage import fatigue
+from fastpin.model import Bushing, Ring, Tube
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves, traction_curves
 
 
