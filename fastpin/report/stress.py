@@ -11,7 +11,7 @@ from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
 from fastpin.model.compliance import Compliance
-from fastpin.model.points import BODIES, Body, Points, far_rim
+from fastpin.model.points import BODIES, ROUNDING, Body, Points, far_rim
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
@@ -105,8 +105,7 @@ def depth_curves(
     """
     choice("body", body, BODIES)
     deepest = number("depth", depth)
-    if not 0.0 < deepest < (math.inf if body == "plate" else 1.0):
-        raise InputError("depth", "must be above 0, and below 1 radius in the pin")
+    _check_depth(deepest, body, far_rim(states[0].problem, body))
     unit = units(states[0].problem)
     radius, curves = states[0].problem.hole_radius, []
     below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
@@ -119,6 +118,19 @@ def depth_curves(
         parameters = {"body": body, "load point": load_point(state), "angle [deg]": from_bottom(place)}
         curves.append(Curve(parameters, columns))
     return curves
+
+
+def _check_depth(depth: float, body: Body, far: float | None) -> None:
+    """Check the depth of a profile, in hole radii. `far` is the radius of the body's other rim, see ``far_rim``."""
+    wall = math.inf if far is None else abs(far - 1.0)
+    inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + ROUNDING)  # a force may act at the centre of a pin
+    if depth > 0.0 and inside:
+        return
+    if far is None:
+        raise InputError("depth", f"must be above 0, not {depth:g}")
+    if far == 0.0:
+        raise InputError("depth", f"must be above 0 and below 1 radius, the centre of the pin, not {depth:g}")
+    raise InputError("depth", f"must be above 0 and at most {wall:g} radii, the wall of the {body}, not {depth:g}")
 
 
 def field_curves(
