@@ -29,6 +29,12 @@ CONJUGATES = {
 }
 """By kind of load: the name of the displacement on which it does work, and its kind of quantity."""
 
+STRAIGHT = 3
+"""States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
+
+NO_AREA = "area unknown: no states between the corners"
+"""Title of a loop that is a line."""
+
 
 def plot_slip(
     cycle: LoadCycle, path: str | Path | None = None, title: str = "", width: float = 6.7, dpi: float = 200.0
@@ -110,7 +116,8 @@ def plot_loops(
     """Draw the hysteresis loops of a cycle: each load against the displacement on which it does work.
 
     Each panel names the area of its loop, which is the work of the load. Over a closed cycle of a settled contact the
-    areas sum up to the dissipation.
+    areas sum up to the dissipation. The area needs more states than the ends of a line: see `between` of
+    :func:`fastpin.solve`.
 
     Parameters
     ----------
@@ -161,7 +168,8 @@ def _draw_loops(cycle: LoadCycle, title: str, width: float) -> Figure:
         panel.plot(moved * loop.displacement, load * loop.load, marker="o", markersize=2.2, **line(0))
         panel.set_xlabel(f"{words}  [{moved_unit}]")
         panel.set_ylabel(f"{name}  [{load_unit}]")
-        panel.set_title(f"area {with_unit(loop.work, unit['energy'], 4)}", fontsize=8.5)
+        area = f"area {with_unit(loop.work, unit['energy'], 4)}" if len(loop.load) > STRAIGHT else NO_AREA
+        panel.set_title(area, fontsize=8.5)
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}"
     add_heading(figure, title, heading)
     return figure

@@ -123,6 +123,10 @@ def test_slip_and_loops_of_a_cycle(result, tmp_path):
     loops = figures.plot_loops(cycle, tmp_path / "loops.svg", title="loops")
     names = [panel.get_ylabel().partition(" ")[0] for panel in loops.axes if panel.get_visible()]
     assert names == ["Q", "sxx"]
+    assert all(panel.get_title().startswith("area ") and "J/m" in panel.get_title() for panel in loops.axes)
+    corners = solve(result.problem, [{"P": 6e5}, {"Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}], nodes=61)
+    (line,) = figures.plot_loops(corners.cycle(first=2, last=4)).axes
+    assert line.get_title() == "area unknown: no states between the corners"
     with pytest.raises(InputError, match="cycle: must be a load cycle"):
         figures.plot_slip(result)
     with pytest.raises(InputError, match="has no loop"):
