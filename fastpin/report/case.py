@@ -76,7 +76,7 @@ def describe(case: Case) -> str:
         ("contact", f"{size}, friction {problem.friction:g}"),
         ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}{_drive(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
-        ("loads", f"{len(case.history):,} corners, reached one after the other from no load"),
+        ("loads", f"{_corners(len(case.history))} from no load"),
     ]
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
