@@ -189,6 +189,8 @@ def _check_keys(source: CaseText) -> None:
                         section.report(f'unknown key "{key}" in {_in_brackets(name)}{hint}', key)
         elif isinstance(value, (dict, list)) and not _owners(name):
             hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
+            if name == "outline":
+                hint = "; a file with an outline is a lug file, see fastpin compliance"
             source.report(f"unknown section [{name}]{hint}", name)
         else:
             hint = _owners(name) or closest(name, ("title",))

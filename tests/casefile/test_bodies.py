@@ -166,6 +166,7 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
         ),
         ("[pin_body]\nbore_radus = 5e-3\n", 2, 'unknown key "bore_radus" in [pin_body], did you mean "bore_radius"?'),
         ("[pin_bodies]\n", 1, 'unknown section [pin_bodies], did you mean "pin_body"?'),
+        ("[outline]\n", 1, "unknown section [outline]; a file with an outline is a lug file, see fastpin compliance"),
         ("[plate_body]\nouter_radius = 9e-3\n", 2, "outer_radius: must lie between 0.0104167 and 10000 for the hole"),
         ("[plate_body]\nouter_radius = 10.05e-3\n", 2, "outer_radius: must lie between"),
         ('[plate_body]\nouter_radius = 2e-2\nsupport = "clamped"\n', 3, 'support: must be "held" or "uniform"'),
