@@ -1,7 +1,4 @@
-"""The pin between contacts: before any load, at rest on the hole, and after contact was lost.
-
-An interference fit is the exception: it is in contact before any load.
-"""
+"""The pin between contacts: at rest on the hole, and after contact was lost."""
 
 from __future__ import annotations
 
@@ -10,49 +7,8 @@ import numpy as np
 from fastpin.elasticity.drive import DISPLACEMENTS
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN
-from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY
-from fastpin.solver.configuration import Configuration, elastic_energy, resting_status, solve_statuses
-from fastpin.solver.errors import ConvergenceError
-
-
-def unloaded_configuration(system: System) -> Configuration:
-    """The configuration before any load: concentric without contact, or the uniform pressure of an interference fit.
-
-    Its work is 0, or the elastic energy of the assembly.
-
-    Raises
-    ------
-    ConvergenceError
-        If the uniform pressure of an interference fit was not found on this grid.
-    """
-    n = system.grid.size
-    zeros = np.zeros(n)
-    configuration = Configuration(
-        pressure=zeros.copy(),
-        shear=zeros.copy(),
-        gap=np.full(n, system.rest_clearance),
-        slip=zeros.copy(),
-        status=np.full(n, OPEN, dtype=np.int8),
-        motion=np.zeros(3),
-        load=np.zeros(len(LOADS)),
-        origin=np.full(2, np.nan),
-        rest=np.zeros(2),
-        rest_gap=np.full(n, system.rest_clearance),
-        rest_slip=zeros.copy(),
-    )
-    if system.drive is not None:
-        configuration.origin = np.zeros(2)
-    if system.rest_clearance >= 0.0:
-        return configuration
-    configuration.status[:] = resting_status(system)
-    solution = solve_statuses(system, configuration.status, zeros, configuration.load, configuration.rest_gap)
-    if solution is None or solution.pressure.min() <= 0.0:
-        raise ConvergenceError("the uniform pressure of the interference fit was not found; use more nodes")
-    configuration.origin = np.zeros(2)
-    configuration.pressure = solution.pressure
-    configuration.gap = zeros.copy()
-    configuration.work = elastic_energy(system, configuration)  # the work of the assembly
-    return configuration
+from fastpin.model.loads import ROTATION, SXX, SXY, SYY
+from fastpin.solver.configuration import Configuration, elastic_energy
 
 
 def release(system: System, last: Configuration, load: np.ndarray) -> Configuration:

@@ -15,6 +15,7 @@ from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -30,7 +31,7 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import IncrementStepper
 from fastpin.solver.path import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
-from fastpin.solver.rest import release, unloaded_configuration
+from fastpin.solver.rest import release
 from fastpin.solver.result import Restart
 from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, pieces
 from fastpin.solver.window import WindowStepper

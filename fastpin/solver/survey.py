@@ -23,12 +23,13 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, UX, UY, M, P, Q, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.driven import rest_on_hole
 from fastpin.solver.errors import NoEquilibriumError, SolveError
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
-from fastpin.solver.rest import climb_angle, hole_gap, release, unloaded_configuration
+from fastpin.solver.rest import climb_angle, hole_gap, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Progress, Run
 from fastpin.solver.settling import FiniteStep

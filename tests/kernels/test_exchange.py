@@ -20,10 +20,10 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver import unknowns as solver_unknowns
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import empty_slip_tally, solve_statuses, worst_residual
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
-from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, solvable_unknowns

@@ -14,12 +14,12 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import worst_residual
 from fastpin.solver.errors import ResolutionError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
-from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
 

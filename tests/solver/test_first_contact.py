@@ -12,8 +12,8 @@ from fastpin.model.loads import LOADS, P
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import ArcError
-from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.solving import solve
 
 BOTTOM = -0.5 * np.pi

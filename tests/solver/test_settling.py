@@ -15,12 +15,12 @@ from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import solve_statuses, worst_residual
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
-from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
 

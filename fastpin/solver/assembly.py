@@ -1,0 +1,83 @@
+"""The pin before any load: concentric and without contact, or under the pressure of an interference fit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import OPEN
+from fastpin.model.loads import LOADS
+from fastpin.solver.configuration import (
+    MAX_RESIDUAL,
+    Configuration,
+    elastic_energy,
+    resting_status,
+    solve_statuses,
+    worst_residual,
+)
+from fastpin.solver.errors import ConvergenceError
+from fastpin.solver.increment import implicit_step
+
+NOT_FOUND = "the pressure of the interference fit was not found; use more nodes"
+
+
+def unloaded_configuration(system: System) -> Configuration:
+    """The configuration before any load: concentric without contact, or the pressure of an interference fit.
+
+    The work is 0, or the elastic energy of the assembly.
+
+    Raises
+    ------
+    ConvergenceError
+        If the pressure of an interference fit was not found on this grid.
+    """
+    n = system.grid.size
+    zeros = np.zeros(n)
+    configuration = Configuration(
+        pressure=zeros.copy(),
+        shear=zeros.copy(),
+        gap=np.full(n, system.rest_clearance),
+        slip=zeros.copy(),
+        status=np.full(n, OPEN, dtype=np.int8),
+        motion=np.zeros(3),
+        load=np.zeros(len(LOADS)),
+        origin=np.full(2, np.nan),
+        rest=np.zeros(2),
+        rest_gap=np.full(n, system.rest_clearance),
+        rest_slip=zeros.copy(),
+    )
+    if system.drive is not None:
+        configuration.origin = np.zeros(2)
+    if system.rest_clearance >= 0.0:
+        return configuration
+    configuration.status[:] = resting_status(system)
+    configuration.origin = np.zeros(2)
+    configuration.gap = zeros.copy()
+    found = _uneven(system, configuration) if _is_uneven(system) else _uniform(system, configuration)
+    found.work = elastic_energy(system, found)  # the work of the assembly, without that of its friction
+    return found
+
+
+def _is_uneven(system: System) -> bool:
+    """Whether the pressure of an interference fit varies round the hole: in a plate that is not symmetric."""
+    return system.bodies is not None and bool(system.bodies.matrix.size)
+
+
+def _uniform(system: System, start: Configuration) -> Configuration:
+    """The uniform pressure of an interference fit, without shear and slip."""
+    solution = solve_statuses(system, start.status, start.slip, start.load, start.rest_gap)
+    if solution is None or solution.pressure.min() <= 0.0:
+        raise ConvergenceError(NOT_FOUND)
+    start.pressure = solution.pressure
+    return start
+
+
+def _uneven(system: System, start: Configuration) -> Configuration:
+    """The tractions of an interference that grows from a neat fit, as of a cooled pin that warms up.
+
+    All grows in proportion to the interference, so one implicit increment is exact, friction included.
+    """
+    found = implicit_step(system, start, start.load)
+    if found is None or not found.closed.any() or worst_residual(system, found) > MAX_RESIDUAL:
+        raise ConvergenceError(NOT_FOUND)
+    return found
