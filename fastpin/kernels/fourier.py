@@ -36,13 +36,20 @@ def hat_moments(order: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> n
 def _half_moments(order: np.ndarray, length: np.ndarray) -> np.ndarray:
     z = np.multiply.outer(1j * length, order)
     small = np.abs(z) < SERIES_BELOW
-    safe = np.where(small, 1.0, z)
-    exact = (np.expm1(-safe) + safe) / (safe * safe)
-    near = np.where(small, z, 0.0)
-    series = np.zeros_like(near)
-    for k in range(SERIES_TERMS + 2, 1, -1):
-        series = series * -near + 1.0 / math.factorial(k)
-    found: np.ndarray = length[:, None] * np.where(small, series, exact)
+    quotient = _series(np.where(small, z, 0.0))
+    if not small.all():
+        large = z[~small]
+        quotient[~small] = (np.expm1(-large) + large) / (large * large)
+    found: np.ndarray = length[:, None] * quotient
+    return found
+
+
+def _series(z: np.ndarray) -> np.ndarray:
+    """[exp(-z) - 1 + z]/z^2 for small z."""
+    found, minus = np.full_like(z, 1.0 / math.factorial(SERIES_TERMS + 2)), -z
+    for k in range(SERIES_TERMS + 1, 1, -1):
+        found *= minus
+        found += 1.0 / math.factorial(k)
     return found
 
 
