@@ -19,6 +19,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,12 @@ class Compliance:
             if columns[name].shape != (size,):
                 raise InputError(f"columns.{name}", f"must have the shape ({size},), not {columns[name].shape}")
             columns[name].setflags(write=False)
-        object.__setattr__(self, "columns", columns)
+        object.__setattr__(self, "columns", MappingProxyType(columns))
+
+    def __reduce__(self) -> tuple[type[Compliance], tuple[Any, ...]]:
+        """Copies and pickles are made anew, so that they can't be changed either."""
+        given = self.nu, self.plane, self.hole_radius, self.matrix, dict(self.columns), self.made_by
+        return type(self), given
 
     def __repr__(self) -> str:
         made = f", {self.made_by}" if self.made_by else ""

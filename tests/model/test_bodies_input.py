@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import pickle
 from typing import Any
@@ -147,3 +148,15 @@ def test_a_problem_says_its_bodies():
     assert "Bushing(" in repr(bodies)
     assert "Ring(outer_radius=0.02, support='uniform')" in repr(bodies)
     assert "Tube" not in repr(problem())
+
+
+@pytest.mark.parametrize("made", [copy.deepcopy, copy.copy, lambda body: pickle.loads(pickle.dumps(body))])
+def test_copies_of_a_compliance_are_equal_and_cannot_be_changed(made):
+    matrix = np.diag(np.r_[np.ones(6), np.full(4, 0.1), np.full(4, 1e-3)])
+    body = made(Compliance(0.3, "strain", 1.0, matrix, {"sxx": np.arange(14.0)}, "a test"))
+    assert (body, body.made_by) == (Compliance(0.3, "strain", 1.0, matrix, {"sxx": np.arange(14.0)}), "a test")
+    with pytest.raises(TypeError):
+        body.columns["syy"] = np.zeros(14)
+    for array in (body.matrix, body.columns["sxx"]):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
