@@ -127,9 +127,12 @@ class Problem:
         self._check_bodies(radius)
         object.__setattr__(self, "hole_radius", radius)
         if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
+            incompressible = "a pin with nu = 0.5 in a rigid plate keeps its area"
+            if self.has_bodies:
+                incompressible = "a pin with nu = 0.5 in a body that can't widen keeps its area"
             raise InputError(
                 "clearance",
-                "a pin with nu = 0.5 in a rigid plate keeps its area in plane strain: it fits into no smaller hole; "
+                f"{incompressible} in plane strain: it fits into no smaller hole; "
                 f"must not be negative, not {clearance + self.joint.press_fit[1]:g}",
             )
         choice("pin_load", self.pin_load, ("centre", "body"))

@@ -160,3 +160,10 @@ def test_copies_of_a_compliance_are_equal_and_cannot_be_changed(made):
     for array in (body.matrix, body.columns["sxx"]):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1.0
+
+
+def test_bodies_that_keep_their_areas_fit_into_no_smaller_hole():
+    soft = Material(1.0, 0.5)
+    with pytest.raises(InputError, match=r"clearance: a pin with nu = 0\.5 in a body that can't widen keeps its area"):
+        Problem.from_load_parameter(MaterialPair(soft, soft), -0.1, 0.3, plate_body=Ring(2.0, "held"))
+    Problem.from_load_parameter(MaterialPair(soft, soft), -0.1, 0.3, plate_body=Ring(2.0, "uniform"))
