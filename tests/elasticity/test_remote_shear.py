@@ -282,7 +282,7 @@ def test_case_file_table_summary_and_figure(case):
     assert found["history"]["loads"][SXY] == "sxy"
     assert found["states"][-1]["load"]["sxy"] == -1e7
     (legend,) = plot_tractions(result[-2:]).legends
-    assert legend.get_texts()[1].get_text() == "12:  P = 0.9 MN/m,  $σ_{xy}$ = −10 MPa"
+    assert legend.get_texts()[1].get_text() == "12:  P = 0.9 MN/m,  sxy = −10 MPa"
 
 
 def test_result_file(case, tmp_path):

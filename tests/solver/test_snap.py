@@ -12,11 +12,11 @@ from fastpin.kernels.status import STICK
 from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, M, P
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import elastic_energy, worst_residual
 from fastpin.solver.errors import ArcError, NoEquilibriumError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
-from fastpin.solver.rest import unloaded_configuration
 from fastpin.solver.snap import _step_on_springs, find_state_beyond
 from tests.support.snap_cases import GRIPPED, TURNED, problem
 

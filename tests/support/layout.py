@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 RANKS = {
@@ -87,13 +87,19 @@ class Import:
     inside: bool
 
 
+@lru_cache(maxsize=1000)
+def _parsed(text: str) -> ast.Module:
+    """The syntax tree of a file. Trees of the tests share most files."""
+    return ast.parse(text)
+
+
 class Tree:
     """The package's files, parsed. ``root`` is the folder that holds ``fastpin/``."""
 
     def __init__(self, root: Path) -> None:
         self.package = root / "fastpin"
         paths = sorted(self.package.rglob("*.py")) + sorted(self.package.rglob("*.pyi"))
-        self.trees = {str(path.relative_to(self.package)): ast.parse(path.read_text("utf-8")) for path in paths}
+        self.trees = {str(path.relative_to(self.package)): _parsed(path.read_text("utf-8")) for path in paths}
         self.lines = {str(path.relative_to(self.package)): len(path.read_text("utf-8").splitlines()) for path in paths}
 
     @cached_property
