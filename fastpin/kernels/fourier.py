@@ -90,12 +90,19 @@ def hat_columns(
 def waves(angles: np.ndarray, begin: int, count: int) -> np.ndarray:
     """exp(i n theta) at `angles` (m,) for n = begin to begin + count - 1, shape (m, count).
 
-    n = p q + r: the waves are products of those of p q and those of r, so that few exponentials are needed.
+    All are products of the waves n = 1, 2, 4 and so on, whose phases are free of rounding.
     """
-    step = max(1, math.isqrt(count))
-    coarse = np.exp(np.multiply.outer(angles, 1j * np.arange(begin, begin + count, step)))
-    fine = np.exp(np.multiply.outer(angles, 1j * np.arange(step)))
-    return (coarse[:, :, None] * fine[:, None, :]).reshape(angles.size, -1)[:, :count]
+    found = np.empty((count, angles.size), dtype=complex)
+    found[0] = 1.0
+    for power in range(abs(begin).bit_length()):
+        if abs(begin) >> power & 1:
+            found[0] *= np.exp(math.copysign(2.0**power, begin) * 1j * angles)
+    size = 1
+    while size < count:
+        more = min(size, count - size)
+        np.multiply(found[:more], np.exp(1j * size * angles), out=found[size : size + more])
+        size *= 2
+    return found.T
 
 
 def _hats(begin: int, count: int, nodes: np.ndarray, h_left: np.ndarray, h_right: np.ndarray) -> np.ndarray:
