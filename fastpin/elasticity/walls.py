@@ -189,7 +189,7 @@ def _first_change(first: First, known: First, t: np.ndarray) -> np.ndarray:
 class PlateWalls(NamedTuple):
     """The smooth fields of a plate: at the contact, and in the lug beyond a bush in units of its own hole's radius.
 
-    The lug's field is whole, but for an infinite plate under remote stress: there Kirsch's field comes on top.
+    The lug's field is whole. Only in an infinite plate under remote stress Kirsch's field comes on top.
     """
 
     surface: Wall

@@ -16,18 +16,8 @@ from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.compliance import MOST_BYTES, Compliance
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem
+from tests.support.body_texts import HEAD
 
-HEAD = """[pin]
-material = "steel"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-[[load]]
-P = 1e6
-"""
 LINES = HEAD.count("\n")
 BUSH = "[plate_body]\nE = 110e9\nnu = 0.34\nouter_radius = 12.5e-3\n"
 BRONZE = Material(110e9, 0.34)

@@ -133,7 +133,7 @@ def test_the_rim_of_a_ring_round_a_bush_carries_its_load():
 
 @pytest.mark.parametrize("body", [body for body in (*TUBES, *RINGS) if body.held], ids=name)
 def test_a_held_rim_does_not_move(body):
-    """The hoop strain is zero there, and so is the radial displacement but for a translation.
+    """The hoop strain is zero there. The radial displacement is a translation.
 
     It is the displacement of the contact rim by (T38) plus the radial strains along the radius.
     """

@@ -16,18 +16,8 @@ from fastpin.model.problem import Problem
 from fastpin.report.sweep import text as sweep_text
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.plan import Plan, parse_plan
+from tests.support.body_texts import HEAD as CASE
 
-CASE = """[pin]
-material = "steel"
-[plate]
-material = "aluminium"
-[contact]
-hole_radius = 10e-3
-clearance = 20e-6
-friction = 0.3
-[[load]]
-P = 1e6
-"""
 RING = CASE + '[plate_body]\nkind = "ring"\nouter_radius = 2e-2\nsupport = "half"\n'
 BUSH = CASE + '[plate_body]\nmaterial = "steel"\nouter_radius = 12e-3\nring_outer_radius = 2e-2\nsupport = "half"\n'
 BRONZE = Material(110e9, 0.34)

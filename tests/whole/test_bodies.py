@@ -100,7 +100,7 @@ def test_si_and_dimensionless_problems_agree(interference):
 
 @pytest.mark.parametrize("name", ALL)
 def test_work_is_energy_plus_dissipation(name):
-    """What is left is the asymmetry of collocation, of second order. Measured with 201 nodes: 2e-5 to 6e-5."""
+    """The asymmetry of collocation leaves a difference of second order. Measured with 201 nodes: 2e-5 to 6e-5."""
     problem = joint_problem(name, 0.1, 0.4)
     worst = []
     for nodes in (101, 201):
