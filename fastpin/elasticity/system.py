@@ -160,7 +160,7 @@ class System:
 
     @property
     def is_toeplitz(self) -> bool:
-        """Whether an entry of the operator depends on the distance of two nodes only, except beside the ends of an arc."""
+        """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
         return self.grid.uniform and self.drive is None and (self.bodies is None or not self.bodies.matrix.size)
 
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
