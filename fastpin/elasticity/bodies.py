@@ -265,13 +265,10 @@ def _half_support(problem: Problem, middle: float) -> np.ndarray:
 
     Its resultant is 1 in units of stress times R.
     """
-    joint = problem.joint
-    largest = 2.0 / (math.pi * joint.lug_rim)
-    m = np.arange(1, harmonics.harmonics_needed(1.0 / joint.lug_rim) // 2 + 1)
-    order = 2.0 * m
-    pressure = largest * (-1.0) ** (m + 1) / (math.pi * (4.0 * m * m - 1.0))
-    coefficient = -pressure * np.exp(-1j * order * middle)
-    return _ring_displacement(problem, -largest / math.pi, order, np.stack([coefficient, coefficient], axis=1))
+    rim = problem.joint.lug_rim
+    m = np.arange(1, harmonics.harmonics_needed(1.0 / rim) // 2 + 1)
+    mean, traction = harmonics.half_cosine(1.0, middle, rim, m)
+    return _ring_displacement(problem, mean, 2.0 * m, np.stack([traction, traction], axis=1))
 
 
 def _ring_displacement(problem: Problem, mean: float, order: np.ndarray, traction: np.ndarray) -> np.ndarray:
@@ -292,6 +289,12 @@ def _spectrum(order: np.ndarray, moved: np.ndarray, uniform: complex, first: com
     found[highest + places], found[highest - places] = moved[:, 0], np.conj(moved[:, 1])
     found[highest], found[highest + 1] = uniform, first
     return found
+
+
+def pairs_of(column: np.ndarray) -> np.ndarray:
+    """Pairs (u_n, conj u_-n), shape (K - 1, 2), of the harmonics from 2 on, from coefficients for n = -K to K."""
+    middle = column.size // 2
+    return np.stack([column[middle + 2 :], np.conj(column[middle - 2 :: -1])], axis=1)
 
 
 def _point_force(place: complex, force: complex, kolosov: float, compliance: float) -> np.ndarray:
@@ -321,13 +324,11 @@ def _through_bush(problem: Problem, column: np.ndarray) -> np.ndarray:
     half = 0.5 * (kolosov - 1.0)
     uniform = 0.5 * (kolosov + 1.0) * column[highest].real / (half + q - inner * (1.0 - q))
     first = joint.pair.plate_compliance / unit * joint.lug_first.displacement()[0]
-    moved_first = (kolosov + 1.0) * column[highest + 1]
-    moved_first = moved_first / (kolosov * outer + outer**-3.0 - 2.0 * first * (outer - outer**-3.0))
+    moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
     order = np.arange(2.0, highest + 1.0)
     layer = bush_layer(problem, order)
     assert layer is not None
-    pairs = np.stack([column[highest + 2 :], np.conj(column[highest - 2 :: -1])], axis=1)
-    growing = layer.moved_outside(lug_compliance(problem, order), pairs)
+    growing = layer.moved_outside(lug_compliance(problem, order), pairs_of(column))
     rotation = 1j * column[highest].imag
     return _spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
 
@@ -365,4 +366,16 @@ def complex_coefficients(column: np.ndarray) -> np.ndarray:
     found[order] = (column[0] + 1j * column[1]) / math.sqrt(2.0)
     cos, sin = column[2::4] + 1j * column[4::4], column[3::4] + 1j * column[5::4]
     found[order + 1 :], found[order - 1 :: -1] = 0.5 * (cos - 1j * sin), 0.5 * (cos + 1j * sin)
+    return found
+
+
+def plate_coefficients(pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    """Coefficients of the traction (N, -T) on the plate in the basis of a compliance, shape (2 + 4K, ...).
+
+    `pressure` and `shear`, shape (K + 1, ...), are int g exp(-i n xi) dxi/pi of N and T, n = 0 to K.
+    """
+    found = np.empty((4 * len(pressure) - 2, *pressure.shape[1:]))
+    found[0], found[1] = pressure[0].real / math.sqrt(2.0), -shear[0].real / math.sqrt(2.0)
+    found[2::4], found[3::4] = pressure[1:].real, -pressure[1:].imag
+    found[4::4], found[5::4] = -shear[1:].real, shear[1:].imag
     return found

@@ -82,12 +82,7 @@ def _compliance_hoop(
 ) -> np.ndarray:
     """Hoop stress on the edge of the hole, shape (m,), beyond that of the infinite plate, (T48)."""
     t = traction_harmonics(tractions, body.order)
-    forces = np.zeros(len(body.matrix))
-    pressure, shear = -0.5 * (t[:, 0] + t[:, 1]), -0.5j * (t[:, 0] - t[:, 1])
-    forces[:2] = math.sqrt(2.0) * pressure[0].real, -math.sqrt(2.0) * shear[0].real
-    forces[2::4], forces[3::4] = 2.0 * pressure[1:].real, -2.0 * pressure[1:].imag
-    forces[4::4], forces[5::4] = -2.0 * shear[1:].real, 2.0 * shear[1:].imag
-    moved = body.matrix @ forces
+    moved = body.matrix @ bodies.plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
     for place, value in zip(REMOTE, remote, strict=True):
         moved = moved + value * body.columns_of(LOADS[place])
     order = np.arange(-body.order, body.order + 1.0)

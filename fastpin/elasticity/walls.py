@@ -226,8 +226,7 @@ def _bush_wall(problem: Problem, t: np.ndarray, remote: tuple[float, ...]) -> tu
     assert outer is not None
     moved = _moved_hole(problem, t[1], remote, highest)
     far, q, found, passed = bodies.lug_compliance(problem, order), outer**-2.0, Amplitudes.zero(highest), t.copy()
-    pairs = np.stack([moved[highest + 2 :], np.conj(moved[: highest - 1][::-1])], axis=1)
-    growing = (layer.amplitudes(far) @ t[2:, :, None])[..., 0] + layer.moved_outside(far, pairs)
+    growing = (layer.amplitudes(far) @ t[2:, :, None])[..., 0] + layer.moved_outside(far, bodies.pairs_of(moved))
     found.A[2:], found.C[2:] = growing.T
     A, C = growing.T * np.array([outer**-order, outer ** (2.0 - order)])
     found.B[2:], found.D[2:] = -(order + 1.0) * A - C, -order * order * A - (order - 1.0) * C
@@ -238,7 +237,7 @@ def _bush_wall(problem: Problem, t: np.ndarray, remote: tuple[float, ...]) -> tu
     uniform -= 0.5 * problem.press_fit_pressure / wall
     found.A[0], found.D[0], passed[0] = uniform, -2.0 * uniform, q * t[0] + 2.0 * uniform * wall
     first = joint.pair.plate_compliance / unit * joint.lug_first.displacement()[0]
-    grown = 2.0 / unit * moved[highest + 1] / (kolosov * outer + outer**-3.0 - 2.0 * first * (outer - outer**-3.0))
+    grown = 2.0 / unit * moved[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
     found.first[:] = _first_change(joint.bush_first, harmonics.first(math.inf, kolosov, "uniform"), t[1])
     found.first[:2] += grown, -grown
     passed[1, 0] = joint.bush_first.traction(outer) @ t[1] + 2.0 * grown * (outer - outer**-3.0)
@@ -367,12 +366,11 @@ class HalfCosine(NamedTuple):
     @property
     def mean(self) -> float:
         """Mean s_rr on the rim."""
-        return -2.0 * self.force / (math.pi**2 * self.outer)
+        return harmonics.half_cosine(self.force, self.middle, self.outer, np.zeros(0))[0]
 
     def harmonics(self, m: np.ndarray) -> np.ndarray:
         """t_n for n = 2 m; t_-n is its conjugate."""
-        found: np.ndarray = self.mean * (-1.0) ** (m + 1) / (4.0 * m * m - 1.0) * np.exp(-2j * m * self.middle)
-        return found
+        return harmonics.half_cosine(self.force, self.middle, self.outer, m)[1]
 
     def polar(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """s_rr + s_tt and D at the points z, (T46)."""

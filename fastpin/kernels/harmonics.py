@@ -213,8 +213,28 @@ def first_of_layer(outer: float, kolosov: float, compliance: float, far: np.ndar
     both = 0.5 * t + L
     inner, cross = 2.0 * far[0] / compliance, 2.0 * far[1] / compliance  # in units of 1/2G of the layer
     right = cross * m / c + inner * (2.0 * both * c**-3.0 - 2.0 * L / c) + both * c**-3.0 - L / c
-    A = right / (k * c + c**-3.0 - 2.0 * inner * (c - c**-3.0))
+    A = right / first_stiffness(c, k, inner)
     return First(k, A, both - A, L, np.zeros(2))
+
+
+def first_stiffness(outer: float, kolosov: float, inner: float) -> float:
+    """2G u_1/c of a layer less that of the body outside, per amplitude A of a field that leaves the contact rim free.
+
+    `inner` is c11 of the body outside, in units of 1/2G of the layer.
+    """
+    return kolosov * outer + outer**-3.0 - 2.0 * inner * (outer - outer**-3.0)
+
+
+# -- half a rim -----------------------------------------------------------------------------------------------
+
+
+def half_cosine(force: float, middle: float, rim: float, m: np.ndarray) -> tuple[float, np.ndarray]:
+    """Mean s_rr, and t_n for n = 2 m, of a half cosine of pressure about the angle `middle` on a rim of this radius.
+
+    The pressure has the resultant `force`. t_-n is the conjugate of t_n.
+    """
+    mean = -2.0 * force / (math.pi**2 * rim)
+    return mean, mean * (-1.0) ** (m + 1) / (4.0 * m * m - 1.0) * np.exp(-2j * m * middle)
 
 
 # -- bonded layers: harmonics from 2 on -----------------------------------------------------------------------

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients
+from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients, plate_coefficients
 from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
 from fastpin.model.checks import number, positive
@@ -151,22 +151,9 @@ def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.
     waves = np.exp(1j * np.multiply.outer(grid.theta, n))
     found = np.array([waves @ (1j * n * slip - gap), waves @ (1j * n * gap + slip)]).real
     if bodies.matrix.size:
-        moved = complex_coefficients(bodies.matrix @ plate_coefficients(bodies, spectra))
+        low = spectra[: (len(bodies.matrix) + 2) // 4] / math.pi
+        moved = complex_coefficients(bodies.matrix @ plate_coefficients(*low.T))
         found += _of_displacement(moved, grid.theta)
-    return found
-
-
-def plate_coefficients(bodies: BodyTerms, spectra: np.ndarray) -> np.ndarray:
-    """Coefficients of the traction (N, -T) on the plate in the basis of a compliance, shape (2 + 4 K, ...).
-
-    `spectra`, shape (m, 2, ...), are the integrals of N and T times exp(-i n xi), for n = 0 to at least K.
-    """
-    order = (len(bodies.matrix) - 2) // 4
-    pressure, shear = np.moveaxis(spectra[: order + 1], 1, 0) / math.pi
-    found = np.empty((len(bodies.matrix), *pressure.shape[1:]))
-    found[0], found[1] = pressure[0].real / math.sqrt(2.0), -shear[0].real / math.sqrt(2.0)
-    found[2::4], found[3::4] = pressure[1:].real, -pressure[1:].imag
-    found[4::4], found[5::4] = -shear[1:].real, shear[1:].imag
     return found
 
 

@@ -29,14 +29,13 @@ from scipy.optimize import minimize_scalar, root
 from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
-from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients
+from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients, plate_coefficients
 from fastpin.errors import InputError
 from fastpin.model.angles import interval_near_bottom, near_bottom
 from fastpin.model.checks import as_toml, number, whole_number
 from fastpin.model.loads import SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ConvergenceError
-from fastpin.verification.integral_equations import plate_coefficients
 
 SLIDING_LOADS = ("P", "Q", "sxx", "syy", "sxy")
 """Loads of a sliding contact, as in :data:`fastpin.model.loads.LOADS`. Its moment and rotation are results."""
@@ -374,8 +373,8 @@ def _kernels(bodies: BodyTerms, mu: float, theta: np.ndarray, xi: np.ndarray) ->
     found = np.array([gap.real, sum_gap.real])
     if bodies.matrix.size:
         n = np.arange((len(bodies.matrix) - 2) // 4 + 1)
-        waves = np.exp(-1j * np.multiply.outer(n, xi))
-        acting = plate_coefficients(bodies, np.stack([waves, mu * waves], axis=1))
+        waves = np.exp(-1j * np.multiply.outer(n, xi)) / math.pi
+        acting = plate_coefficients(waves, mu * waves)
         moved = complex_coefficients(bodies.matrix @ acting)
         found += np.array(_radial(moved, theta))
     return found[0], found[1]
