@@ -25,8 +25,6 @@ Kernels take arrays and numbers, change only arrays among their arguments, and r
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from fastpin.kernels.jit import compiled, inner
@@ -65,95 +63,18 @@ TOGETHER_ROUNDS = 12  # rounds in which all violators change together; afterward
 MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, with the change of a node that takes over
 
 
-class Tableau(NamedTuple):
-    """A matrix, its updates, and the rates of the dependent variables.
-
-    Attributes
-    ----------
-    matrix : ndarray, shape (2n+3, 2n), column by column
-    fresh : ndarray of int, shape (blocks,)
-        Number of updates that each block of columns contains; -1 if the block was never computed.
-    left : ndarray, shape (2n+3, room), column by column
-        The vector of each update.
-    source, slot : ndarray of int, shape (room,)
-    delta : ndarray, shape (room,)
-        The three numbers of each update.
-    rates : ndarray, shape (2n+3,)
-        Rates of the dependent variables and of the pin's motion, per unit of the step.
-    """
-
-    matrix: np.ndarray
-    fresh: np.ndarray
-    left: np.ndarray
-    source: np.ndarray
-    slot: np.ndarray
-    delta: np.ndarray
-    rates: np.ndarray
-
-
-class Contact(NamedTuple):
-    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,), ``slip_tally`` (4, n).
-
-    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module. ``slip_tally``
-    has slip distance, friction energy, lowest and highest slip of each node while closed. The extremes count from
-    ``rest_slip``. It is empty if they are not counted.
-    """
-
-    pressure: np.ndarray
-    shear: np.ndarray
-    gap: np.ndarray
-    slip: np.ndarray
-    status: np.ndarray
-    tie: np.ndarray
-    touched: np.ndarray
-    motion: np.ndarray
-    rest_slip: np.ndarray
-    slip_tally: np.ndarray
-
-
-class LoadTerms(NamedTuple):
-    """Terms of the work of the loads.
-
-    Attributes
-    ----------
-    column : ndarray, shape (2n,)
-        Weights of the traction rates at the beginning of the step.
-    column_rate : ndarray, shape (2n,)
-        Growth of ``column`` along the step.
-    force : ndarray, shape (2,)
-        Force (Q, -P) at the beginning of the step.
-    force_rate : ndarray, shape (2,)
-        Growth of ``force`` along the step.
-    weights : ndarray, shape (n,)
-        Weights of the nodes.
-    reactions : ndarray, shape (2, 2n+3)
-        Along x and y: weights of the traction rates per reaction, growth of the prescribed displacement, compliance g,
-        and 1 if a displacement is prescribed. The motion then holds the reaction.
-    """
-
-    column: np.ndarray
-    column_rate: np.ndarray
-    force: np.ndarray
-    force_rate: np.ndarray
-    weights: np.ndarray
-    reactions: np.ndarray
-
-
-class Queue(NamedTuple):
-    """Waiting changes of status, shape (2n,), and the counters and sums of a step, with the slots above."""
-
-    node: np.ndarray
-    status: np.ndarray
-    counts: np.ndarray
-    sums: np.ndarray
-
-
 @inner
 def _column(tableau, updates, p, out):
     """Write column p after so many updates to `out`. Its block must have been computed."""
-    matrix, left = tableau.matrix, tableau.left
+    matrix, left, tied = tableau.matrix, tableau.left, tableau.tied
+    n = tied.size
     for i in range(out.size):
         out[i] = matrix[i, p]
+    if p < n and tableau.drag[p] != 0.0:
+        for i in range(out.size):
+            out[i] += tableau.drag[p] * matrix[i, n + p]
+    for i in range(n):
+        out[n + i] += tied[i] * out[i]
     for k in range(tableau.fresh[p // WIDTH], updates):
         factor = 0.0
         if tableau.source[k] >= 0:
@@ -168,7 +89,7 @@ def _column(tableau, updates, p, out):
 @inner
 def _stale(tableau, updates, p):
     """Whether the block of column p was never computed, or lacks a whole chunk of updates."""
-    return tableau.fresh[p // WIDTH] < updates - updates % CHUNK
+    return tableau.fresh[p // WIDTH] < updates - updates % tableau.chunk
 
 
 @inner
@@ -209,6 +130,8 @@ def _add_column(tableau, updates, target, source, factor):
 def _needed_column(tableau, updates, node, old, new, tie):
     """The first stale column among the columns that a change of status needs; -1 if none is stale."""
     tangential = tableau.matrix.shape[1] // 2 + node
+    if old == OPEN and tableau.tied.size > 0 and tableau.drag[node] != 0.0 and _stale(tableau, updates, tangential):
+        return tangential  # the column of N has a part of the column of T
     if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
         return node
     if (old == STICK or new == STICK or (old == OPEN and new != tie)) and _stale(tableau, updates, tangential):
@@ -598,3 +521,17 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
             settled = False
             if counts[EVENTS] > most_events:
                 return ENDLESS
+
+
+@compiled
+def apply_updates(tableau, updates, given, values):
+    """Apply so many updates, one by one, to the response `values` (2n+3,) to the zero-rate variables `given` (2n+3,)."""
+    for k in range(updates):
+        factor = 0.0
+        if tableau.source[k] >= 0:
+            factor = values[tableau.source[k]]
+        if tableau.slot[k] >= 0:
+            factor += tableau.delta[k] * given[tableau.slot[k]]
+        if factor != 0.0:
+            for i in range(values.size):
+                values[i] += factor * tableau.left[i, k]

@@ -14,7 +14,7 @@ import scipy
 
 from fastpin.elasticity.drive import DISPLACEMENTS, FORCES, SIGNS
 from fastpin.elasticity.system import System
-from fastpin.kernels.exchange import LoadTerms
+from fastpin.kernels.arrays import LoadTerms
 from fastpin.model.loads import UX, UY, M, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration

@@ -16,6 +16,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
+from fastpin.kernels.arrays import Contact, Queue
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.loads import M
 from fastpin.solver.configuration import (
@@ -33,6 +34,7 @@ from fastpin.solver.errors import (
     ResolutionError,
     SolveError,
 )
+from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.rest import release
 from fastpin.solver.settling import settle
 from fastpin.solver.snap import find_state_beyond
@@ -70,7 +72,7 @@ MOST_SETTLINGS = 3
 SAMPLED_NODES = 16
 """Nodes at which gap and slip are compared with the matrices after every chunk."""
 
-FEW_NODES = 8
+FEW_CLOSED = 8
 """A contact of at most this many nodes, lost during a complete unloading, has just opened."""
 
 NEGLIGIBLE = 1e-3
@@ -121,6 +123,8 @@ class PathStep:
         Dimensionless load at the end of the step.
     memory : TableauMemory, optional
         Memory for the tableau, for example from an earlier step.
+    held : HeldContacts, optional
+        Held contacts of earlier steps on this system.
 
     Attributes
     ----------
@@ -136,15 +140,21 @@ class PathStep:
     """
 
     def __init__(
-        self, system: System, configuration: Configuration, after: np.ndarray, memory: TableauMemory | None = None
+        self,
+        system: System,
+        configuration: Configuration,
+        after: np.ndarray,
+        memory: TableauMemory | None = None,
+        held: HeldContacts | None = None,
     ) -> None:
         self.system = system
+        self._held = HeldContacts() if held is None else held
         self._memory = TableauMemory(system.grid.size) if memory is None else memory
         self.now = configuration.copy()
         self.before = configuration.load.copy()
         self.rate = after - self.before
         n, now = system.grid.size, self.now
-        self._contact = exchange.Contact(
+        self._contact = Contact(
             now.pressure,
             now.shear,
             now.gap,
@@ -157,7 +167,7 @@ class PathStep:
             now.slip_tally,
         )
         self._load = load_terms(system, self.before, self.rate)
-        self._queue = exchange.Queue(
+        self._queue = Queue(
             node=np.zeros(2 * n, dtype=np.int64),
             status=np.zeros(2 * n, dtype=np.int8),
             counts=np.zeros(exchange.COUNTS, dtype=np.int64),
@@ -174,13 +184,15 @@ class PathStep:
         self.resettled = 0
         self._room: int | None = None
         self._remember()
-        self._columns: Columns
-        unknowns = self._sticking_after_reversal()
-        if unknowns is None:
-            self._rebuild()
-        else:
-            now.status[unknowns.normal] = STICK
-            self._begin(unknowns)
+        self._columns: Columns | HeldColumns
+        self._first_status: np.ndarray | None = None  # while a held contact gets the statuses of the start
+        if not self._begin_held():
+            unknowns = self._sticking_after_reversal()
+            if unknowns is None:
+                self._rebuild()
+            else:
+                now.status[unknowns.normal] = STICK
+                self._begin(unknowns)
 
     @property
     def fraction(self) -> float:
@@ -220,7 +232,9 @@ class PathStep:
                 system.friction, system.grid.closed, self._typical, stop, MOST_EVENTS * n, self._all_at_once,
             )  # fmt: skip
             updates = int(counts[exchange.UPDATES])
-            if code == exchange.STALE:
+            if self._first_status is not None and self._is_starting():
+                self._start_anew()
+            elif code == exchange.STALE:
                 if updates // exchange.CHUNK > checked:
                     checked = updates // exchange.CHUNK
                     if report is not None:
@@ -229,6 +243,7 @@ class PathStep:
                         checked = 0
                         continue
                     self._remember()
+                assert isinstance(self._columns, Columns)
                 self._columns.refresh(int(counts[exchange.NEEDED_COLUMN]), updates)
             elif code in (exchange.REBUILD, exchange.ALL_AT_ONCE):
                 if self._room is not None and self._drift() > SEVERE_DRIFT and self._go_back():
@@ -281,6 +296,44 @@ class PathStep:
         if np.count_nonzero(growth[slipping] > 0.0) > np.count_nonzero(slipping) // 2:
             return None
         return unknowns
+
+    def _begin_held(self) -> bool:
+        """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are then let go.
+
+        Returns False if the held nodes can't hold the pin, or without friction.
+        """
+        status = self.now.status
+        if status.size > FEW_NODES or self.system.friction == 0.0:
+            return False
+        table = self._held.table(self.system, self.now.closed)
+        if table is None:
+            return False
+        columns = HeldColumns(self.system, table, self._contact, self.rate, self._memory)
+        self._columns, self._all_at_once = columns, 2 * status.size  # one by one takes less time than a new tableau
+        slipping = np.flatnonzero(np.abs(status) == 1)
+        if not columns.turned:
+            self._first_status = status.copy()
+            counts = self._queue.counts
+            counts[exchange.QUEUED], counts[exchange.EXCHANGES] = slipping.size, -slipping.size
+            self._queue.node[: slipping.size], self._queue.status[: slipping.size] = slipping, status[slipping]
+        status[slipping] = STICK
+        return True
+
+    def _is_starting(self) -> bool:
+        """Whether nodes of a held contact still have to be let go."""
+        counts = self._queue.counts
+        settled = counts[exchange.ROUND] > 0 or counts[exchange.EVENTS] > 0
+        if settled or counts[exchange.NEXT] == counts[exchange.QUEUED]:
+            self._first_status = None
+        return self._first_status is not None
+
+    def _start_anew(self) -> None:
+        """Begin with the statuses of the start, factorised: a held contact can't reach them one by one."""
+        assert self._first_status is not None
+        self.now.status[:] = self._first_status
+        self._first_status = None
+        self._queue.counts[:] = 0
+        self._rebuild()
 
     def _resettle(self) -> None:
         """Find the statuses after an event by Lemke's method, where their exchange has not settled."""
@@ -494,6 +547,7 @@ class PathStepper:
         self._statistics = statistics
         self._strict = strict
         self._memory = TableauMemory(system.grid.size)
+        self._held = HeldContacts()
         self._step: PathStep | None = None
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
@@ -521,7 +575,7 @@ class PathStepper:
         try:
             if self._step is None:
                 self._begin = position.reached
-                self._step = PathStep(self._system, position.now, piece.after, self._memory)
+                self._step = PathStep(self._system, position.now, piece.after, self._memory, self._held)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
             position.now = self._step.follow(part, lambda done: report(begin + done * length))
@@ -569,7 +623,7 @@ class PathStepper:
         unloading = can_float(self._system, piece.after)
         if unloading and lost.fraction > ALMOST_UNLOADED:
             return True
-        if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_NODES or self._releases == MOST_RELEASES:
+        if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_CLOSED or self._releases == MOST_RELEASES:
             return False
         self._releases += 1
         driven = self._system.drive is not None  # then a contact is lost as well where the pin is moved away
@@ -586,7 +640,7 @@ def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
     closed = int(lost.closed.sum())
     if code == exchange.ARC_END:
         return ArcError(CUT_OFF)
-    if closed < FEW_NODES // 2 or (held and closed <= FEW_NODES):
+    if closed < FEW_CLOSED // 2 or (held and closed <= FEW_CLOSED):
         return ResolutionError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
     if code == exchange.NO_SUPPORT:
         return NoEquilibriumError(UNHELD)

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.linalg import blas
 
 from fastpin.elasticity.system import System
-from fastpin.kernels.exchange import CHUNK, WIDTH, Contact, Tableau
+from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
@@ -84,6 +85,9 @@ class Columns:
             slot=np.empty(updates, dtype=np.int64),
             delta=np.empty(updates),
             rates=self._rates(load_rate),
+            tied=np.zeros(0),
+            drag=np.zeros(0),
+            chunk=CHUNK,
         )
         self._tie(contact)
 
@@ -97,10 +101,8 @@ class Columns:
     def _tie(self, contact: Contact) -> None:
         """Tie the shear of each node to the pressure for the expected sense of slip. A wrong tie costs one update."""
         n, rates = contact.status.size, self.tableau.rates
-        contact.tie[:] = contact.status
         stuck, open_ = np.flatnonzero(contact.status == STICK), np.flatnonzero(contact.status == OPEN)
-        contact.tie[stuck] = np.where(contact.shear[stuck] + rates[n + stuck] > 0.0, -1, 1)
-        contact.tie[open_] = np.where(rates[n + open_] < 0.0, -1, 1)
+        contact.tie[:] = np.where(np.abs(contact.status) == 1, contact.status, expected_ties(contact, rates))
         coupling = self._system.friction * contact.tie
         self._tied, self._drag = np.zeros(n), np.zeros(2 * n)
         self._tied[stuck] = coupling[stuck]  # tau = T + tied N at sticking nodes
@@ -193,3 +195,14 @@ class Columns:
         if source.size == CHUNK:
             self._rows.append(rows)
         return rows
+
+
+def expected_ties(contact: Contact, rates: np.ndarray) -> np.ndarray:
+    """The sense of slip (n,) that closed nodes would have at the end of the step, and open nodes when they close.
+
+    `rates` (2n+3,) are the rates while the statuses stay.
+    """
+    n = contact.status.size
+    tangential = rates[n : 2 * n]
+    forward = np.where(contact.status == OPEN, tangential < 0.0, contact.shear + tangential > 0.0)
+    return np.where(forward, -1, 1)

@@ -14,7 +14,8 @@ import pytest
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
-from fastpin.kernels.exchange import CHUNK, WIDTH, Contact, Tableau
+from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -73,6 +74,9 @@ def empty_tableau(matrix, rates):
         slot=np.zeros(room, dtype=np.int64),
         delta=np.zeros(room),
         rates=rates.copy(),
+        tied=np.zeros(0),
+        drag=np.zeros(0),
+        chunk=CHUNK,
     )
 
 

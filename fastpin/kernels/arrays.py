@@ -1,0 +1,100 @@
+"""The arrays of the exchange steps: the tableau, the contact, the terms of the work and the queue of changes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Tableau(NamedTuple):
+    """A matrix, its updates, and the rates of the dependent variables.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (2n+3, 2n), column by column
+    fresh : ndarray of int, shape (blocks,)
+        Number of updates that each block of columns contains; -1 if the block was never computed.
+    left : ndarray, shape (2n+3, room), column by column
+        The vector of each update.
+    source, slot : ndarray of int, shape (room,)
+    delta : ndarray, shape (room,)
+        The three numbers of each update.
+    rates : ndarray, shape (2n+3,)
+        Rates of the dependent variables and of the pin's motion, per unit of the step.
+    tied : ndarray, shape (n,)
+        Where the columns of ``matrix`` hold T instead of tau: the factor tie mu of sticking nodes, 0 elsewhere. Empty if
+        the columns hold tau.
+    drag : ndarray, shape (n,)
+        As above: the shear that comes with a unit of N at open nodes, 0 elsewhere.
+    chunk : int
+        Number of updates after which a block must be brought up to date before a column of it is used.
+    """
+
+    matrix: np.ndarray
+    fresh: np.ndarray
+    left: np.ndarray
+    source: np.ndarray
+    slot: np.ndarray
+    delta: np.ndarray
+    rates: np.ndarray
+    tied: np.ndarray
+    drag: np.ndarray
+    chunk: int
+
+
+class Contact(NamedTuple):
+    """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,), ``slip_tally`` (4, n).
+
+    ``touched`` says whether a node was ever closed. ``tie`` is defined in the docstring of the module. ``slip_tally``
+    has slip distance, friction energy, lowest and highest slip of each node while closed. The extremes count from
+    ``rest_slip``. It is empty if they are not counted.
+    """
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    gap: np.ndarray
+    slip: np.ndarray
+    status: np.ndarray
+    tie: np.ndarray
+    touched: np.ndarray
+    motion: np.ndarray
+    rest_slip: np.ndarray
+    slip_tally: np.ndarray
+
+
+class LoadTerms(NamedTuple):
+    """Terms of the work of the loads.
+
+    Attributes
+    ----------
+    column : ndarray, shape (2n,)
+        Weights of the traction rates at the beginning of the step.
+    column_rate : ndarray, shape (2n,)
+        Growth of ``column`` along the step.
+    force : ndarray, shape (2,)
+        Force (Q, -P) at the beginning of the step.
+    force_rate : ndarray, shape (2,)
+        Growth of ``force`` along the step.
+    weights : ndarray, shape (n,)
+        Weights of the nodes.
+    reactions : ndarray, shape (2, 2n+3)
+        Along x and y: weights of the traction rates per reaction, growth of the prescribed displacement, compliance g,
+        and 1 if a displacement is prescribed. The motion then holds the reaction.
+    """
+
+    column: np.ndarray
+    column_rate: np.ndarray
+    force: np.ndarray
+    force_rate: np.ndarray
+    weights: np.ndarray
+    reactions: np.ndarray
+
+
+class Queue(NamedTuple):
+    """Waiting changes of status, shape (2n,), and the counters and sums of a step, with the slots of :mod:`fastpin.kernels.exchange`."""
+
+    node: np.ndarray
+    status: np.ndarray
+    counts: np.ndarray
+    sums: np.ndarray

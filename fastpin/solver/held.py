@@ -1,0 +1,188 @@
+"""Contacts with all closed nodes held: inverted once, and used by every step that begins with these nodes closed.
+
+With few nodes a step spends its time on the factorisation of its first statuses, and on the columns of the tableau. A
+history closes the same nodes again and again. So a step begins with all closed nodes sticking, and then lets the
+slipping ones slip by exchanges. The table of the held contact depends on the closed nodes alone. It is kept as it is,
+so a step has the same bits whether it finds the table or computes it.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+
+import numpy as np
+from scipy.linalg import lapack
+
+from fastpin.elasticity.system import System
+from fastpin.kernels import exchange, tables, toeplitz
+from fastpin.kernels.arrays import Contact, Tableau
+from fastpin.kernels.exchange import WIDTH
+from fastpin.kernels.status import OPEN
+from fastpin.solver.tableau import TableauMemory, expected_ties
+
+FEW_NODES = 256
+"""Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
+
+MOST_NUMBERS = 4_000_000
+"""Numbers in the tables of all held contacts that are kept, at most: 32 MB."""
+
+LEAST_NEIGHBOURS = 24
+"""Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes LAPACK's inverse is as fast."""
+
+MOST_CONDITION = 1e8
+"""Largest condition number of the three equations of the motion. A contact above it hardly holds the pin."""
+
+MOST_RESIDUAL = 1e-10
+"""Largest residual of a table, relative to the right side. A contact above it begins with a factorisation."""
+
+
+class HeldContacts:
+    """The tables of the held contacts of the latest steps on one system."""
+
+    def __init__(self) -> None:
+        self._tables: OrderedDict[bytes, np.ndarray | None] = OrderedDict()
+
+    def table(self, system: System, closed: np.ndarray) -> np.ndarray | None:
+        """The table of the `closed` nodes (n,), see :func:`held_table`; None if it has too few digits."""
+        key = closed.tobytes()
+        if key not in self._tables:
+            table = held_table(system, closed)
+            self._tables[key] = table if table is not None and _holds(system, closed, table) else None
+            while len(self._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
+                self._tables.popitem(last=False)
+        self._tables.move_to_end(key)
+        return self._tables[key]
+
+
+def held_table(system: System, closed: np.ndarray) -> np.ndarray | None:
+    """The table (2n+3, 2n+3) of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin.
+
+    It maps gap and slip of closed nodes, pressure and shear of open nodes, and the forces out of balance to pressure
+    and shear of closed nodes, gap and slip of open nodes, and the motion. Columns of open end nodes of an arc are for
+    whole hats: these nodes never close.
+    """
+    n, both = closed.size, np.r_[closed, closed]
+    rows, others = np.flatnonzero(both), np.flatnonzero(~both)
+    core, symmetric = _inverse(system, np.flatnonzero(closed))
+    if core is None:
+        return None
+    motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
+    moved = core @ motion
+    complement = system.motion_rows - equilibrium @ moved
+    scale = float((np.abs(equilibrium) @ np.abs(moved)).max())
+    if not np.all(np.isfinite(complement)) or not np.linalg.cond(complement / scale) < MOST_CONDITION:
+        return None
+    small = np.linalg.inv(complement)
+    beside = system.operator[others]
+    from_held = beside[:, rows]
+    tied = from_held @ core
+    free = -tied.T if symmetric else -(core @ system.operator[rows][:, others])
+    moving = np.empty((3, 2 * n + 3))
+    moving[:, : rows.size] = -small @ (equilibrium @ core)
+    moving[:, rows.size : 2 * n] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
+    moving[:, 2 * n :] = small
+    acting = beside[:, others] + from_held @ free
+    table = np.empty((2 * n + 3, 2 * n + 3), order="F")
+    blocks = tuple(np.asfortranarray(block) for block in (core, free, tied, acting))
+    tables.fill(rows, others, blocks, -moved, system.motion[others] - tied @ motion, moving, table)
+    return table
+
+
+def _inverse(system: System, nodes: np.ndarray) -> tuple[np.ndarray | None, bool]:
+    """Inverse of the operator on neighbouring `nodes`, and whether the operator is symmetric; None if it is singular.
+
+    Equally spaced neighbours take the inverse of a block Toeplitz matrix.
+    """
+    n, operator, count = system.grid.size, system.operator, nodes.size
+    inside = system.grid.closed or (nodes.size > 0 and nodes[0] > 0 and nodes[-1] < n - 1)
+    if system.is_toeplitz and inside and count >= LEAST_NEIGHBOURS and nodes[-1] - nodes[0] + 1 == count:
+        first, last = nodes[0], nodes[-1] + 1
+        entries = [operator[first:last, first], operator[n + first : n + last, n + first]]
+        return toeplitz.inverse(*entries, operator[first:last, n + first]), True
+    rows = np.r_[nodes, n + nodes]
+    lu, pivots, info = lapack.dgetrf(np.asfortranarray(operator[np.ix_(rows, rows)]), overwrite_a=1)
+    if info == 0:
+        lu, info = lapack.dgetri(lu, pivots, overwrite_lu=1)
+    return (lu if info == 0 else None), False
+
+
+def _holds(system: System, closed: np.ndarray, table: np.ndarray) -> bool:
+    """Whether the answer of a table to one load meets the equations of the closed nodes and of equilibrium."""
+    n, both = closed.size, np.r_[closed, closed]
+    given = np.cos(np.arange(2.0 * n + 3.0))
+    given[: 2 * n][~both] = 0.0
+    answer = table @ given
+    tractions = np.where(both, answer[: 2 * n], 0.0)
+    true = system.operator @ tractions + system.motion @ answer[2 * n :]
+    balance = system.equilibrium @ tractions + system.motion_rows @ answer[2 * n :]
+    error = max(float(np.abs(true - given[: 2 * n])[both].max()), float(np.abs(balance - given[2 * n :]).max()))
+    return error < MOST_RESIDUAL
+
+
+class HeldColumns:
+    """The tableau of :func:`fastpin.kernels.exchange.follow`, begun with all closed nodes held.
+
+    Parameters
+    ----------
+    system : System
+    table : ndarray, shape (2n+3, 2n+3)
+        See :func:`held_table`. It is not changed.
+    contact : Contact
+        The configuration. The ties in it are set.
+    load_rate : ndarray, shape (loads,)
+        Dimensionless, per unit of the step.
+    memory : TableauMemory
+        Memory for the updates. It is overwritten.
+
+    Attributes
+    ----------
+    tableau : Tableau
+    turned : bool
+        Whether the load has turned: most slipping nodes stick when the load goes on.
+    """
+
+    def __init__(
+        self, system: System, table: np.ndarray, contact: Contact, load_rate: np.ndarray, memory: TableauMemory
+    ) -> None:
+        n, updates = system.grid.size, memory.left.shape[1]
+        self._table = table
+        closed = contact.status != OPEN
+        displaced = system.load_displacement(load_rate)
+        both = np.r_[closed, closed]
+        rates = table @ np.r_[np.where(both, -displaced, 0.0), system.load_forces(load_rate)]
+        rates[: 2 * n] += np.where(both, 0.0, displaced)
+        slipping = np.abs(contact.status) == 1
+        resists = -contact.status * rates[n : 2 * n] > system.friction * rates[:n]
+        self.turned = np.count_nonzero(resists & slipping) <= np.count_nonzero(slipping) // 2
+        ties = expected_ties(contact, rates)
+        contact.tie[:] = ties if self.turned else np.where(slipping, contact.status, ties)
+        coupling = system.friction * contact.tie
+        tied = np.where(closed, coupling, 0.0)
+        rates[n : 2 * n] += tied * rates[:n]
+        self.tableau = Tableau(
+            matrix=table[:, : 2 * n],
+            fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64),
+            left=memory.left,
+            source=np.empty(updates, dtype=np.int64),
+            slot=np.empty(updates, dtype=np.int64),
+            delta=np.empty(updates),
+            rates=rates,
+            tied=tied,
+            drag=np.where(closed, 0.0, -coupling),
+            chunk=updates + 1,
+        )
+
+    def response(self, given: np.ndarray, updates: int) -> np.ndarray:
+        """The product (2n+3,) of the tableau and the vector `given` (2n+3,).
+
+        `given` holds the zero-rate variables, then the three forces out of balance. `updates` is the number of all
+        updates so far.
+        """
+        tableau = self.tableau
+        n = tableau.tied.size
+        acting = given.copy()
+        acting[n : 2 * n] += tableau.drag * given[:n]
+        values = self._table @ acting
+        values[n : 2 * n] += tableau.tied * values[:n]
+        exchange.apply_updates(tableau, updates, given, values)
+        return values
