@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,12 @@ COLUMNS = 64
 
 MOST_DENSE = 400
 """Nodes of unequal spacing, at most, for which the whole operator is filled."""
+
+MOST_KEPT = 256
+"""Most nodes of a system that is kept. It takes 2 MB."""
+
+SYSTEMS_KEPT = 2
+"""Systems that are kept: of a history and of the coarse grid of its error bars."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +70,36 @@ class LargeSystem(System):
 
 
 def build_system(problem: Problem, grid: Grid, force: float) -> System:
-    """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due."""
+    """The system of `problem` on `grid` with reference force `force`, N/m; a :class:`LargeSystem` where that is due.
+
+    The latest systems with few nodes are kept, and returned again for the same problem and grid.
+    """
+    if grid.size <= MOST_KEPT:
+        return _KEPT.system(problem, grid, force)
     large = grid.closed and not grid.uniform and grid.size > MOST_DENSE
     return (LargeSystem if large else System).build(problem, grid, force)
+
+
+class _LatestSystems:
+    """The latest systems with few nodes. A history that goes on in pieces asks for the same one again and again."""
+
+    def __init__(self) -> None:
+        self._systems: list[System] = []
+        self._lock = threading.Lock()
+
+    def system(self, problem: Problem, grid: Grid, force: float) -> System:
+        """The system of `problem` on `grid` with reference force `force`, N/m."""
+        with self._lock:
+            for known in self._systems:
+                same_grid = known.grid is grid or (
+                    known.grid.closed == grid.closed and np.array_equal(known.grid.theta, grid.theta)
+                )
+                if known.scales.force == force and same_grid and known.problem == problem:
+                    return known
+        system = System.build(problem, grid, force)
+        with self._lock:
+            self._systems = [system, *self._systems[: SYSTEMS_KEPT - 1]]
+        return system
+
+
+_KEPT = _LatestSystems()

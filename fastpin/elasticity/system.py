@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -162,6 +163,11 @@ class System:
     def is_toeplitz(self) -> bool:
         """Whether entries of the operator depend on the distance of two nodes only, up to the half hats of an arc."""
         return self.grid.uniform and self.drive is None and (self.bodies is None or not self.bodies.matrix.size)
+
+    @cached_property
+    def typical_compliance(self) -> float:
+        """A typical compliance, to judge pivots: the median of the operator's diagonal."""
+        return float(np.median(np.abs(np.diagonal(self.operator))))
 
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""

@@ -8,7 +8,9 @@ so a step has the same bits whether it finds the table or computes it.
 
 from __future__ import annotations
 
+import threading
 from collections import OrderedDict
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.linalg import lapack
@@ -37,21 +39,34 @@ MOST_RESIDUAL = 1e-10
 
 
 class HeldContacts:
-    """The tables of the held contacts of the latest steps on one system."""
+    """The tables of the held contacts of the latest steps on one system. Threads may share them."""
+
+    _of_systems: WeakKeyDictionary[System, HeldContacts] = WeakKeyDictionary()
 
     def __init__(self) -> None:
         self._tables: OrderedDict[bytes, np.ndarray | None] = OrderedDict()
+        self._lock = threading.Lock()
+
+    @classmethod
+    def of(cls, system: System) -> HeldContacts:
+        """The held contacts of a system. They are kept as long as the system is."""
+        return cls._of_systems.setdefault(system, cls())
 
     def table(self, system: System, closed: np.ndarray) -> np.ndarray | None:
         """The table of the `closed` nodes (n,), see :func:`held_table`; None if it has too few digits."""
         key = closed.tobytes()
-        if key not in self._tables:
-            table = held_table(system, closed)
-            self._tables[key] = table if table is not None and _holds(system, closed, table) else None
+        with self._lock:
+            if key in self._tables:
+                self._tables.move_to_end(key)
+                return self._tables[key]
+        table = held_table(system, closed)
+        if table is not None and not _holds(system, closed, table):
+            table = None
+        with self._lock:
+            self._tables[key] = table
             while len(self._tables) > max(1, MOST_NUMBERS // (4 * closed.size * closed.size)):
                 self._tables.popitem(last=False)
-        self._tables.move_to_end(key)
-        return self._tables[key]
+        return table
 
 
 def held_table(system: System, closed: np.ndarray) -> np.ndarray | None:

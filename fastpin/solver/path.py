@@ -123,8 +123,6 @@ class PathStep:
         Dimensionless load at the end of the step.
     memory : TableauMemory, optional
         Memory for the tableau, for example from an earlier step.
-    held : HeldContacts, optional
-        Held contacts of earlier steps on this system.
 
     Attributes
     ----------
@@ -140,15 +138,9 @@ class PathStep:
     """
 
     def __init__(
-        self,
-        system: System,
-        configuration: Configuration,
-        after: np.ndarray,
-        memory: TableauMemory | None = None,
-        held: HeldContacts | None = None,
+        self, system: System, configuration: Configuration, after: np.ndarray, memory: TableauMemory | None = None
     ) -> None:
         self.system = system
-        self._held = HeldContacts() if held is None else held
         self._memory = TableauMemory(system.grid.size) if memory is None else memory
         self.now = configuration.copy()
         self.before = configuration.load.copy()
@@ -175,11 +167,13 @@ class PathStep:
         )
         self._queue.sums[exchange.DISSIPATION] = configuration.dissipation
         self._queue.sums[exchange.WORK] = configuration.work
-        self._typical = float(np.median(np.abs(np.diagonal(system.operator))))
         self._all_at_once = max(32, n // 20)
-        nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
-        self._sample = np.r_[nodes, n + nodes]
-        self._sampled = system.operator[self._sample]
+        if n <= FEW_NODES:
+            self._sample, self._sampled = np.arange(2 * n), system.operator
+        else:
+            nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
+            self._sample = np.r_[nodes, n + nodes]
+            self._sampled = system.operator[self._sample]
         self.rebuilds = 0
         self.resettled = 0
         self._room: int | None = None
@@ -229,7 +223,7 @@ class PathStep:
         while True:
             code = exchange.follow(
                 self._columns.tableau, self._contact, self._load, self._queue,
-                system.friction, system.grid.closed, self._typical, stop, MOST_EVENTS * n, self._all_at_once,
+                system.friction, system.grid.closed, system.typical_compliance, stop, MOST_EVENTS * n, self._all_at_once,
             )  # fmt: skip
             updates = int(counts[exchange.UPDATES])
             if self._first_status is not None and self._is_starting():
@@ -305,7 +299,7 @@ class PathStep:
         status = self.now.status
         if status.size > FEW_NODES or self.system.friction == 0.0:
             return False
-        table = self._held.table(self.system, self.now.closed)
+        table = HeldContacts.of(self.system).table(self.system, self.now.closed)
         if table is None:
             return False
         columns = HeldColumns(self.system, table, self._contact, self.rate, self._memory)
@@ -547,7 +541,6 @@ class PathStepper:
         self._statistics = statistics
         self._strict = strict
         self._memory = TableauMemory(system.grid.size)
-        self._held = HeldContacts()
         self._step: PathStep | None = None
         self._begin = 0.0  # fraction of the history's step at which `_step` starts
         self._releases = self._jumps = 0
@@ -575,7 +568,7 @@ class PathStepper:
         try:
             if self._step is None:
                 self._begin = position.reached
-                self._step = PathStep(self._system, position.now, piece.after, self._memory, self._held)
+                self._step = PathStep(self._system, position.now, piece.after, self._memory)
             begin, length = self._begin, piece.end - self._begin
             part = 1.0 if stop == piece.end else (stop - begin) / length
             position.now = self._step.follow(part, lambda done: report(begin + done * length))
