@@ -22,11 +22,13 @@ class Tableau(NamedTuple):
         The three numbers of each update.
     rates : ndarray, shape (2n+3,)
         Rates of the dependent variables and of the pin's motion, per unit of the step.
+    order : ndarray of int, shape (2n+3,)
+        Where ``matrix`` is the table of a held contact: the place of each dependent variable in its rows, and of each
+        zero-rate variable in its columns. Its rows hold T instead of tau. Empty if rows and columns are in order.
     tied : ndarray, shape (n,)
-        Where the columns of ``matrix`` hold T instead of tau: the factor tie mu of sticking nodes, 0 elsewhere. Empty if
-        the columns hold tau.
+        With ``order``: the factor tie mu of sticking nodes, 0 elsewhere.
     drag : ndarray, shape (n,)
-        As above: the shear that comes with a unit of N at open nodes, 0 elsewhere.
+        With ``order``: the shear that comes with a unit of N at open nodes, 0 elsewhere.
     chunk : int
         Number of updates after which a block must be brought up to date before a column of it is used.
     """
@@ -38,6 +40,7 @@ class Tableau(NamedTuple):
     slot: np.ndarray
     delta: np.ndarray
     rates: np.ndarray
+    order: np.ndarray
     tied: np.ndarray
     drag: np.ndarray
     chunk: int

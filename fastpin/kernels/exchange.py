@@ -64,17 +64,29 @@ MOST_UPDATES_A_CHANGE = 6  # appended by one change of status, with the change o
 
 
 @inner
-def _column(tableau, updates, p, out):
-    """Write column p after so many updates to `out`. Its block must have been computed."""
-    matrix, left, tied = tableau.matrix, tableau.left, tableau.tied
-    n = tied.size
+def _held_column(tableau, p, out):
+    """Write column p of a held contact to `out`, before any update."""
+    matrix, order, tied = tableau.matrix, tableau.order, tableau.tied
+    n, column = tied.size, order[p]
     for i in range(out.size):
-        out[i] = matrix[i, p]
+        out[i] = matrix[order[i], column]
     if p < n and tableau.drag[p] != 0.0:
+        factor, column = tableau.drag[p], order[n + p]
         for i in range(out.size):
-            out[i] += tableau.drag[p] * matrix[i, n + p]
+            out[i] += factor * matrix[order[i], column]
     for i in range(n):
         out[n + i] += tied[i] * out[i]
+
+
+@inner
+def _column(tableau, updates, p, out):
+    """Write column p after so many updates to `out`. Its block must have been computed."""
+    matrix, left = tableau.matrix, tableau.left
+    if tableau.order.size == 0:
+        for i in range(out.size):
+            out[i] = matrix[i, p]
+    else:
+        _held_column(tableau, p, out)
     for k in range(tableau.fresh[p // WIDTH], updates):
         factor = 0.0
         if tableau.source[k] >= 0:
@@ -129,9 +141,7 @@ def _add_column(tableau, updates, target, source, factor):
 @inner
 def _needed_column(tableau, updates, node, old, new, tie):
     """The first stale column among the columns that a change of status needs; -1 if none is stale."""
-    tangential = tableau.matrix.shape[1] // 2 + node
-    if old == OPEN and tableau.tied.size > 0 and tableau.drag[node] != 0.0 and _stale(tableau, updates, tangential):
-        return tangential  # the column of N has a part of the column of T
+    tangential = (tableau.rates.size - 3) // 2 + node
     if (old == OPEN or new == OPEN) and _stale(tableau, updates, node):
         return node
     if (old == STICK or new == STICK or (old == OPEN and new != tie)) and _stale(tableau, updates, tangential):

@@ -31,7 +31,7 @@ REFINEMENTS = 4
 
 def load_terms(system: System, before: np.ndarray, rate: np.ndarray) -> LoadTerms:
     """The terms of the work of the loads along a straight piece, from its first load and its rate, shape (loads,)."""
-    weights = np.r_[system.weights, system.weights]
+    weights = np.concatenate([system.weights, system.weights])
     drive, reactions = system.drive, np.zeros((2, weights.size + 3))
     if drive is not None:
         reactions[:, :-3] = drive.work_columns(weights)

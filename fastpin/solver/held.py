@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 
 from fastpin.elasticity.system import System
-from fastpin.kernels import exchange, tables, toeplitz
+from fastpin.kernels import exchange, toeplitz
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN
@@ -44,7 +45,7 @@ class HeldContacts:
     _of_systems: WeakKeyDictionary[System, HeldContacts] = WeakKeyDictionary()
 
     def __init__(self) -> None:
-        self._tables: OrderedDict[bytes, np.ndarray | None] = OrderedDict()
+        self._tables: OrderedDict[bytes, HeldTable | None] = OrderedDict()
         self._lock = threading.Lock()
 
     @classmethod
@@ -52,8 +53,8 @@ class HeldContacts:
         """The held contacts of a system. They are kept as long as the system is."""
         return cls._of_systems.setdefault(system, cls())
 
-    def table(self, system: System, closed: np.ndarray) -> np.ndarray | None:
-        """The table of the `closed` nodes (n,), see :func:`held_table`; None if it has too few digits."""
+    def table(self, system: System, closed: np.ndarray) -> HeldTable | None:
+        """The table of the `closed` nodes (n,); None if it has too few digits."""
         key = closed.tobytes()
         with self._lock:
             if key in self._tables:
@@ -69,38 +70,68 @@ class HeldContacts:
         return table
 
 
-def held_table(system: System, closed: np.ndarray) -> np.ndarray | None:
-    """The table (2n+3, 2n+3) of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin.
+class HeldTable(NamedTuple):
+    """The answers of a contact with all closed nodes sticking.
 
-    It maps gap and slip of closed nodes, pressure and shear of open nodes, and the forces out of balance to pressure
-    and shear of closed nodes, gap and slip of open nodes, and the motion. Columns of open end nodes of an arc are for
-    whole hats: these nodes never close.
+    Attributes
+    ----------
+    matrix : ndarray, shape (2n+3, 2n+3)
+        It maps gap and slip of closed nodes, pressure and shear of open nodes, and the forces out of balance to
+        pressure and shear of closed nodes, gap and slip of open nodes, and the motion. Rows and columns stand in the
+        sequence of ``stack``. Columns of open end nodes of an arc are for whole hats: these nodes never close.
+    stack : ndarray of int, shape (2n+3,)
+        The variables in the sequence of the matrix: of closed nodes, of open nodes, of the motion.
+    order : ndarray of int, shape (2n+3,)
+        The place of each variable in ``stack``.
     """
-    n, both = closed.size, np.r_[closed, closed]
+
+    matrix: np.ndarray
+    stack: np.ndarray
+    order: np.ndarray
+
+
+def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
+    """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
+    n, both = closed.size, np.concatenate([closed, closed])
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
     core, symmetric = _inverse(system, np.flatnonzero(closed))
     if core is None:
         return None
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
-    complement = system.motion_rows - equilibrium @ moved
-    scale = float((np.abs(equilibrium) @ np.abs(moved)).max())
-    if not np.all(np.isfinite(complement)) or not np.linalg.cond(complement / scale) < MOST_CONDITION:
+    small = _motion_by_forces(system, equilibrium, moved)
+    if small is None:
         return None
-    small = np.linalg.inv(complement)
     beside = system.operator[others]
     from_held = beside[:, rows]
     tied = from_held @ core
     free = -tied.T if symmetric else -(core @ system.operator[rows][:, others])
+    count, matrix = rows.size, np.empty((2 * n + 3, 2 * n + 3), order="F")
     moving = np.empty((3, 2 * n + 3))
-    moving[:, : rows.size] = -small @ (equilibrium @ core)
-    moving[:, rows.size : 2 * n] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
-    moving[:, 2 * n :] = small
-    acting = beside[:, others] + from_held @ free
-    table = np.empty((2 * n + 3, 2 * n + 3), order="F")
-    blocks = tuple(np.asfortranarray(block) for block in (core, free, tied, acting))
-    tables.fill(rows, others, blocks, -moved, system.motion[others] - tied @ motion, moving, table)
-    return table
+    moving[:, :count] = -small @ (equilibrium @ core)
+    moving[:, count:-3] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
+    moving[:, -3:] = small
+    matrix[:count, :count] = core.T if symmetric else core
+    matrix[:count, count:-3] = free
+    matrix[count:-3, :count] = tied
+    matrix[count:-3, count:-3] = beside[:, others] + from_held @ free
+    matrix[-3:], matrix[:, -3:] = 0.0, 0.0
+    turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(3)])
+    blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
+    stack = np.concatenate([rows, others, np.arange(2 * n, 2 * n + 3)])
+    order = np.empty(2 * n + 3, dtype=np.int64)
+    order[stack] = np.arange(2 * n + 3)
+    return HeldTable(matrix, stack, order)
+
+
+def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
+    """The motion (3, 3) by the three forces while the closed nodes stick; None if they hardly hold the pin."""
+    complement = system.motion_rows - equilibrium @ moved
+    scale = float((np.abs(equilibrium) @ np.abs(moved)).max())
+    if not np.all(np.isfinite(complement)) or not 0.0 < abs(np.linalg.det(complement / scale)):
+        return None
+    small = np.linalg.inv(complement)
+    return small if np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION else None
 
 
 def _inverse(system: System, nodes: np.ndarray) -> tuple[np.ndarray | None, bool]:
@@ -121,16 +152,16 @@ def _inverse(system: System, nodes: np.ndarray) -> tuple[np.ndarray | None, bool
     return (lu if info == 0 else None), False
 
 
-def _holds(system: System, closed: np.ndarray, table: np.ndarray) -> bool:
+def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
     """Whether the answer of a table to one load meets the equations of the closed nodes and of equilibrium."""
-    n, both = closed.size, np.r_[closed, closed]
+    n, both = closed.size, np.concatenate([closed, closed])
     given = np.cos(np.arange(2.0 * n + 3.0))
-    given[: 2 * n][~both] = 0.0
-    answer = table @ given
-    tractions = np.where(both, answer[: 2 * n], 0.0)
+    given[: 2 * n] *= both
+    answer = (table.matrix @ given[table.stack])[table.order]
+    tractions = answer[: 2 * n] * both
     true = system.operator @ tractions + system.motion @ answer[2 * n :]
     balance = system.equilibrium @ tractions + system.motion_rows @ answer[2 * n :]
-    error = max(float(np.abs(true - given[: 2 * n])[both].max()), float(np.abs(balance - given[2 * n :]).max()))
+    error = max(float(np.abs((true - given[: 2 * n]) * both).max()), float(np.abs(balance - given[2 * n :]).max()))
     return error < MOST_RESIDUAL
 
 
@@ -140,8 +171,8 @@ class HeldColumns:
     Parameters
     ----------
     system : System
-    table : ndarray, shape (2n+3, 2n+3)
-        See :func:`held_table`. It is not changed.
+    table : HeldTable
+        It is not changed.
     contact : Contact
         The configuration. The ties in it are set.
     load_rate : ndarray, shape (loads,)
@@ -157,15 +188,17 @@ class HeldColumns:
     """
 
     def __init__(
-        self, system: System, table: np.ndarray, contact: Contact, load_rate: np.ndarray, memory: TableauMemory
+        self, system: System, table: HeldTable, contact: Contact, load_rate: np.ndarray, memory: TableauMemory
     ) -> None:
         n, updates = system.grid.size, memory.left.shape[1]
         self._table = table
         closed = contact.status != OPEN
+        both = np.concatenate([closed, closed])
         displaced = system.load_displacement(load_rate)
-        both = np.r_[closed, closed]
-        rates = table @ np.r_[np.where(both, -displaced, 0.0), system.load_forces(load_rate)]
-        rates[: 2 * n] += np.where(both, 0.0, displaced)
+        given = np.concatenate([displaced, system.load_forces(load_rate)])
+        given[: 2 * n] *= -1.0 * both
+        rates = (table.matrix @ given[table.stack])[table.order]
+        rates[: 2 * n] += displaced * ~both
         slipping = np.abs(contact.status) == 1
         resists = -contact.status * rates[n : 2 * n] > system.friction * rates[:n]
         self.turned = np.count_nonzero(resists & slipping) <= np.count_nonzero(slipping) // 2
@@ -175,7 +208,8 @@ class HeldColumns:
         tied = np.where(closed, coupling, 0.0)
         rates[n : 2 * n] += tied * rates[:n]
         self.tableau = Tableau(
-            matrix=table[:, : 2 * n],
+            matrix=table.matrix,
+            order=table.order,
             fresh=np.zeros(-(-2 * n // WIDTH), dtype=np.int64),
             left=memory.left,
             source=np.empty(updates, dtype=np.int64),
@@ -197,7 +231,7 @@ class HeldColumns:
         n = tableau.tied.size
         acting = given.copy()
         acting[n : 2 * n] += tableau.drag * given[:n]
-        values = self._table @ acting
+        values = (self._table.matrix @ acting[self._table.stack])[self._table.order]
         values[n : 2 * n] += tableau.tied * values[:n]
         exchange.apply_updates(tableau, updates, given, values)
         return values

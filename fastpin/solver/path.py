@@ -436,11 +436,11 @@ class PathStep:
         slipping = closed & ~stick
         updates, last = int(self._queue.counts[exchange.UPDATES]), np.inf
         while True:
-            tractions = np.r_[pressure, shear]
+            tractions = np.concatenate([pressure, shear])
             elastic = system.operator @ tractions
             true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
             balance = system.load_forces(now.load) - system.equilibrium @ tractions - system.motion_rows @ motion
-            missing = np.r_[np.where(closed, -true[:n], 0.0), np.where(stick, now.slip - true[n:], 0.0), balance]
+            missing = np.concatenate([-true[:n] * closed, (now.slip - true[n:]) * stick, balance])
             # The scales are the present elastic part and force, even where an unloading has left little of them.
             length = max(float(np.abs(elastic).max()), 1e-300)
             force = max(float((np.abs(system.equilibrium) @ np.abs(tractions)).max()), 1e-300)

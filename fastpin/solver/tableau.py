@@ -85,6 +85,7 @@ class Columns:
             slot=np.empty(updates, dtype=np.int64),
             delta=np.empty(updates),
             rates=self._rates(load_rate),
+            order=np.zeros(0, dtype=np.int64),
             tied=np.zeros(0),
             drag=np.zeros(0),
             chunk=CHUNK,

@@ -74,6 +74,7 @@ def empty_tableau(matrix, rates):
         slot=np.zeros(room, dtype=np.int64),
         delta=np.zeros(room),
         rates=rates.copy(),
+        order=np.zeros(0, dtype=np.int64),
         tied=np.zeros(0),
         drag=np.zeros(0),
         chunk=CHUNK,
