@@ -19,8 +19,8 @@ COLUMNS = 64
 MOST_DENSE = 400
 """Nodes of unequal spacing, at most, for which the whole operator is filled."""
 
-MOST_KEPT = 256
-"""Most nodes of a system that is kept. It takes 2 MB."""
+MOST_KEPT = 320
+"""Most nodes of a system that is kept. It takes 3 MB."""
 
 SYSTEMS_KEPT = 2
 """Systems that are kept: of a history and of the coarse grid of its error bars."""
@@ -74,10 +74,9 @@ def build_system(problem: Problem, grid: Grid, force: float) -> System:
 
     The latest systems with few nodes are kept, and returned again for the same problem and grid.
     """
-    if grid.size <= MOST_KEPT:
-        return _KEPT.system(problem, grid, force)
-    large = grid.closed and not grid.uniform and grid.size > MOST_DENSE
-    return (LargeSystem if large else System).build(problem, grid, force)
+    if grid.closed and not grid.uniform and grid.size > MOST_DENSE:
+        return LargeSystem.build(problem, grid, force)
+    return _KEPT.system(problem, grid, force) if grid.size <= MOST_KEPT else System.build(problem, grid, force)
 
 
 class _LatestSystems:

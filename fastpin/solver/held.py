@@ -23,7 +23,7 @@ from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN
 from fastpin.solver.tableau import TableauMemory, expected_ties
 
-FEW_NODES = 256
+FEW_NODES = 320
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
 
 MOST_NUMBERS = 4_000_000
@@ -127,11 +127,12 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
 def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
     """The motion (3, 3) by the three forces while the closed nodes stick; None if they hardly hold the pin."""
     complement = system.motion_rows - equilibrium @ moved
-    scale = float((np.abs(equilibrium) @ np.abs(moved)).max())
-    if not np.all(np.isfinite(complement)) or not 0.0 < abs(np.linalg.det(complement / scale)):
+    try:
+        small: np.ndarray = np.linalg.inv(complement)
+    except np.linalg.LinAlgError:
         return None
-    small = np.linalg.inv(complement)
-    return small if np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION else None
+    sound = np.linalg.norm(complement) * np.linalg.norm(small) < MOST_CONDITION
+    return small if sound else None
 
 
 def _inverse(system: System, nodes: np.ndarray) -> tuple[np.ndarray | None, bool]:

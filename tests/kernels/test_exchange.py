@@ -20,6 +20,7 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
+from fastpin.solver import path
 from fastpin.solver import unknowns as solver_unknowns
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import empty_slip_tally, solve_statuses, worst_residual
@@ -237,6 +238,7 @@ def test_a_tableau_that_has_drifted_is_built_anew(titanium_in_aluminium, monkeyp
             self.tableau.matrix[50:150, asked] *= 1.0 + 1e-7
 
     monkeypatch.setattr(Columns, "refresh", spoilt)
+    monkeypatch.setattr(path, "FEW_NODES", 0)
     step = PathStep(system, first, loads(P=1.0))
     found = step.follow(1.0)
     assert step.rebuilds > 0
