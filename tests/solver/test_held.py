@@ -1,0 +1,187 @@
+"""Steps that begin with all closed nodes held: their tables against factorisations, and whole histories both ways."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity.system import System
+from fastpin.kernels import exchange
+from fastpin.kernels.arrays import Contact
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.bodies import Ring
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
+from fastpin.model.problem import Problem
+from fastpin.solver import held, path
+from fastpin.solver.configuration import empty_slip_tally
+from fastpin.solver.errors import SolveError
+from fastpin.solver.held import HeldColumns, HeldContacts, held_table
+from fastpin.solver.solving import solve
+from fastpin.solver.tableau import Columns, TableauMemory
+from fastpin.solver.unknowns import DenseUnknowns
+from scripts.histories import generate
+
+BOTTOM = -0.5 * np.pi
+GRIDS = {
+    "arc": Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 61),
+    "circle": Grid.circle(61),
+    "graded": Grid.graded([(BOTTOM, 0.5), (0.4, 1.0)], 61),
+}
+CASES = {
+    "plain": {},
+    "driven": {"drive": "ux"},
+    "spring": {"rotation": "spring", "hub_stiffness": 2.0},
+    "fixed": {"rotation": "fixed"},
+    "ring": {"plate_body": Ring(2.0, "normal")},
+}
+
+
+def system_of(pair, case="plain", grid="arc"):
+    options = {"rotation": "free", **CASES[case]}
+    return System.build(Problem.from_load_parameter(pair, 0.1, 0.4, "centre", **options), GRIDS[grid], 1.0)
+
+
+def zones(*runs, n=61):
+    closed = np.zeros(n, dtype=bool)
+    for first, last in runs:
+        closed[first:last] = True
+    return closed
+
+
+def contact_of(closed, slipping=()):
+    """A contact of sticking nodes, some of which slip. Its values do not matter."""
+    n, rng = closed.size, np.random.default_rng(4)
+    status = np.where(closed, STICK, OPEN).astype(np.int8)
+    for node, sense in slipping:
+        status[node] = sense
+    shear = rng.normal(size=n) * closed
+    zeros = [np.zeros(n) for _ in range(2)]
+    return Contact(
+        np.abs(rng.normal(size=n)) * closed, shear, *zeros, status, np.zeros(n, dtype=np.int8), np.zeros(n, dtype=bool),
+        np.zeros(3), np.zeros(n), empty_slip_tally(n),
+    )  # fmt: skip
+
+
+def rate():
+    return np.array([{"P": 1.0, "Q": 0.3}.get(name, 0.0) for name in LOADS])
+
+
+CONTACTS = [zones((15, 45)), zones((10, 20), (30, 50)), zones((28, 32))]
+
+
+@pytest.mark.parametrize("grid", GRIDS)
+@pytest.mark.parametrize("case", CASES)
+def test_a_held_contact_begins_with_the_tableau_of_a_factorisation(titanium_in_aluminium, case, grid):
+    system, memory = system_of(titanium_in_aluminium, case, grid), TableauMemory(61)
+    for closed in CONTACTS:
+        table = held_table(system, closed)
+        assert table is not None
+        contact, other = contact_of(closed), contact_of(closed)
+        columns = HeldColumns(system, table, contact, rate(), memory)
+        expected = Columns(system, DenseUnknowns(system, other.status), other, rate(), TableauMemory(61))
+        assert np.array_equal(contact.tie, other.tie)
+        size = np.abs(expected.tableau.rates).max()
+        assert np.abs(columns.tableau.rates - expected.tableau.rates).max() < 1e-11 * size
+        given = np.random.default_rng(5).normal(size=125)
+        found, wanted = columns.response(given, 0), expected.response(given, 0)
+        # the hats at the ends of an arc are halves, and their columns stand for whole ones: these nodes never close
+        if not system.grid.closed:
+            given[[0, 60, 61, 121]] = 0.0
+            found, wanted = columns.response(given, 0), expected.response(given, 0)
+        assert np.abs(found - wanted).max() < 1e-11 * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize("way", ["compiled", "python"])
+def test_columns_and_updates_of_a_held_contact_are_those_of_the_naive_way(titanium_in_aluminium, way, monkeypatch):
+    if way == "python":
+        for name, function in vars(exchange).items():
+            if hasattr(function, "py_func"):
+                monkeypatch.setattr(exchange, name, function.py_func)
+    system = system_of(titanium_in_aluminium)
+    closed = zones((15, 45))
+    contact = contact_of(closed)
+    columns = HeldColumns(system, held_table(system, closed), contact, rate(), TableauMemory(61))
+    tableau = columns.tableau
+    rng = np.random.default_rng(6)
+    updates, units = 9, np.eye(125)
+    tableau.left[:, :updates] = rng.normal(size=(125, updates))
+    tableau.source[:updates], tableau.slot[:updates] = rng.integers(-1, 122, updates), rng.integers(-1, 122, updates)
+    tableau.delta[:updates] = rng.normal(size=updates)
+    naive = np.column_stack([columns.response(unit, 0) for unit in units])
+    for k in range(updates):
+        row = np.zeros(125)
+        if tableau.source[k] >= 0:
+            row += naive[tableau.source[k]]
+        if tableau.slot[k] >= 0:
+            row[tableau.slot[k]] += tableau.delta[k]
+        naive += np.outer(tableau.left[:, k], row)
+    given = rng.normal(size=125)
+    assert np.allclose(columns.response(given, updates), naive @ given, rtol=0.0, atol=1e-9 * np.abs(naive).max())
+    if way == "python":  # inner kernels can be called as plain Python only
+        for p in (20, 10, 61 + 20, 61 + 50):
+            column = np.zeros(125)
+            exchange._column(tableau, updates, p, column)
+            assert np.allclose(column, naive[:, p], rtol=0.0, atol=1e-9 * np.abs(naive).max())
+
+
+def test_nodes_that_hardly_hold_the_pin_have_no_table(titanium_in_aluminium):
+    system = system_of(titanium_in_aluminium)
+    assert held_table(system, zones()) is None
+    assert HeldContacts.of(system).table(system, zones((30, 31))) is None  # one node: the pin turns about it
+
+
+@pytest.mark.parametrize("kind", ["general", "fits", "remote", "fixed", "rough"])
+def test_histories_have_the_states_of_the_way_by_factorisations(kind, monkeypatch):
+    """Measured: the largest difference is 4e-11 of the largest pressure."""
+    compared = 0
+    for seed in range(40, 44):
+        case = generate(kind, seed)
+        options = {**case.options, "nodes": 61}
+        found = solve_or_none(case, options)
+        with monkeypatch.context() as patch:
+            patch.setattr(path, "FEW_NODES", 0)
+            expected = solve_or_none(case, options)
+        assert (found is None) == (expected is None)
+        if found is None or found.grid.size > held.FEW_NODES:
+            continue
+        for one, other in zip(found, expected, strict=True):
+            peak = max(float(other.pressure.max()), 1e-300)
+            assert np.abs(one.pressure - other.pressure).max() < 1e-9 * peak
+            assert np.abs(one.shear - other.shear).max() < 1e-9 * peak
+            compared += 1
+    assert compared > 3
+
+
+def solve_or_none(case, options):
+    try:
+        return solve(case.problem, case.history, **options)
+    except SolveError:
+        return None
+
+
+HISTORY = [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}, {"Q": 0.1}, {"P": 0.6}, {"Q": -0.1}]
+
+
+def test_known_tables_leave_the_bits_of_a_history(titanium_in_aluminium, monkeypatch):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    first = solve(problem, HISTORY, nodes=61)
+    again = solve(problem, HISTORY, grid=first.grid)  # the system of the first run, with all its tables
+    monkeypatch.setattr(held, "MOST_NUMBERS", 0)  # one table at a time
+    last = solve(problem, HISTORY, grid=Grid(first.grid.theta.copy()))
+    for one, two, three in zip(first, again, last, strict=True):
+        for name in ("pressure", "shear", "gap", "slip", "status"):
+            assert np.array_equal(getattr(one, name), getattr(two, name))
+            assert np.array_equal(getattr(one, name), getattr(three, name))
+
+
+def test_threads_share_the_tables_of_a_system(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    grid = solve(problem, HISTORY, nodes=61).grid
+    alone = solve(problem, HISTORY, grid=grid)
+    with ThreadPoolExecutor(4) as pool:
+        results = list(pool.map(lambda _: solve(problem, HISTORY, grid=grid), range(8)))
+    for result in results:
+        assert np.array_equal(result[-1].shear, alone[-1].shear)
