@@ -19,8 +19,8 @@ COLUMNS = 64
 MOST_DENSE = 400
 """Nodes of unequal spacing, at most, for which the whole operator is filled."""
 
-MOST_KEPT = 320
-"""Most nodes of a system that is kept. It takes 3 MB."""
+MOST_KEPT = 512
+"""Most nodes of a system that is kept. It takes 8 MB."""
 
 SYSTEMS_KEPT = 2
 """Systems that are kept: of a history and of the coarse grid of its error bars."""

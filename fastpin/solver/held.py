@@ -23,14 +23,17 @@ from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.status import OPEN
 from fastpin.solver.tableau import TableauMemory, expected_ties
 
-FEW_NODES = 320
+FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
 
-MOST_NUMBERS = 4_000_000
-"""Numbers in the tables of all held contacts that are kept, at most: 32 MB."""
+MOST_NUMBERS = 8_000_000
+"""Numbers in the tables of all held contacts of a system that are kept, at most: 64 MB."""
 
 LEAST_NEIGHBOURS = 24
 """Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes LAPACK's inverse is as fast."""
+
+LEAST_RECURRENCES = 192
+"""Smallest number of neighbouring nodes for the recurrences of their responses. With fewer, products are as fast."""
 
 MOST_CONDITION = 1e8
 """Largest condition number of the three equations of the motion. A contact above it hardly holds the pin."""
@@ -94,7 +97,9 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
     n, both = closed.size, np.concatenate([closed, closed])
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
-    core, symmetric = _inverse(system, np.flatnonzero(closed))
+    nodes = np.flatnonzero(closed)
+    entries = _distances(system, nodes)
+    core = _inverse(system.operator, rows) if entries is None else toeplitz.inverse(*entries[:, : nodes.size])
     if core is None:
         return None
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
@@ -102,19 +107,16 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     small = _motion_by_forces(system, equilibrium, moved)
     if small is None:
         return None
-    beside = system.operator[others]
-    from_held = beside[:, rows]
-    tied = from_held @ core
-    free = -tied.T if symmetric else -(core @ system.operator[rows][:, others])
+    free, tied, acting = _responses(system, rows, others, core, entries)
     count, matrix = rows.size, np.empty((2 * n + 3, 2 * n + 3), order="F")
     moving = np.empty((3, 2 * n + 3))
     moving[:, :count] = -small @ (equilibrium @ core)
     moving[:, count:-3] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
     moving[:, -3:] = small
-    matrix[:count, :count] = core.T if symmetric else core
+    matrix[:count, :count] = core if entries is None else core.T  # symmetric
     matrix[:count, count:-3] = free
     matrix[count:-3, :count] = tied
-    matrix[count:-3, count:-3] = beside[:, others] + from_held @ free
+    matrix[count:-3, count:-3] = acting
     matrix[-3:], matrix[:, -3:] = 0.0, 0.0
     turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(3)])
     blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
@@ -135,22 +137,46 @@ def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray
     return small if sound else None
 
 
-def _inverse(system: System, nodes: np.ndarray) -> tuple[np.ndarray | None, bool]:
-    """Inverse of the operator on neighbouring `nodes`, and whether the operator is symmetric; None if it is singular.
+def _distances(system: System, nodes: np.ndarray) -> np.ndarray | None:
+    """Entries of the operator by distance, shape (3, n), if the inverse of a block Toeplitz matrix serves for `nodes`.
 
-    Equally spaced neighbours take the inverse of a block Toeplitz matrix.
+    It serves for equally spaced neighbours that keep clear of the ends of an arc, where hats are halves. The largest
+    distance of an arc is left out.
     """
-    n, operator, count = system.grid.size, system.operator, nodes.size
-    inside = system.grid.closed or (nodes.size > 0 and nodes[0] > 0 and nodes[-1] < n - 1)
-    if system.is_toeplitz and inside and count >= LEAST_NEIGHBOURS and nodes[-1] - nodes[0] + 1 == count:
-        first, last = nodes[0], nodes[-1] + 1
-        entries = [operator[first:last, first], operator[n + first : n + last, n + first]]
-        return toeplitz.inverse(*entries, operator[first:last, n + first]), True
-    rows = np.r_[nodes, n + nodes]
+    n, operator, end = system.grid.size, system.operator, 0 if system.grid.closed else 1
+    if not system.is_toeplitz or nodes.size < LEAST_NEIGHBOURS or nodes[-1] - nodes[0] + 1 != nodes.size:
+        return None
+    if nodes[0] < end or nodes[-1] >= n - end or nodes.size == n:
+        return None
+    entries = np.zeros((3, n))
+    entries[:, : n - end] = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
+    return entries
+
+
+def _inverse(operator: np.ndarray, rows: np.ndarray) -> np.ndarray | None:
+    """The inverse of the operator on some rows; None if it is singular."""
     lu, pivots, info = lapack.dgetrf(np.asfortranarray(operator[np.ix_(rows, rows)]), overwrite_a=1)
     if info == 0:
         lu, info = lapack.dgetri(lu, pivots, overwrite_lu=1)
-    return (lu if info == 0 else None), False
+    return lu if info == 0 else None
+
+
+def _responses(
+    system: System, rows: np.ndarray, others: np.ndarray, core: np.ndarray, entries: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Responses without motion of the pin: of `rows` to `others`, of `others` to `rows`, and of `others` to themselves.
+
+    `entries` are those of :func:`_distances`; with many nodes recurrences take their place for products.
+    """
+    if entries is not None and rows.size >= 2 * LEAST_RECURRENCES:
+        neighbours = toeplitz.NeighbourResponses(entries, core, int(rows[0]))
+        responses = neighbours.responses()
+        return -responses, responses.T, neighbours.complement()
+    beside = system.operator[others]
+    from_held = beside[:, rows]
+    tied = from_held @ core
+    free = -(core @ system.operator[rows][:, others]) if entries is None else -tied.T
+    return free, tied, beside[:, others] + from_held @ free
 
 
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
