@@ -95,7 +95,10 @@ class LoadTerms(NamedTuple):
 
 
 class Queue(NamedTuple):
-    """Waiting changes of status, shape (2n,), and the counters and sums of a step, with the slots of :mod:`fastpin.kernels.exchange`."""
+    """Waiting changes of status, shape (2n,), and the counters and sums of a step.
+
+    Their slots stand in :mod:`fastpin.kernels.exchange`.
+    """
 
     node: np.ndarray
     status: np.ndarray

@@ -535,7 +535,10 @@ def follow(tableau, contact, load, queue, friction, closed_grid, typical, stop, 
 
 @compiled
 def apply_updates(tableau, updates, given, values):
-    """Apply so many updates, one by one, to the response `values` (2n+3,) to the zero-rate variables `given` (2n+3,)."""
+    """Apply so many updates, one by one, to a response.
+
+    `values` (2n+3,) is the response to the zero-rate variables `given` (2n+3,) before them. It is changed in place.
+    """
     for k in range(updates):
         factor = 0.0
         if tableau.source[k] >= 0:

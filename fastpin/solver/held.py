@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -45,7 +45,7 @@ MOST_RESIDUAL = 1e-10
 class HeldContacts:
     """The tables of the held contacts of the latest steps on one system. Threads may share them."""
 
-    _of_systems: WeakKeyDictionary[System, HeldContacts] = WeakKeyDictionary()
+    _of_systems: ClassVar[WeakKeyDictionary[System, HeldContacts]] = WeakKeyDictionary()
 
     def __init__(self) -> None:
         self._tables: OrderedDict[bytes, HeldTable | None] = OrderedDict()

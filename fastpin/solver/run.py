@@ -29,7 +29,7 @@ from fastpin.solver.driven import force_on_pin
 from fastpin.solver.errors import ConvergenceError, NoEquilibriumError, ResolutionError, SolveError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import IncrementStepper
-from fastpin.solver.path import PathStepper
+from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.repeats import CornerEntry, CornerLog, KnownConfiguration, Repeats, copied_ends
 from fastpin.solver.rest import release
 from fastpin.solver.result import Restart

@@ -16,7 +16,7 @@ from fastpin.elasticity.large import LargeSystem
 from fastpin.kernels.status import OPEN
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import ArcError, ResolutionError
-from fastpin.solver.path import PathStepper
+from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
 from fastpin.solver.step import Piece, Position, Report
 
@@ -117,7 +117,7 @@ class WindowStepper:
     ----------
     system : LargeSystem
     statistics, strict
-        See :class:`fastpin.solver.path.PathStepper`.
+        See :class:`fastpin.solver.path_stepper.PathStepper`.
     """
 
     def __init__(self, system: LargeSystem, statistics: dict[str, float], strict: bool) -> None:
@@ -139,7 +139,7 @@ class WindowStepper:
         Raises
         ------
         NoEquilibriumError, ConvergenceError, ResolutionError
-            See :meth:`fastpin.solver.path.PathStepper.advance`.
+            See :meth:`fastpin.solver.path_stepper.PathStepper.advance`.
         """
         lost_at = -1.0
         while position.now.closed.any() and not np.array_equal(position.now.load, piece.load_at(stop)):

@@ -1,0 +1,166 @@
+"""The path solver as a run calls it: a path for each straight piece of a step.
+
+Where a path is lost, a contact that has just opened is released, and a pin that snaps is taken over the snap.
+"""
+
+from __future__ import annotations
+
+from fastpin.elasticity.system import System
+from fastpin.kernels import exchange
+from fastpin.model.loads import M
+from fastpin.solver.configuration import Configuration
+from fastpin.solver.driven import can_float, force_on_pin
+from fastpin.solver.errors import (
+    CUT_OFF,
+    UNHELD,
+    ArcError,
+    ConvergenceError,
+    NoEquilibriumError,
+    ResolutionError,
+    SolveError,
+)
+from fastpin.solver.path import PathStep, StepLostError
+from fastpin.solver.rest import release
+from fastpin.solver.snap import find_state_beyond
+from fastpin.solver.step import Piece, Position, Report, force_of
+from fastpin.solver.tableau import TableauMemory
+
+FEW_CLOSED = 8
+"""A contact of at most this many nodes, lost during a complete unloading, has just opened."""
+
+NEGLIGIBLE = 1e-3
+"""Part of a step's force. Below it a contact narrower than the grid is released, and a first contact follows."""
+
+MOST_RELEASES = 20
+"""Such releases in one piece of a step, at most."""
+
+FIRST_JUMP, LARGEST_JUMP = 1e-6, 2e-2
+"""Part of a piece at which a state beyond the first snap is looked for; largest part of a step for later snaps."""
+
+JUMP_GROWTH = 1.3
+"""Growth of this part from snap to snap, so that a pin that snaps all the way comes to the end."""
+
+LONGER_JUMPS = (1.0, 1e2, 1e4)
+"""Factors of this part that are tried one after the other."""
+
+ALMOST_UNLOADED = 1.0 - 1e-8
+"""Beyond this part of a complete unloading everything falls to zero together. The order of events is rounding there."""
+
+
+class PathStepper:
+    """The path solver as a stepper: it follows a step from event to event, exactly.
+
+    Parameters
+    ----------
+    system : System
+    statistics : dict of str to float
+        Statistics of the run. The stepper counts "events", "exchanges", "rebuilds", "resettled", "jumps" and
+        "released" in it.
+    strict : bool
+        Whether a narrow contact that carries next to nothing is an error. If not, it is let go.
+    """
+
+    def __init__(self, system: System, statistics: dict[str, float], strict: bool = False) -> None:
+        self._system = system
+        self._statistics = statistics
+        self._strict = strict
+        self._memory = TableauMemory(system.grid.size)
+        self._step: PathStep | None = None
+        self._begin = 0.0  # fraction of the history's step at which `_step` starts
+        self._releases = self._jumps = 0
+
+    def begin_piece(self) -> None:
+        """Prepare for the next straight piece."""
+        self._releases = self._jumps = 0
+
+    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+        """Follow a piece exactly, up to the fraction `stop` of the step or until the contact is lost.
+
+        A contact that has become too small for the grid, or carries nothing, is released without an error.
+
+        Raises
+        ------
+        NoEquilibriumError
+            If nothing holds the pin any more.
+        ConvergenceError
+            If the statuses do not settle.
+        ResolutionError
+            If the contact shrinks to a few nodes and is lost between them.
+        ArcError
+            If the contact reaches an end of the arc.
+        """
+        try:
+            if self._step is None:
+                self._begin = position.reached
+                self._step = PathStep(self._system, position.now, piece.after, self._memory)
+            begin, length = self._begin, piece.end - self._begin
+            part = 1.0 if stop == piece.end else (stop - begin) / length
+            position.now = self._step.follow(part, lambda done: report(begin + done * length))
+            position.now.load = piece.load_at(stop)
+        except StepLostError as lost:
+            if self._step is not None:
+                position.reached = self._begin + lost.fraction * (piece.end - self._begin)
+                position.now = self._step.now
+            if self._has_just_opened(position.now, piece, lost):
+                self.leave(position)
+                position.now = release(self._system, position.now, position.now.load)
+            elif lost.code != exchange.CYCLING or not self._jump(position, piece, stop):
+                raise _solve_error(lost.code, position.now, self._system.problem.held) from None
+
+    def leave(self, position: Position) -> None:
+        """End the present path: note the nodes that it touched, count its events, and forget it."""
+        if self._step is None:
+            return
+        position.touched |= self._step.touched
+        self._statistics["events"] += self._step.events
+        self._statistics["exchanges"] += self._step.exchanges
+        self._statistics["rebuilds"] += self._step.rebuilds
+        self._statistics["resettled"] += self._step.resettled
+        self._step = None
+
+    def _jump(self, position: Position, piece: Piece, stop: float) -> bool:
+        """Take the pin over a snap to a state at a finite distance. Returns whether one was found."""
+        jump = FIRST_JUMP * JUMP_GROWTH**self._jumps * (piece.end - piece.begin)
+        ends = [min(position.reached + min(factor * jump, LARGEST_JUMP), stop) for factor in LONGER_JUMPS]
+        for reached in dict.fromkeys(ends):
+            found = find_state_beyond(self._system, position.now, piece.load_at(reached))
+            if found is not None:
+                self.leave(position)
+                position.now, position.reached = found, reached
+                position.touched |= found.closed
+                self._jumps += 1
+                self._statistics["jumps"] += 1
+                return True
+        return False
+
+    def _has_just_opened(self, now: Configuration, piece: Piece, lost: StepLostError) -> bool:
+        """Whether a lost contact had only become too small for the grid, or carried nothing."""
+        if lost.code == exchange.ARC_END:
+            return False
+        unloading = can_float(self._system, piece.after)
+        if unloading and lost.fraction > ALMOST_UNLOADED:
+            return True
+        if now.load[M] != 0.0 or int(now.closed.sum()) > FEW_CLOSED or self._releases == MOST_RELEASES:
+            return False
+        self._releases += 1
+        driven = self._system.drive is not None  # then a contact is lost as well where the pin is moved away
+        if unloading or (self._strict and not driven):
+            return unloading
+        largest = max(force_of(piece.before), force_of(piece.after), 1.0 if driven else 0.0)
+        small = force_on_pin(self._system, now) <= NEGLIGIBLE * largest
+        self._statistics["released"] += small and not driven
+        return small
+
+
+def _solve_error(code: int, lost: Configuration, held: bool) -> SolveError:
+    """The error of a path that was lost at the configuration `lost`. `held`: the pin can't rotate freely."""
+    closed = int(lost.closed.sum())
+    if code == exchange.ARC_END:
+        return ArcError(CUT_OFF)
+    if closed < FEW_CLOSED // 2 or (held and closed <= FEW_CLOSED):
+        return ResolutionError(f"the contact has shrunk to {closed} nodes and is lost between them; use more nodes")
+    if code == exchange.NO_SUPPORT:
+        return NoEquilibriumError(UNHELD)
+    if code == exchange.CYCLING:
+        return NoEquilibriumError("no equilibrium is near: the pin snaps to a distant state, which was not found")
+    return ConvergenceError("the stick and slip zones did not settle")
