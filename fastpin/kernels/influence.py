@@ -26,7 +26,6 @@ import math
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.special import zeta
 
 from fastpin.kernels import fourier
 from fastpin.kernels.jit import compiled
@@ -36,9 +35,15 @@ TWO_PI_LOW = 2.4492935982947064e-16
 NEAR = 8.0  # lengths of a half hat within which the exact difference is used
 
 # Cl2(x) = x - x ln|x| + sum a_k x^(2k+1) and Cl2(pi - y) = y ln 2 - sum b_k y^(2k+1). The Bernoulli numbers
-# are |B_2k| / (2k)! = 2 zeta(2k) / (2 pi)^(2k).
+# are |B_2k| / (2k)! = 2 zeta(2k) / (2 pi)^(2k). The table of zeta(2k) spares the import of scipy.special.
 _ORDERS = 2.0 * np.arange(1, 19)
-AROUND_ZERO = 2.0 * zeta(_ORDERS) / (TWO_PI**_ORDERS * _ORDERS * (_ORDERS + 1.0))
+ZETA = np.array([
+    1.6449340668482264, 1.0823232337111381, 1.0173430619844492, 1.0040773561979444, 1.000994575127818,
+    1.000246086553308, 1.0000612481350588, 1.0000152822594086, 1.000003817293265, 1.0000009539620338,
+    1.0000002384505027, 1.000000059608189, 1.0000000149015549, 1.000000003725334, 1.0000000009313275,
+    1.000000000232831, 1.0000000000582077, 1.000000000014552,
+])  # fmt: skip
+AROUND_ZERO = 2.0 * ZETA / (TWO_PI**_ORDERS * _ORDERS * (_ORDERS + 1.0))
 AROUND_PI = AROUND_ZERO * (2.0**_ORDERS - 1.0)
 AROUND_ZERO_TERMS = 14
 AROUND_PI_TERMS = 18

@@ -1,21 +1,29 @@
-"""The settings of compiled code, in one place.
+"""The settings of compiled code, and the functions that are compiled with them.
 
-Numba stores compiled code beside the package. If the package folder can't be written, Numba stores it in the user's
-cache directory. If neither can be written, every process compiles again. Set ``FASTPIN_CACHE=0`` to compile without a
-cache on disk. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything as plain Python.
+A kernel is compiled when it is first called, once for each combination of types of its arguments. The machine code is
+kept on disk (:mod:`fastpin.kernels.stored`). Later processes load it without Numba, whose import takes several times
+as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything
+as plain Python.
 """
 
 from __future__ import annotations
 
+import functools
+import importlib
+import logging
 import os
+import sys
+import threading
 from collections.abc import Callable
 from typing import Any
 
-import numba
-from numba.extending import get_cython_function_address
+import numpy as np
 
 CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
 """Whether compiled code is stored on disk."""
+
+PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+"""Whether kernels run as plain Python."""
 
 SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 """Settings of every kernel: no fastmath and no parallel sums.
@@ -23,32 +31,126 @@ SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wra
 Division by zero gives inf or nan. C calls no kernel, so the wrapper for C is left out, which saves compiling.
 """
 
+SCALARS: dict[type, str] = {
+    bool: "?", np.bool_: "?", int: "q", np.int64: "q", float: "d", np.float64: "d", complex: "D", np.complex128: "D",
+}  # fmt: skip
+"""Types of numbers, and the letter of the type that the compiler gives them."""
 
-def compiled(function: Callable[..., Any], **settings: Any) -> Callable[..., Any]:
-    """Compile a kernel: the decorator of every kernel."""
-    if CACHED:
+C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
+LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
+"""Bits of ``ndarray.flags.num`` on which compiled code depends."""
+
+logger = logging.getLogger("fastpin.compiler")
+
+_lock = threading.RLock()
+
+
+class Kernel:
+    """A compiled function.
+
+    Attributes
+    ----------
+    py_func : callable
+        The function as plain Python.
+    inner : bool
+        Whether only kernels call it. The wrapper for calls from Python is then never compiled.
+    """
+
+    def __init__(self, function: Callable[..., Any], inner: bool) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func = function
+        self.inner = inner
+        self._entries: dict[tuple[Any, ...], Callable[..., Any]] = {}
+
+    def __call__(self, *arguments: Any) -> Any:
         try:
-            return numba.njit(cache=True, **SETTINGS, **settings)(function)
-        except RuntimeError:  # no directory can be written
-            pass
-    return numba.njit(**SETTINGS, **settings)(function)
+            types = argument_types(arguments)
+        except KeyError:  # types that no kernel of fastpin takes: the compiler decides
+            return _compiler().dispatcher(self, alone=True)(*arguments)
+        entry = self._entries.get(types)
+        if entry is None:
+            entry = self._find(types, arguments)
+        return entry(*arguments)
+
+    @functools.cached_property
+    def _numba_type_(self) -> Any:
+        """The type of the kernel in other kernels. The compiler asks for it by this name."""
+        return _compiler().callee(self)
+
+    def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
+        """Load the machine code for these arguments, or compile it."""
+        if self.inner:
+            raise TypeError(f"{self.py_func.__qualname__} is called by kernels only")
+        with _lock:
+            if types not in self._entries:
+                place: Any = None
+                if CACHED:
+                    place = importlib.import_module("fastpin.kernels.stored").place_of(self, signature(types))
+                entry: Any = place and place.load()
+                if entry is None:
+                    logger.info("compiling %s, once; the solver takes some seconds", self.py_func.__qualname__)
+                    entry, code = _compiler().compile_kernel(self, arguments)
+                    if place and code is not None:
+                        place.save(code)
+                self._entries[types] = entry
+            return self._entries[types]
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a kernel: the decorator of every kernel."""
+    return function if PLAIN else Kernel(function, inner=False)
 
 
 def inner(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a kernel that only kernels call: the decorator of these.
 
     The wrapper for calls from Python is left out. With arguments of many arrays the wrapper takes longer to compile
-    than the kernel. A call from Python all the same crashes the interpreter.
+    than the kernel.
+
+    Raises
+    ------
+    TypeError
+        When it is called from Python.
     """
-    return compiled(function, no_cpython_wrapper=True)
+    return function if PLAIN else Kernel(function, inner=True)
 
 
-def blas_address(name: str) -> int:
-    """The address of a routine of SciPy's own BLAS, for calls that leave the interpreter free."""
-    return int(get_cython_function_address("scipy.linalg.cython_blas", name))
+def argument_types(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The types of arguments: a key that is quickly made. :class:`KeyError` if a type is neither array nor number."""
+    found: list[Any] = []
+    for value in values:
+        kind = type(value)
+        if kind is np.ndarray:
+            found += value.dtype, value.ndim, value.flags.num & LAYOUT
+        elif issubclass(kind, tuple):
+            found += kind, argument_types(value)
+        else:
+            found.append(SCALARS[kind])
+    return tuple(found)
+
+
+def signature(types: tuple[Any, ...]) -> str:
+    """The key of :func:`argument_types` as text. Keys that the compiler takes for the same types have the same text."""
+    words, rest = [], iter(types)
+    for one in rest:
+        if isinstance(one, np.dtype):
+            dimensions, bits = next(rest), next(rest)
+            order = "C" if bits & C_ORDER else "F" if bits & F_ORDER else "A"
+            words.append(f"{one.str}{dimensions}{order}{bits & (ALIGNED | WRITEABLE):x}")
+        elif isinstance(one, type):
+            words.append(f"{one.__name__}({signature(next(rest))})")
+        else:
+            words.append(one)
+    return ", ".join(words)
 
 
 def limit_to_one_thread() -> None:
     """Limit compiled code to one thread, in this process and in the processes that it starts."""
     os.environ["NUMBA_NUM_THREADS"] = "1"
-    numba.config.reload_config()
+    if "numba" in sys.modules:
+        _compiler().read_environment()
+
+
+def _compiler() -> Any:
+    """The module that imports Numba. Nothing that is loaded from disk needs it."""
+    return importlib.import_module("fastpin.kernels.compiler")

@@ -14,7 +14,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
-from fastpin.kernels.jit import blas_address
+from fastpin.kernels.extensions import blas_address
 from fastpin.kernels.threads import works_alone
 
 WORTHWHILE = 4_000_000

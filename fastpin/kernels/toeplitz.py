@@ -15,7 +15,6 @@ A column of 2 x 2 blocks is held as an array (4, m). Its rows are the entries 00
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import matmul_toeplitz
 
 from fastpin.kernels.jit import compiled
 
@@ -198,10 +197,19 @@ class NeighbourResponses:
         one, two = np.zeros((2, n, vectors.shape[1]))
         one[low : low + m], two[low : low + m] = vectors[:m], vectors[m:]
         first, second, cross = self._entries[:, :n]
-        odd = cross, -cross
-        upper = matmul_toeplitz(first, one) + matmul_toeplitz(odd, two)
-        lower = matmul_toeplitz(second, two) - matmul_toeplitz(odd, one)
+        upper = _toeplitz_product(first, first, one) + _toeplitz_product(cross, -cross, two)
+        lower = _toeplitz_product(second, second, two) - _toeplitz_product(cross, -cross, one)
         return np.concatenate([upper[self._others + low], lower[self._others + low]])
+
+
+def _toeplitz_product(column: np.ndarray, row: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """The product of a Toeplitz matrix and vectors (n, k), from its first column and its first row, by Fourier sums.
+
+    ``scipy.linalg.matmul_toeplitz`` gives the same, but importing ``scipy.linalg`` takes longer than importing NumPy.
+    """
+    around = np.concatenate([column, row[:0:-1]])
+    waves = np.fft.rfft(around)[:, np.newaxis] * np.fft.rfft(vectors, around.size, axis=0)
+    return np.fft.irfft(waves, around.size, axis=0)[: column.size]
 
 
 def _extend(out: np.ndarray, row: np.ndarray, column: np.ndarray, down: np.ndarray, on: np.ndarray) -> None:

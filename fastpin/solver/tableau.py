@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import blas
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
+from fastpin.kernels.extensions import blas
 from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun

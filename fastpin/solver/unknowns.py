@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import lapack
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
+from fastpin.kernels.extensions import lapack
 from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
 

@@ -1,4 +1,4 @@
-"""Where compiled code is kept: beside the package, else in the user's cache directory, else nowhere."""
+"""Compiled code: where it is kept, when it is used again, and that it is the same code when it is loaded."""
 
 from __future__ import annotations
 
@@ -6,63 +6,175 @@ import os
 import shutil
 import subprocess
 import sys
+from collections import namedtuple
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from fastpin.kernels import compiler, exchange, influence, jit, machine
+
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
-CODE = """
-from fastpin.kernels.influence import clausen
-assert abs(clausen(1.0) - 1.0139591323607684) < 1e-14
-print(clausen.stats.cache_path, sum(clausen.stats.cache_hits.values()))
+KERNEL = """
+from fastpin.kernels.jit import compiled
+@compiled
+def doubled(x):
+    return 2.0 * x
 """
+CODE = """
+import sys
+from fastpin.kernels.small import doubled
+assert doubled(1.5) == 3.0
+print("numba" in sys.modules)
+"""
+pytestmark = pytest.mark.skipif(jit.PLAIN, reason="nothing is compiled")
+keeps = pytest.mark.skipif(not machine.CAN_LOAD, reason="Numba keeps the code")
 
 
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
-    """A directory with a copy of the package."""
-    shutil.copytree(PACKAGE, tmp_path / "site" / "fastpin", ignore=shutil.ignore_patterns("__pycache__"))
+    """A directory with copies of the files that compile, and a small kernel."""
+    for part in ("kernels", ""):
+        folder = tmp_path / "site" / "fastpin" / part
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in (PACKAGE / part).glob("*.py*"):
+            shutil.copy(file, folder)
+    (tmp_path / "site" / "fastpin" / "kernels" / "small.py").write_text(KERNEL)
     return tmp_path / "site"
 
 
-def read_only(installed: Path) -> Path:
-    """Nobody, not even root, can make a directory where a file is."""
-    (installed / "fastpin" / "kernels" / "__pycache__").touch()
-    return installed
+def cache(installed: Path) -> Path:
+    return installed / "fastpin" / "kernels" / "__pycache__"
 
 
-def kept(installed: Path, home: Path, **more: str) -> tuple[str, int]:
-    """Where a process keeps what it compiles, and how much it found there."""
+def stored(directory: Path) -> list[str]:
+    return sorted(path.name.split("-")[0] for path in directory.glob("*.machine"))
+
+
+def compiles(installed: Path, **more: str) -> bool:
+    """Whether a process compiles the function, because it does not find it."""
     switches = {"NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "FASTPIN_CACHE", "XDG_CACHE_HOME"}
     environment = {name: value for name, value in os.environ.items() if name not in switches}
-    environment |= {"PYTHONPATH": str(installed), "HOME": str(home), **more}
+    environment |= {"PYTHONPATH": str(installed), "HOME": str(installed), **more}
     words = [sys.executable, "-c", CODE]
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=environment, cwd=installed)
     assert done.stderr == ""
-    place, hits = done.stdout.split()
-    return place, int(hits)
+    return done.stdout.split() == ["True"]
 
 
-def test_beside_the_package(installed: Path, tmp_path: Path) -> None:
-    place = str(installed / "fastpin" / "kernels" / "__pycache__")
-    assert kept(installed, tmp_path) == (place, 0)
-    assert kept(installed, tmp_path) == (place, 1)
-    assert kept(installed, tmp_path, FASTPIN_CACHE="0") == ("None", 0)
+@keeps
+def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path, tmp_path: Path) -> None:
+    assert compiles(installed)
+    assert stored(cache(installed)) == ["small.doubled"]
+    assert not compiles(installed)
+    moved = installed.rename(tmp_path / "elsewhere")
+    assert not compiles(moved)
+
+    (file,) = cache(moved).glob("*.machine")
+    content = file.read_bytes()
+    file.write_bytes(content[:-100] + bytes([content[-100] ^ 1]) + content[-99:])
+    assert compiles(moved)
+    assert file.read_bytes() == content
+
+    with (moved / "fastpin" / "kernels" / "small.py").open("a") as source:
+        source.write("# changed\n")
+    assert compiles(moved)
+    assert stored(cache(moved)) == ["small.doubled"]
+    assert not file.exists()
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="the user's cache directory is elsewhere")
-def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path, tmp_path: Path) -> None:
-    read_only(installed)
-    for found in (0, 1):
-        place, hits = kept(installed, tmp_path)
-        assert Path(place).parent == tmp_path / ".cache" / "numba"
-        assert hits == found
+@keeps
+def test_other_settings_need_other_code(installed: Path) -> None:
+    assert compiles(installed)
+    assert compiles(installed, FASTPIN_CACHE="0")
+    assert compiles(installed, NUMBA_OPT="1")
+    assert stored(cache(installed)) == ["small.doubled"] * 2
 
 
-def test_nowhere_when_nothing_can_be_written(installed: Path) -> None:
-    nowhere = Path(os.devnull) / "home"
-    assert kept(read_only(installed), nowhere) == ("None", 0)
-    assert kept(installed, nowhere, NUMBA_CACHE_DIR=str(nowhere)) == ("None", 0)
+@keeps
+def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path) -> None:
+    cache(installed).touch()  # nobody, not even root, can make a directory where a file is
+    assert compiles(installed)
+    assert stored(installed / ".cache" / "fastpin") == ["small.doubled"]
+    assert not compiles(installed)
+    chosen = installed / "chosen"
+    assert compiles(installed, NUMBA_CACHE_DIR=str(chosen))
+    assert stored(chosen) == ["small.doubled"]
+    assert compiles(installed, HOME=str(Path(os.devnull) / "home"))
+
+
+def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
+    seen, nodes = np.sort(rng.uniform(-3.0, 3.0, 30)), rng.uniform(-3.0, 3.0, 4)
+    length, out = np.full(4, 0.1), np.zeros((2, 30, 4))
+    return seen, nodes, length, length, 0.3, 2.0, influence._hat_series(length, length, 0.3), out[0], out[1]
+
+
+@keeps
+def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
+    arguments = arguments_of_columns(np.random.default_rng(1))
+    entry, code = compiler.compile_kernel(influence._columns, arguments)
+    assert code is not None
+    loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
+    entry(*arguments)
+    direct, cross = arguments[-2:]
+    expected = direct.copy(), cross.copy()
+    assert np.isfinite(expected).all()
+    assert np.ptp(expected) > 0.0
+    before = [sys.getrefcount(one) for one in arguments]
+    for _ in range(100):
+        direct[:], cross[:] = np.nan, np.nan
+        loaded(*arguments)
+    assert (np.stack([direct, cross]) == np.stack(expected)).all()
+    assert [sys.getrefcount(one) for one in arguments] == before
+
+
+def test_code_is_chosen_by_the_types_of_the_arguments() -> None:
+    Pair = namedtuple("Pair", "one two")
+    line, table = np.zeros(4), np.zeros((3, 4))
+    frozen = np.zeros(4)
+    frozen.setflags(write=False)
+    values = [
+        1, np.int64(2), 1.0, np.float64(2.0), True, np.True_, 1j, line, line[:2], line[::2], frozen, table, table.T,
+        table[:, :2], table[:, :1], table[:1], np.zeros((3, 1), order="F"), line.astype(int), line.astype(np.int8),
+        Pair(line, 1), Pair(line[::2], 1), (line, 1),
+    ]  # fmt: skip
+    kinds = [compiler.numba.typeof(value) for value in values]
+    words = [jit.signature(jit.argument_types((value,))) for value in values]
+    for one, kind in zip(words, kinds, strict=True):
+        for other, other_kind in zip(words, kinds, strict=True):
+            assert (one == other) == (kind == other_kind), (kind, other_kind)
+
+
+def test_other_types_are_left_to_the_compiler() -> None:
+    with pytest.raises(KeyError):
+        jit.argument_types((np.float32(1.0),))
+    assert influence.clausen(np.float32(1.0)) == pytest.approx(1.0139591323607684, abs=1e-7)
+
+
+def test_only_kernels_call_inner_kernels() -> None:
+    with pytest.raises(TypeError, match="_column is called by kernels only"):
+        exchange._column(np.zeros(1))
+
+
+AFTER = """
+import sys
+import numpy as np
+from fastpin.kernels import extensions, influence, jit
+blas = extensions.library("scipy.linalg._fblas")
+clausen = influence.clausen
+value = clausen(1.0)
+assert "scipy.linalg" not in sys.modules
+import numba, scipy.linalg
+assert scipy.linalg.blas.dgemm is blas.dgemm
+assert numba._dynfunc is extensions.library("numba._dynfunc")
+assert numba.njit(lambda x: clausen(x) + np.ones(3).sum())(1.0) == value + 3.0
+jit.limit_to_one_thread()
+assert numba.config.NUMBA_NUM_THREADS == 1
+"""
+
+
+def test_packages_that_are_imported_later_work() -> None:
+    assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""
 
 
 def test_modules_come_when_they_are_asked_for():

@@ -35,6 +35,7 @@ ROOT_FILES = ("errors", "version")
 
 HOMES = {
     "numba": ("kernels",),
+    "llvmlite": ("kernels",),
     "ctypes": ("kernels",),
     "matplotlib": ("figures", "paper"),
     "h5py": ("storage",),

@@ -1,0 +1,99 @@
+"""Machine code of kernels, loaded by LLVM without Numba.
+
+Numba's compiled functions need three small libraries of Numba, which are loaded from their files: one makes Python
+functions, two have helpers in C.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import platform
+import sys
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from llvmlite import binding as llvm
+
+from fastpin.kernels.extensions import folder, library
+
+CAN_LOAD = sys.platform == "linux" and platform.machine() == "x86_64"
+"""Whether machine code is loaded in this way: on the processors on which it is tested."""
+
+
+class Code(NamedTuple):
+    """The machine code of a kernel for arguments of certain types.
+
+    Attributes
+    ----------
+    machine_code : bytes
+        An object file.
+    entry, environment : str
+        Symbols of the function that Python calls, and of the pointer to Numba's environment.
+    mathematics : tuple of str
+        Functions of C that are to be Numba's own, to get the same bits.
+    """
+
+    machine_code: bytes
+    entry: str
+    environment: str
+    mathematics: tuple[str, ...]
+
+
+def load(code: Code, name: str, module: str) -> Callable[..., Any]:
+    """Load a function of a module. It does not check the types of its arguments."""
+    _name_symbols(code.mathematics)
+    engine = _engine()
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code.machine_code))
+    engine.finalize_object()
+    maker = library("numba._dynfunc")
+    home = sys.modules[module]
+    environment = maker.Environment(vars(home))
+    pointer = ctypes.c_void_p.from_address(engine.get_global_value_address(code.environment))
+    pointer.value = id(environment)
+    # The function keeps environment and engine alive.
+    made: Callable[..., Any] = maker.make_function(
+        home, name, "", engine.get_function_address(code.entry), environment, (engine,)
+    )
+    return made
+
+
+def target() -> tuple[str, str, str]:
+    """The kind of machine, the processor and its features: code for another one may not run here."""
+    return llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+
+
+def compiler_versions() -> tuple[str, ...]:
+    """The files with the versions of Numba and LLVM. Code belongs to both."""
+    return tuple((folder(name) / "_version.py").read_text(encoding="utf-8") for name in ("numba", "llvmlite"))
+
+
+@functools.cache
+def helpers() -> dict[str, int]:
+    """Names and addresses of the helpers of compiled code, as Numba names them."""
+    memory = library("numba.core.runtime._nrt_python")
+    memory.memsys_use_cpython_allocator()
+    found = {f"numba_{name}": address for name, address in library("numba._helperlib").c_helpers.items()}
+    found |= {name if name.startswith("_") else f"NRT_{name}": address for name, address in memory.c_helpers.items()}
+    return found
+
+
+@functools.cache
+def _name_symbols(mathematics: tuple[str, ...]) -> None:
+    """Tell LLVM the addresses of the helpers and of Numba's mathematical maker."""
+    known = helpers()
+    for name, address in known.items():
+        llvm.add_symbol(name, address)
+    for name in mathematics:
+        llvm.add_symbol(name, known[f"numba_{name}"])
+
+
+def _engine() -> Any:
+    """A new engine. Each function has its own: names of one may not meet names of another."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    triple, processor, features = target()
+    machine = llvm.Target.from_triple(triple).create_target_machine(
+        cpu=processor, features=features, opt=3, reloc="static", codemodel="jitdefault", jit=True
+    )
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(f'target triple = "{triple}"'), machine)

@@ -1,0 +1,107 @@
+"""Machine code of kernels on disk: beside the package, else in the user's cache directory, else nowhere.
+
+A file holds one kernel for one combination of types. It holds all that the code depends on, too: the text of the
+kernel's file, the types, the settings, and the versions of Python, NumPy, Numba, LLVM and the processor. A file that
+does not agree is not used. The folder may be moved or copied. ``NUMBA_CACHE_DIR`` chooses another directory.
+"""
+
+from __future__ import annotations
+
+import functools
+import marshal
+import os
+import sys
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin.kernels import machine, status
+from fastpin.kernels.jit import SETTINGS, Kernel
+
+SUFFIX = ".machine"
+
+UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
+"""Settings of Numba that do not change the code. All others belong to the code."""
+
+
+class Place:
+    """The files of a kernel for arguments of some types."""
+
+    def __init__(self, kernel: Kernel, signature: str) -> None:
+        function = kernel.py_func
+        self.source = function.__code__.co_filename
+        texts = tuple(Path(file).read_bytes() for file in (self.source, status.__file__))
+        rest = (signature, repr(SETTINGS), *_environment())
+        self.key = (texts, rest)
+        self.name, self.module = function.__qualname__, function.__module__
+        self.stem = f"{Path(self.source).stem}.{self.name}-{zlib.crc32(repr(rest).encode()):08x}-"
+        self.file = f"{self.stem}{zlib.crc32(b''.join(texts)):08x}{SUFFIX}"
+
+    def load(self) -> Callable[..., Any] | None:
+        """The function from the first file that agrees; None if there is none."""
+        for directory in self._directories():
+            try:
+                content = (directory / self.file).read_bytes()
+            except OSError:
+                continue
+            body = content[4:]
+            if zlib.crc32(body).to_bytes(4, "little") != content[:4]:
+                continue
+            key, code = marshal.loads(body)
+            if key == self.key:
+                return machine.load(machine.Code(*code), self.name, self.module)
+        return None
+
+    def save(self, code: machine.Code) -> None:
+        """Write the machine code to the first directory that can be written, whole or not at all."""
+        body = marshal.dumps((self.key, tuple(code)))
+        for directory in self._directories():
+            try:
+                directory.mkdir(parents=True, exist_ok=True)
+                part = directory / f"{self.file}.{os.getpid()}.part"
+                part.write_bytes(zlib.crc32(body).to_bytes(4, "little") + body)
+                part.replace(directory / self.file)
+            except OSError:
+                continue
+            if directory == self._beside():
+                self._forget_older(directory)
+            return
+
+    def _forget_older(self, directory: Path) -> None:
+        """Delete the code of earlier texts of the file."""
+        for path in directory.glob(f"{self.stem}*{SUFFIX}"):
+            if path.name != self.file:
+                path.unlink(missing_ok=True)
+
+    def _beside(self) -> Path:
+        return Path(self.source).parent / "__pycache__"
+
+    def _directories(self) -> Iterator[Path]:
+        chosen = os.environ.get("NUMBA_CACHE_DIR")
+        if chosen:
+            yield Path(chosen)
+            return
+        yield self._beside()
+        home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
+        yield Path(home) / "fastpin"
+
+
+def place_of(kernel: Kernel, signature: str) -> Place | None:
+    """The place of a kernel's code; None if code can't be loaded, or its text is not in a file."""
+    if not machine.CAN_LOAD:
+        return None
+    try:
+        return Place(kernel, signature)
+    except (OSError, ImportError):
+        return None
+
+
+@functools.cache
+def _environment() -> tuple[str, ...]:
+    """Versions, the processor, and settings of Numba on which machine code depends."""
+    settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
+    chosen = [text for text in settings if text.partition("=")[0] not in UNRELATED]
+    return (sys.version, np.__version__, *machine.compiler_versions(), *machine.target(), *chosen)
