@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from fastpin import casefile, elasticity, figures
-from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_OK, check_outputs, write_files, write_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.version import __version__
@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
     found = casefile.read_lug(options.lug)
     drawn = write_files([(options.plot, lambda path: figures.plot_lug(found.lug, path, found.title))])
     made_by = f"fastpin {__version__}, {found.title or options.lug.name}"
-    with bar(1, "compliance") as progress_bar:
+    with Bar(1, "compliance") as progress_bar:
         try:
             result = elasticity.plate_compliance(found.lug, found.harmonics, progress_to(progress_bar), made_by)
         except InputError as error:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from fastpin import casefile, figures, report, studies
-from fastpin.cli.progress import bar
+from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -31,10 +31,10 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs, options.case)
     code, trouble = EXIT_OK, ""
-    with bar(1, "{desc}") as progress_bar:
+    with Bar(1, "{desc}") as progress_bar:
 
         def progress(done: float, total: float, what: str) -> None:
-            progress_bar.set_description_str(what, refresh=False)
+            progress_bar.describe(what)
             progress_bar.total = total
             progress_bar.update(done - progress_bar.n)
 

@@ -6,7 +6,7 @@ import argparse
 import sys
 import time
 
-from fastpin.cli.progress import bar
+from fastpin.cli.progress import Bar
 from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, fail
 from fastpin.errors import InputError
 from fastpin.paper import catalog
@@ -23,10 +23,10 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(option, error.reason) from None
     finished: list[str] = []
     try:
-        with bar(len(names), "figure {desc}") as progress_bar:
+        with Bar(len(names), "figure {desc}") as progress_bar:
             for name in names:
                 began = time.perf_counter()
-                progress_bar.set_description_str(name, refresh=False)
+                progress_bar.describe(name)
 
                 def progress(part: float) -> None:
                     progress_bar.update(len(finished) + part - progress_bar.n)

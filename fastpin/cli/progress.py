@@ -3,28 +3,76 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable
-from typing import Any
+from types import TracebackType
+from typing import Any, TextIO
+
+DELAY = 2.0
+"""Seconds after which a bar appears. Most runs are finished before: then tqdm, which takes 60 ms, is not imported."""
 
 
-def bar(total: int, text: str) -> Any:
-    """Return a progress bar of `total` units. It appears on standard error after two seconds, on terminals only.
+class Bar:
+    """A progress bar of `total` units. It appears on standard error after two seconds, on terminals only.
 
     `text` is a format with the fields of tqdm, such as ``{n} of {total}``.
+
+    Attributes
+    ----------
+    n, total : float
+        Units done, and all units.
     """
-    from tqdm import tqdm
 
-    return tqdm(
-        total=total,
-        delay=2,
-        disable=None,
-        leave=False,
-        file=sys.stderr,
-        bar_format=f"{{percentage:3.0f}}% |{{bar}}| {text}, {{remaining}} left",
-    )
+    def __init__(self, total: float, text: str) -> None:
+        self.n: float = 0
+        self.total = total
+        self._text = text
+        self._description = ""
+        self._begin = time.time()
+        self._shown: Any = None
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._shown is not None:
+            self._shown.close()
+
+    def update(self, more: float) -> None:
+        """Move the bar by `more` units."""
+        self.n += more
+        if self._shown is None and time.time() > self._begin + DELAY and sys.stderr.isatty():
+            self._show()
+        if self._shown is not None:
+            self._shown.total = self.total
+            self._shown.update(self.n - self._shown.n)
+
+    def describe(self, what: str) -> None:
+        """Change ``{desc}`` in the text."""
+        self._description = what
+        if self._shown is not None:
+            self._shown.set_description_str(what, refresh=False)
+
+    def write(self, line: str, file: TextIO) -> None:
+        """Print a line above the bar."""
+        if self._shown is None:
+            print(line, file=file)
+        else:
+            self._shown.write(line, file=file)
+
+    def _show(self) -> None:
+        from tqdm import tqdm
+
+        form = f"{{percentage:3.0f}}% |{{bar}}| {self._text}, {{remaining}} left"
+        self._shown = tqdm(
+            total=self.total, desc=self._description, leave=False, file=sys.stderr, bar_format=form
+        )  # fmt: skip
+        self._shown.start_t = self._begin  # the time that remains follows from all of the time before
 
 
-def progress_to(progress_bar: Any) -> Callable[[float, float], None]:
+def progress_to(progress_bar: Bar) -> Callable[[float, float], None]:
     """Return a callable ``progress(done, total)`` that moves a bar."""
 
     def progress(done: float, total: float) -> None:

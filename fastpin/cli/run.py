@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fastpin import casefile, figures, report, solver, storage
 from fastpin.cli.options import literal
-from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
-    with bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
+    with Bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
@@ -83,7 +83,7 @@ def resume(options: argparse.Namespace) -> int:
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
-    with bar(len(case.history), PROGRESS) as progress_bar:
+    with Bar(len(case.history), PROGRESS) as progress_bar:
         ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
     return _write_stored(case, options, ended)
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from fastpin import figures, report, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
-from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail
 from fastpin.errors import InputError
 from fastpin.storage.files import check_writable
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
 def _run(
     options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
 ) -> studies.sweep.Summary:
-    with _executor(options.dask) as executor, bar(len(plan.points), "run {n} of {total}") as progress_bar:
+    with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
         try:
             return studies.sweep.run(plan, directory, executor, options.workers, options.retry, shard, progress)

@@ -9,7 +9,7 @@ import sys
 import time
 
 from fastpin import report, storage, verification
-from fastpin.cli.progress import bar, progress_to
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_files, write_text
 from fastpin.kernels.threads import cores
 from fastpin.version import __version__
@@ -19,7 +19,7 @@ def run(options: argparse.Namespace) -> int:
     """Check the installation, and print or write the checks. The exit code is 1 if a check fails."""
     check_outputs({"--json": options.json}, None)
     began = time.perf_counter()
-    with bar(0, "check {n} of {total}") as progress_bar:
+    with Bar(0, "check {n} of {total}") as progress_bar:
         checks = verification.verify(progress_to(progress_bar))
     seconds = time.perf_counter() - began
     count = sum(check.passed for check in checks)

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels import machine, status
+from fastpin.kernels import machine
 from fastpin.kernels.jit import SETTINGS, Kernel
 
 SUFFIX = ".machine"
@@ -33,7 +33,7 @@ class Place:
     def __init__(self, kernel: Kernel, signature: str) -> None:
         function = kernel.py_func
         self.source = function.__code__.co_filename
-        texts = tuple(Path(file).read_bytes() for file in (self.source, status.__file__))
+        texts = tuple(Path(file).read_bytes() for file in (self.source, Path(__file__).with_name("status.py")))
         rest = (signature, repr(SETTINGS), *_environment())
         self.key = (texts, rest)
         self.name, self.module = function.__qualname__, function.__module__

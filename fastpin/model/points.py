@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.model.bodies import Ring, Tube
 from fastpin.model.checks import numbers
 from fastpin.model.compliance import Compliance
 from fastpin.model.problem import Problem
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 Body = Literal["plate", "pin"]
 

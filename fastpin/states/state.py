@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin import states
 from fastpin.kernels.status import OPEN, STICK
@@ -21,7 +20,10 @@ from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
 from fastpin.states.zones import Interval, runs
 
-if TYPE_CHECKING:  # these modules import compiled code, and are loaded when a stress is asked for
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
     from fastpin.states.bush import BushFit
     from fastpin.states.stress import HoopPeak, Stress
