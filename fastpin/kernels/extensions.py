@@ -1,7 +1,7 @@
-"""Extension modules of SciPy and Numba, loaded from their files.
+"""Parts of SciPy and Numba without the rest: extension modules loaded from their files, and modules for later.
 
-Importing them by name would import the packages around them, which takes several times as long as NumPy: Numba 0.2 s,
-``scipy.linalg`` 0.1 s. A package that is imported later uses the same module.
+Importing extension modules by name would import the packages around them, which takes several times as long as NumPy:
+Numba 0.2 s, ``scipy.linalg`` 0.1 s. A package that is imported later uses the same modules.
 """
 
 from __future__ import annotations
@@ -15,6 +15,16 @@ import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+
+
+class Later:
+    """A module that is imported when it is first used."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, attribute: str) -> Any:
+        return getattr(importlib.import_module(self._name), attribute)
 
 
 @functools.cache
@@ -43,6 +53,9 @@ def library(name: str) -> ModuleType:
     found.loader.exec_module(module)
     return module
 
+
+optimize = Later("scipy.optimize")
+"""Minima and roots, which few problems need."""
 
 blas, lapack = library("scipy.linalg._fblas"), library("scipy.linalg._flapack")
 """The routines of ``scipy.linalg.blas`` and ``scipy.linalg.lapack``."""

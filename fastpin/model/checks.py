@@ -9,7 +9,6 @@ import contextlib
 import difflib
 import math
 import os
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -207,10 +206,9 @@ def _as_toml(value: object, depth: int) -> str:
 
 def _as_float(value: Any) -> float | None:
     """A number as a float, infinite if it is too large; None for anything else."""
-    no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping)
+    no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping, np.ma.MaskedArray)
     kind = getattr(getattr(value, "dtype", None), "kind", "f")
-    masked = getattr(sys.modules.get("numpy.ma"), "MaskedArray", ())  # not imported: nothing is masked
-    if isinstance(value, (no_number, masked)) or kind not in _NUMBER_KINDS or bool(getattr(value, "ndim", False)):
+    if isinstance(value, no_number) or kind not in _NUMBER_KINDS or bool(getattr(value, "ndim", False)):
         return None
     try:
         return float(value)

@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-import scipy
 
 from fastpin.elasticity.drive import DISPLACEMENTS, FORCES, SIGNS
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import LoadTerms
+from fastpin.kernels.extensions import optimize
 from fastpin.model.loads import UX, UY, M, P, Q
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
@@ -118,11 +118,11 @@ def _last_crossing(room: Callable[[float], float]) -> float:
     """
     first = 0.0
     if room(0.0) <= 0.0:
-        widest = scipy.optimize.minimize_scalar(lambda fraction: -room(fraction), bounds=(0.0, 1.0), method="bounded")
+        widest = optimize.minimize_scalar(lambda fraction: -room(fraction), bounds=(0.0, 1.0), method="bounded")
         first = float(widest.x)
         if room(first) <= 0.0:
             return 0.0
-    return float(scipy.optimize.brentq(room, first, 1.0, xtol=1e-15, rtol=1e-14))
+    return float(optimize.brentq(room, first, 1.0, xtol=1e-15, rtol=1e-14))
 
 
 def _room(system: System, load: np.ndarray) -> tuple[float, np.ndarray]:
@@ -148,7 +148,7 @@ def _widest_place(system: System, load: np.ndarray, position: np.ndarray, axis: 
         return -_narrowest(system, load, moved)[0]
 
     size = float(np.abs(hole_gap(system, load, np.linspace(0.0, 2.0 * math.pi, 73))[0]).max())
-    found = scipy.optimize.minimize_scalar(
+    found = optimize.minimize_scalar(
         tightness, bounds=(-2.0 * size, 2.0 * size), method="bounded", options={"xatol": 1e-12 * max(size, 1e-300)}
     )
     return float(found.x)
@@ -168,7 +168,7 @@ def _pushed_position(system: System, load: np.ndarray, axis: int, side: float) -
     longest = 4.0 * float(np.abs(hole_gap(system, load, np.linspace(0.0, 2.0 * math.pi, 73))[0]).max())
     longest += 4.0 * float(np.abs(position).max())
     if room > 0.0 and longest > 0.0:
-        position[axis] = widest + side * float(scipy.optimize.brentq(left, 0.0, longest, xtol=1e-300, rtol=1e-14))
+        position[axis] = widest + side * float(optimize.brentq(left, 0.0, longest, xtol=1e-300, rtol=1e-14))
     else:
         position[axis] = widest
     return position

@@ -6,10 +6,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import scipy
 
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
+from fastpin.kernels.extensions import optimize
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
 from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
@@ -250,9 +250,7 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
         rest_gap = 2.0 * system.rest_clearance * np.sin(half) ** 2 + system.translation[: system.grid.size] @ shift
         return system.rest_clearance * np.array([cos, sin]) + shift, rest_gap
     # The oval hole is tighter than the pin: the pin touches at two points.
-    optimum = scipy.optimize.linprog(
-        [-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None)
-    )
+    optimum = optimize.linprog([-cos, -sin], np.column_stack([np.cos(fine), np.sin(fine)]), values, bounds=(None, None))
     if not optimum.success:
         raise NoEquilibriumError("the remote stress closes the hole on the pin before the pin is loaded")
     return optimum.x, system.rest_clearance + system.translation[: system.grid.size] @ optimum.x
@@ -281,9 +279,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
     first, last = hole_gap(system, before, theta)[0], hole_gap(system, after, theta)[0]
     size = max(float(np.abs(first).max()), float(np.abs(last).max()), 1e-300)
     rows = np.column_stack([first - last, np.cos(theta), np.sin(theta)]) / size
-    optimum = scipy.optimize.linprog(
-        [-1.0, 0.0, 0.0], rows, first / size, bounds=[(0.0, 1.0), (None, None), (None, None)]
-    )
+    optimum = optimize.linprog([-1.0, 0.0, 0.0], rows, first / size, bounds=[(0.0, 1.0), (None, None), (None, None)])
     if not optimum.success:  # the hole is too narrow already
         return 0.0, np.zeros(2), _lowest_places(system, first[: system.grid.size])
     if optimum.x[0] >= 1.0:
