@@ -15,10 +15,12 @@ import pytest
 Timed = Callable[..., Any]
 COMMANDS = {
     "bare Python": ["-c", "pass"],
+    "import numpy": ["-c", "import numpy"],
     "import of the libraries": ["-c", "import numpy, scipy.linalg, numba"],
     "import fastpin": ["-c", "import fastpin"],
     "fastpin --help": ["-m", "fastpin", "--help"],
     "fastpin run": ["-m", "fastpin", "run"],
+    "fastpin run --plot": ["-m", "fastpin", "run", "--plot", "figure.png"],
 }
 ROUNDS = 5
 

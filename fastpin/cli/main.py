@@ -67,3 +67,5 @@ def _log(verbose: int) -> None:
     logger = logging.getLogger("fastpin")
     logger.handlers = [handler]
     logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbose, 2)])
+    # Compiling takes some seconds. A user at a terminal is told.
+    logging.getLogger("fastpin.compiler").setLevel(logging.INFO if sys.stderr.isatty() else logging.NOTSET)

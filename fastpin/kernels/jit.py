@@ -88,7 +88,7 @@ class Kernel:
                     place = importlib.import_module("fastpin.kernels.stored").place_of(self, signature(types))
                 entry: Any = place and place.load()
                 if entry is None:
-                    logger.info("compiling %s, once; the solver takes some seconds", self.py_func.__qualname__)
+                    _announce()
                     entry, code = _compiler().compile_kernel(self, arguments)
                     if place and code is not None:
                         place.save(code)
@@ -142,6 +142,12 @@ def signature(types: tuple[Any, ...]) -> str:
         else:
             words.append(one)
     return ", ".join(words)
+
+
+@functools.cache
+def _announce() -> None:
+    """Say once why the first call takes long."""
+    logger.info("compiling the solver; this takes some seconds%s", ", once" if CACHED else "")
 
 
 def limit_to_one_thread() -> None:

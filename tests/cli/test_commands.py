@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import logging
 import os
 import re
 import runpy
@@ -23,6 +24,7 @@ import fastpin
 from fastpin import figures, solver
 from fastpin.casefile.reader import EXAMPLE, builtin_case
 from fastpin.cli.main import main
+from fastpin.kernels import jit, machine
 from fastpin.paper import catalog
 from fastpin.solver import solving
 from fastpin.solver.errors import NoEquilibriumError
@@ -150,6 +152,36 @@ def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], needed: 
         [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True, cwd=ROOT
     )
     assert done.stdout.splitlines()[-1] == str(needed)
+
+
+HEAVY = (
+    "numba", "scipy", "scipy.linalg", "scipy.special", "scipy.fft", "tqdm", "matplotlib", "h5py", "multiprocessing",
+    "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
+)  # fmt: skip
+"""Modules that take long to import. Nothing that is loaded from disk needs them."""
+
+
+@pytest.mark.skipif(jit.PLAIN or not jit.CACHED or not machine.CAN_LOAD, reason="a run needs the compiler")
+def test_a_second_run_imports_neither_compiler_nor_large_packages() -> None:
+    code = (
+        "import sys\nfrom fastpin.cli.main import main\n"
+        f"main(['run'])\nprint([name for name in {HEAVY} if name in sys.modules])"
+    )
+    for _ in range(2):  # the first one may have to compile
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+        if done.stdout.splitlines()[-1] == "[]":
+            break
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_user_at_a_terminal_reads_why_the_first_run_takes_long(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal, raising=False)
+    assert main(["example"]) == 0
+    logging.getLogger("fastpin.compiler").info("compiling the solver")
+    assert capsys.readouterr().err == "fastpin: compiling the solver\n" * terminal
 
 
 def test_public_names_are_imported_when_they_are_asked_for() -> None:

@@ -151,6 +151,15 @@ def test_other_types_are_left_to_the_compiler() -> None:
     assert influence.clausen(np.float32(1.0)) == pytest.approx(1.0139591323607684, abs=1e-7)
 
 
+def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(jit, "CACHED", False)
+    jit._announce.cache_clear()
+    kernel = jit.compiled(lambda x: x + x)
+    with caplog.at_level("INFO", "fastpin.compiler"):
+        assert (kernel(1), kernel(1.5), kernel(2)) == (2, 3.0, 4)
+    assert [record.message for record in caplog.records] == ["compiling the solver; this takes some seconds"]
+
+
 def test_only_kernels_call_inner_kernels() -> None:
     with pytest.raises(TypeError, match="_column is called by kernels only"):
         exchange._column(np.zeros(1))

@@ -78,20 +78,22 @@ def test_scripts_can_be_run_and_parsed(name: str) -> None:
 def test_environment_is_made_once_and_again_when_the_dependencies_change(project: Path) -> None:
     first = run(project, "run", "case.toml", "--nodes", "9")
     assert first.returncode == 0, first.stderr
-    assert log(project) == ["venv", f"pip {project}", "/> -P -m fastpin run case.toml --nodes 9"]
+    compiled = "/> -P -m fastpin run"
+    assert log(project) == ["venv", f"pip {project}", compiled, "/> -P -m fastpin run case.toml --nodes 9"]
     assert run(project, "run", "case.toml").stderr == ""
     assert log(project) == ["/> -P -m fastpin run case.toml"]
     with (project / "pyproject.toml").open("a") as file:
         file.write("\n# changed\n")
     run(project, "run", "case.toml")
-    assert log(project)[:-1] == [f"pip {project}"]
+    assert log(project)[:-1] == [f"pip {project}", compiled]
 
 
 def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> None:
     run(project, "run", "x")
     log(project)
     assert run(project, "test", "-k", "a b").returncode == 0
-    assert log(project) == [f"pip {project}[dev]", f"{project}> -m pytest -n auto -m not slow -k a b"]
+    tests = f"{project}> -m pytest -n auto -m not slow -k a b"
+    assert log(project) == [f"pip {project}[dev]", "/> -P -m fastpin run", tests]
     run(project, "run", "x")
     assert log(project) == ["/> -P -m fastpin run x"]
 
