@@ -175,7 +175,8 @@ value = clausen(1.0)
 assert "scipy.linalg" not in sys.modules
 import numba, scipy.linalg
 assert scipy.linalg.blas.dgemm is blas.dgemm
-assert numba._dynfunc is extensions.library("numba._dynfunc")
+from numba import _dynfunc
+assert _dynfunc is extensions.library("numba._dynfunc")
 assert numba.njit(lambda x: clausen(x) + np.ones(3).sum())(1.0) == value + 3.0
 jit.limit_to_one_thread()
 assert numba.config.NUMBA_NUM_THREADS == 1
