@@ -35,13 +35,16 @@ COMMANDS = {
 COLD = "fastpin run, nothing compiled"
 UNIT = "import numpy"
 
+CHANGING = ("PYTHONPATH", "PYTHONDONTWRITEBYTECODE")
+"""Variables that the processes do not get: another package, and Python's own compiled files left unwritten."""
+
 Times = tuple[float, float]
 """Processor time and wall time of a process, s."""
 
 
 def measure(checkout: Path, arguments: list[str], folder: Path, cache: Path | None = None) -> Times:
     """Run a process of a checkout from an empty folder. `cache` is a folder for its compiled code."""
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    environment = {name: value for name, value in os.environ.items() if name not in CHANGING}
     if cache is not None:
         environment["NUMBA_CACHE_DIR"] = str(cache)
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()

@@ -3,7 +3,7 @@
 #   prepare KIND      KIND is "run", or "dev" for the tools of development too; $python is then the interpreter
 #
 # The environment is made when it is missing. It is installed again when pyproject.toml has changed, or the
-# directory has moved. The built-in case is then solved once, which compiles the solver. PYTHON chooses the interpreter that makes it.
+# directory has moved. The package is then compiled: Python's files, and the solver by solving the built-in case. PYTHON chooses the interpreter that makes it.
 
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
 environment=$root/.venv
@@ -91,6 +91,7 @@ prepare() {
         # An installation without the tools of development leaves the stamp of the tools as it is.
         if [[ $kind == dev ]]; then printf '%s\n' "$stamp" >"$environment/fastpin-dev.stamp"; fi
         say "compiling the solver; this takes some ten seconds"
+        "$python" -m compileall -q "$root/fastpin" >/dev/null 2>&1 || true
         "$python" -P -m fastpin run >/dev/null 2>&1 || true # if it fails, the command that follows says why
     fi
     exec 9<&-

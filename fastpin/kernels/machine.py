@@ -58,6 +58,7 @@ def load(code: Code, name: str, module: str) -> Callable[..., Any]:
     return made
 
 
+@functools.cache
 def target() -> tuple[str, str, str]:
     """The kind of machine, the processor and its features: code for another one may not run here."""
     return llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
