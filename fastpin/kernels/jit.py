@@ -18,6 +18,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy import ndarray
 
 CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
 """Whether compiled code is stored on disk."""
@@ -120,12 +121,14 @@ def argument_types(values: tuple[Any, ...]) -> tuple[Any, ...]:
     found: list[Any] = []
     for value in values:
         kind = type(value)
-        if kind is np.ndarray:
+        if kind is ndarray:
             found += value.dtype, value.ndim, value.flags.num & LAYOUT
+        elif kind in SCALARS:
+            found.append(SCALARS[kind])
         elif issubclass(kind, tuple):
             found += kind, argument_types(value)
         else:
-            found.append(SCALARS[kind])
+            raise KeyError(kind)
     return tuple(found)
 
 

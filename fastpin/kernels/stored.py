@@ -7,6 +7,7 @@ does not agree is not used. The folder may be moved or copied. ``NUMBA_CACHE_DIR
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import marshal
 import os
@@ -85,8 +86,8 @@ class Place:
             yield Path(chosen)
             return
         yield self._beside()
-        home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
-        yield Path(home) / "fastpin"
+        with contextlib.suppress(RuntimeError):  # the user has no home
+            yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fastpin"
 
 
 def place_of(kernel: Kernel, signature: str) -> Place | None:
