@@ -14,7 +14,7 @@ import numba
 from numba.core import intrinsics, types
 
 from fastpin.kernels.jit import CACHED, SETTINGS, Kernel
-from fastpin.kernels.machine import CAN_LOAD, Code, helpers
+from fastpin.kernels.machine import CAN_LOAD, Code, helpers, load
 
 
 @functools.cache
@@ -66,12 +66,17 @@ def _machine_code(result: Any) -> Code | None:
     ]
     if unknown or library.has_dynamic_globals or result.environment.consts or result.reload_init:
         return None
-    return Code(
+    code = Code(
         library._get_compiled_object(),
         description.llvm_cpython_wrapper_name,
         description.env_name,
         tuple(sorted(intrinsics.INTR_MATH)),
     )
+    try:
+        load(code, description.qualname, description.modname)
+    except Exception:  # these parts of Numba may change with any version: then every process compiles
+        return None
+    return code
 
 
 def read_environment() -> None:

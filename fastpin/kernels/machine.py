@@ -81,7 +81,7 @@ def helpers() -> dict[str, int]:
 
 @functools.cache
 def _name_symbols(mathematics: tuple[str, ...]) -> None:
-    """Tell LLVM the addresses of the helpers and of Numba's mathematical maker."""
+    """Tell LLVM the addresses of the helpers and of Numba's mathematical functions."""
     known = helpers()
     for name, address in known.items():
         llvm.add_symbol(name, address)

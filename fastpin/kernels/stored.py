@@ -96,7 +96,7 @@ def place_of(kernel: Kernel, signature: str) -> Place | None:
         return None
     try:
         return Place(kernel, signature)
-    except (OSError, ImportError):
+    except (OSError, ImportError, RuntimeError):  # RuntimeError: LLVM does not know the processor
         return None
 
 

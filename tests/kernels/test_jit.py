@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
+import inspect
 import os
 import shutil
 import subprocess
@@ -15,6 +18,7 @@ import pytest
 from fastpin.kernels import compiler, exchange, influence, jit, machine
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
+STATUS = "fastpin.kernels.status"
 KERNEL = """
 from fastpin.kernels.jit import compiled
 @compiled
@@ -126,6 +130,18 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
         loaded(*arguments)
     assert (np.stack([direct, cross]) == np.stack(expected)).all()
     assert [sys.getrefcount(one) for one in arguments] == before
+
+
+@pytest.mark.parametrize("file", sorted(path.stem for path in (PACKAGE / "kernels").glob("[a-z]*.py")))
+def test_code_depends_on_the_files_that_are_stored_with_it(file: str) -> None:
+    """Stored code is compared with the text of its own file and of status.py only."""
+    module = importlib.import_module(f"fastpin.kernels.{file}")
+    imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
+    others = [node for node in imports if str(node.module).startswith("fastpin") and node.module != STATUS]
+    foreign = {alias.asname or alias.name for node in others for alias in node.names}
+    for kernel in vars(module).values():
+        if isinstance(kernel, jit.Kernel):
+            assert not foreign & set(kernel.py_func.__code__.co_names), kernel
 
 
 def test_code_is_chosen_by_the_types_of_the_arguments() -> None:
