@@ -14,12 +14,12 @@ from typing import ClassVar, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange, toeplitz
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
+from fastpin.kernels.extensions import blas, lapack
 from fastpin.kernels.status import OPEN
 from fastpin.solver.tableau import TableauMemory, expected_ties
 
