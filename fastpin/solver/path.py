@@ -20,13 +20,13 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.configuration import (
     Configuration,
     Solution,
-    solve_statuses,
+    solve_unknowns,
 )
 from fastpin.solver.driven import load_terms
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
 from fastpin.solver.tableau import Columns, TableauMemory
-from fastpin.solver.unknowns import DenseUnknowns, StickingRun, solvable_unknowns
+from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 MOST_REBUILDS = 400
 """Rebuilds of the tableau in one piece of a step, and once more for each settling by Lemke's method, at most."""
@@ -245,7 +245,7 @@ class PathStep:
         None if the load has not turned, or if the closed nodes are no :class:`StickingRun`.
         """
         status = self.now.status
-        unknowns = StickingRun.of(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
+        unknowns = self._memory.unknowns.sticking(self.system, np.where(status == OPEN, OPEN, STICK).astype(np.int8))
         if unknowns is None:
             return None
         rates = unknowns.rates(self.rate)
@@ -325,14 +325,14 @@ class PathStep:
         self.rebuilds += 1
         if self.rebuilds > MOST_REBUILDS * (1 + self.resettled):
             raise StepLostError(exchange.CYCLING, self.fraction)
-        unknowns, queue = solvable_unknowns(self.system, self.now.status), self._queue
+        unknowns, queue = self._memory.unknowns.solvable(self.system, self.now.status), self._queue
         if unknowns is None and all_at_once:
             # After the change all at once nothing holds the pin: change one by one instead.
             changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
             self._all_at_once = 2 * self.now.status.size
             queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
-            unknowns = solvable_unknowns(self.system, self.now.status)
+            unknowns = self._memory.unknowns.solvable(self.system, self.now.status)
         if unknowns is None:
             raise StepLostError(exchange.NO_SUPPORT, self.fraction)
         self._begin(unknowns)
@@ -383,7 +383,9 @@ class PathStep:
     def _mend(self) -> None:
         """Compute the present configuration anew, by a factorisation, and rebuild the tableau."""
         self._book()
-        self._take(recompute(self.system, self.now))
+        exact = self._exact_solution()
+        if exact is not None:
+            self._take(_snap_to_bounds(self.system, self.now, exact))
         self._rebuild()
 
     def _take(self, better: Configuration) -> None:
@@ -422,22 +424,16 @@ class PathStep:
             shear[slipping] = -system.friction * now.status[slipping] * pressure[slipping]
             motion += change[2 * n :]
         if not error <= MOST_ERROR:
-            exact = solve_statuses(system, now.status, now.slip, now.load, now.rest_gap)
+            exact = self._exact_solution()
             if exact is not None:
                 self.rebuilds += 1
                 return exact
         return Solution(pressure, shear, true[:n], true[n:], motion)
 
-
-def recompute(system: System, configuration: Configuration) -> Configuration:
-    """Compute tractions, gap and slip anew from the statuses, held slip and load of a configuration.
-
-    Returns a new configuration. It is a plain copy if the closed nodes can't hold the pin.
-    """
-    solution = solve_statuses(
-        system, configuration.status, configuration.slip, configuration.load, configuration.rest_gap
-    )
-    return configuration.copy() if solution is None else _snap_to_bounds(system, configuration, solution)
+    def _exact_solution(self) -> Solution | None:
+        """The solution of the present statuses, by a factorisation; None if the closed nodes can't hold the pin."""
+        now, unknowns = self.now, self._memory.unknowns.dense(self.system, self.now.status)
+        return None if unknowns is None else solve_unknowns(self.system, unknowns, now.slip, now.load, now.rest_gap)
 
 
 def _snap_to_bounds(system: System, configuration: Configuration, solution: Solution) -> Configuration:

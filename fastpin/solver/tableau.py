@@ -13,7 +13,7 @@ from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.extensions import blas
 from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.unknowns import DenseUnknowns, StickingRun
+from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 
 ROOM = 2
 """Updates per node for which there is room. With more updates the tableau is rebuilt."""
@@ -30,12 +30,15 @@ class TableauMemory:
     ----------
     matrix : ndarray, shape (2 nodes + 3, 2 nodes)
     left : ndarray, shape (2 nodes + 3, updates)
+    unknowns : LatestUnknowns
+        The linear systems of the latest statuses.
     """
 
     def __init__(self, nodes: int) -> None:
         updates = ROOM * nodes + CHUNK
         self.matrix = np.empty((2 * nodes + 3, 2 * nodes), order="F")  # columns that are never needed take no memory
         self.left = np.empty((2 * nodes + 3, updates), order="F")
+        self.unknowns = LatestUnknowns()
 
 
 class Columns:

@@ -176,9 +176,9 @@ class StickingRun(Unknowns):
             self._small = np.linalg.inv(complement)
             self.singular = not self._probe() < MOST_RESIDUAL
 
-    @classmethod
-    def of(cls, system: System, status: np.ndarray) -> StickingRun | None:
-        """The unknowns of given statuses; None if statuses or grid do not allow the fast inverse.
+    @staticmethod
+    def is_for(system: System, status: np.ndarray) -> bool:
+        """Whether statuses and grid allow the fast inverse.
 
         It takes friction, a uniform grid, and at least :data:`LEAST_NEIGHBOURS` closed nodes. They must lie side by
         side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open. Under a
@@ -186,11 +186,16 @@ class StickingRun(Unknowns):
         """
         closed, n = np.flatnonzero(status != OPEN), system.grid.size
         if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
-            return None
+            return False
         if not system.is_toeplitz or system.friction == 0.0:
-            return None
+            return False
         low, last = closed[0], closed[-1]
-        if last - low + 1 != closed.size or (not system.grid.closed and (low == 0 or last == n - 1)):
+        return bool(last - low + 1 == closed.size and (system.grid.closed or (low > 0 and last < n - 1)))
+
+    @classmethod
+    def of(cls, system: System, status: np.ndarray) -> StickingRun | None:
+        """The unknowns of given statuses; None if :meth:`is_for` says no, or if they are ``singular``."""
+        if not cls.is_for(system, status):
             return None
         unknowns = cls(system, status)
         return None if unknowns.singular else unknowns
@@ -258,10 +263,37 @@ class StickingRun(Unknowns):
         return float(np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max())
 
 
-def solvable_unknowns(system: System, status: np.ndarray) -> StickingRun | DenseUnknowns | None:
-    """The unknowns of given statuses, by the fastest way to solve for them; None if the nodes can't hold the pin."""
-    sticking = StickingRun.of(system, status)
-    if sticking is not None:
-        return sticking
-    dense = DenseUnknowns(system, status)
-    return None if dense.singular else dense
+class LatestUnknowns:
+    """The latest unknowns that were asked for, kept for the next question: the same statuses give the same bits.
+
+    At most one :class:`StickingRun` and one :class:`DenseUnknowns` are kept. The old one is let go before a new one is
+    made, so that the memory of both is never needed at once.
+    """
+
+    def __init__(self) -> None:
+        self._sticking: tuple[System, bytes, StickingRun | None] | None = None
+        self._dense: tuple[System, bytes, DenseUnknowns] | None = None
+
+    def sticking(self, system: System, status: np.ndarray) -> StickingRun | None:
+        """The unknowns by a fast inverse, see :meth:`StickingRun.of`."""
+        if not StickingRun.is_for(system, status):  # the kept one stays
+            return None
+        key = status.tobytes()
+        if self._sticking is None or self._sticking[0] is not system or self._sticking[1] != key:
+            self._sticking = None
+            self._sticking = system, key, StickingRun.of(system, status)
+        return self._sticking[2]
+
+    def dense(self, system: System, status: np.ndarray) -> DenseUnknowns | None:
+        """The unknowns by a factorisation; None if the nodes can't hold the pin."""
+        key = status.tobytes()
+        if self._dense is None or self._dense[0] is not system or self._dense[1] != key:
+            self._dense = None
+            self._dense = system, key, DenseUnknowns(system, status)
+        found = self._dense[2]
+        return None if found.singular else found
+
+    def solvable(self, system: System, status: np.ndarray) -> StickingRun | DenseUnknowns | None:
+        """The unknowns by the fastest way to solve for them; None if the nodes can't hold the pin."""
+        sticking = self.sticking(system, status)
+        return self.dense(system, status) if sticking is None else sticking

@@ -28,7 +28,7 @@ from fastpin.solver.first_contact import first_contact
 from fastpin.solver.path import PathStep
 from fastpin.solver.solving import solve
 from fastpin.solver.tableau import Columns, TableauMemory
-from fastpin.solver.unknowns import DenseUnknowns, solvable_unknowns
+from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
 
 BOTTOM = -0.5 * np.pi
 
@@ -167,7 +167,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
     rate, typical = loads(P=1.0, Q=0.3), float(np.median(np.diagonal(system.operator)))
     for node, new in ((20, 1), (20, -1), (13, 0), (30, -1), (30, 1), (12, OPEN)):
         contact = at_rest_on(system, zones())
-        columns = Columns(system, solvable_unknowns(system, contact.status), contact, rate, TableauMemory(41))
+        columns = Columns(system, LatestUnknowns().solvable(system, contact.status), contact, rate, TableauMemory(41))
         if (contact.tie[node] == new) != tied and new in (1, -1):
             continue
         matrix, tableau = whole(columns), columns.tableau
@@ -175,7 +175,7 @@ def test_every_change_of_status_gives_the_tableau_of_the_new_statuses(system, ke
         assert size > 1e-3
         assert contact.status[node] == new
         other = at_rest_on(system, contact.status)
-        expected = Columns(system, solvable_unknowns(system, other.status), other, rate, TableauMemory(41))
+        expected = Columns(system, LatestUnknowns().solvable(system, other.status), other, rate, TableauMemory(41))
         found = untied(dense(matrix, tableau, updates), contact, 0.4)
         wanted = untied(whole(expected), other, 0.4)
         assert np.abs(found - wanted).max() < 1e-9 * np.abs(wanted).max()
@@ -195,7 +195,9 @@ def test_columns_by_chunks_are_those_one_by_one(system, sets, monkeypatch):
     if sets == "stuck":
         status[status != OPEN] = STICK
     contact = at_rest_on(system, status)
-    columns = Columns(system, solvable_unknowns(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(41))
+    columns = Columns(
+        system, LatestUnknowns().solvable(system, status), contact, loads(P=1.0, Q=0.3), TableauMemory(41)
+    )
     matrix, tableau, updates = whole(columns), columns.tableau, 0
     change, fetch = compiled_kernel("_change_status"), compiled_kernel("_column")
     rng = np.random.default_rng(3)

@@ -1,0 +1,66 @@
+"""The linear systems of given statuses, and their memory."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fastpin.elasticity.system import System
+from fastpin.kernels.status import OPEN, STICK
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.solver import path, unknowns
+from fastpin.solver.solving import solve
+from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
+
+BOTTOM = -0.5 * np.pi
+
+
+@pytest.fixture
+def system(titanium_in_aluminium):
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    return System.build(problem, Grid.arc(BOTTOM - 1.2, BOTTOM + 1.2, 41), 1.0)
+
+
+def zones(*stuck: int) -> np.ndarray:
+    status = np.full(41, OPEN, dtype=np.int8)
+    status[12:30] = 1
+    status[slice(*stuck)] = STICK
+    return status
+
+
+def test_the_same_statuses_have_the_same_unknowns(system, monkeypatch):
+    monkeypatch.setattr(unknowns, "LEAST_NEIGHBOURS", 2)
+    latest = LatestUnknowns()
+    first = latest.solvable(system, zones(15, 25))
+    assert isinstance(first, DenseUnknowns)
+    run = latest.solvable(system, zones(12, 30))
+    assert isinstance(run, StickingRun)
+    assert latest.solvable(system, zones(15, 25)) is first
+    assert latest.solvable(system, zones(12, 30)) is run
+    assert latest.dense(replace(system, friction=0.3), zones(15, 25)) is not first
+    changed = latest.dense(system, zones(14, 25))
+    assert changed is not None
+    assert changed.count == first.count + 1
+    assert latest.dense(system, np.full(41, OPEN, dtype=np.int8)) is None
+
+
+def test_a_mended_tableau_shares_its_factorisation(system, monkeypatch):
+    """Whatever the drift, a configuration that is computed anew and its tableau need one factorisation."""
+    made: list[bytes] = []
+    build = DenseUnknowns.__init__
+
+    def counted(self, system, status):
+        if np.count_nonzero(status != OPEN) > 8:  # no trial of the first contact
+            made.append(status.tobytes())
+        build(self, system, status)
+
+    monkeypatch.setattr(path, "MOST_DRIFT", 0.0)
+    monkeypatch.setattr(DenseUnknowns, "__init__", counted)
+    result = solve(system.problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=201, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
+    assert result.statistics["rebuilds"] > 4
+    repeated = sum(one == two for one, two in itertools.pairwise(made))
+    assert repeated == 0
