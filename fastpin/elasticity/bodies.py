@@ -59,8 +59,13 @@ class BodyTerms:
     def add_matrix(self, grid: Grid, operator: np.ndarray) -> None:
         """Add the matrix of a compliance to the `operator`, shape (2n, 2n). Without one nothing changes."""
         if self.matrix.size:
-            waves, integrals = basis(self.matrix, grid)
-            operator += waves @ (self.matrix @ integrals)
+            waves, displaced = self.factors(grid)
+            operator += waves @ displaced
+
+    def factors(self, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+        """Factors (2n, m) and (m, 2n) of the matrix that a compliance adds to the operator."""
+        waves, integrals = basis(self.matrix, grid)
+        return waves, self.matrix @ integrals
 
     def matrix_product(self, grid: Grid, tractions: np.ndarray) -> np.ndarray:
         """Gap and slip, shape (2n,), that the matrix of a compliance gives for tractions (N, T), shape (2n,)."""

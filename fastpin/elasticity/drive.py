@@ -7,8 +7,8 @@ slip are
 
     c m + F w = D m + F (w - g m) + k J m.
 
-The last term is added to the operator. The operator is then no longer a Toeplitz matrix, nor symmetric. The place of F
-in the load vector stays 0, for F is no load.
+The last term is added to the operator (:mod:`fastpin.elasticity.operator`). The operator is then no longer a Toeplitz
+matrix, nor symmetric. The place of F in the load vector stays 0, for F is no load.
 """
 
 from __future__ import annotations
@@ -106,16 +106,13 @@ def displacement_coupling(problem: Problem, grid: Grid) -> np.ndarray:
     return problem.drive_compliances[1] * np.array([np.r_[cos, -sin], np.r_[sin, cos]])
 
 
-def replace_forces(
-    problem: Problem, grid: Grid, operator: np.ndarray, motion: np.ndarray, loads: np.ndarray, rows: np.ndarray
-) -> Drive:
+def replace_forces(problem: Problem, grid: Grid, motion: np.ndarray, loads: np.ndarray, rows: np.ndarray) -> Drive:
     """Replace the forces of the driven axes in the matrices of a system by displacements, and return the drive.
 
     Parameters
     ----------
     problem : Problem
     grid : Grid
-    operator : ndarray, shape (2n, 2n), or empty
     motion : ndarray, shape (2n, 3)
     loads : ndarray, shape (2n, loads)
     rows : ndarray, shape (3, 3)
@@ -126,8 +123,6 @@ def replace_forces(
     coupling = displacement_coupling(problem, grid) * axes[:, None]
     translation = motion[:, :2].copy()
     offsets = loads[:, list(FORCES)] * SIGNS * axes
-    if operator.size:  # it is empty for a LargeSystem
-        operator += translation @ coupling
     for axis in np.flatnonzero(axes):
         loads[:, FORCES[axis]] = 0.0
     columns = loads.copy()

@@ -1,4 +1,4 @@
-"""A system of many nodes of which few are in contact at a time: its operator is never filled as a whole."""
+"""A system of many nodes of which few are in contact at a time: its operator is never stored."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.elasticity.bodies import BodyTerms
+from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.operator import Operator, uniform_part
 from fastpin.elasticity.system import System
 from fastpin.kernels import fourier, influence
 from fastpin.model.grid import Grid
@@ -26,23 +28,22 @@ SYSTEMS_KEPT = 2
 """Systems that are kept: of a history and of the coarse grid of its error bars."""
 
 
-@dataclass(frozen=True, eq=False)
-class LargeSystem(System):
-    """A system without a filled operator. Its product computes the columns of the nodes that carry tractions.
+class ColumnsOperator(Operator):
+    """An operator without stored entries. A product computes the columns of the nodes that carry tractions."""
 
-    Solvers work on a window: the system of neighbouring nodes, see :meth:`window`. ``operator`` is empty.
-    """
+    def __init__(self, problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> None:
+        super().__init__(2 * grid.size)
+        self._problem, self._grid, self._bodies, self._drive = problem, grid, bodies, drive
 
-    def elastic(self, tractions: np.ndarray) -> np.ndarray:
-        """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
-        grid, pair = self.grid, self.problem.surfaces
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        grid, pair = self._grid, self._problem.surfaces
         n, scale = grid.size, 1.0 / (4.0 * np.pi)
         pressure, shear = tractions[:n], tractions[n:]
         loaded = np.flatnonzero((pressure != 0.0) | (shear != 0.0))
         left, right = grid.knots()
         h_left, h_right = grid.theta - left, right - grid.theta
-        expansion = (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
-        gap, slip = np.full(n, -scale * expansion * float(self.weights @ pressure)), np.zeros(n)
+        gap = np.full(n, -scale * uniform_part(self._problem) * float(grid.weights @ pressure))
+        slip = np.zeros(n)
         for begin in range(0, loaded.size, COLUMNS):
             nodes = loaded[begin : begin + COLUMNS]
             direct, cross = (np.empty((n, nodes.size), order="F") for _ in range(2))
@@ -53,20 +54,25 @@ class LargeSystem(System):
             gap += direct @ pressure[nodes] + cross @ shear[nodes]
             slip += direct @ shear[nodes] - cross @ pressure[nodes]
         found = np.r_[gap, slip]
-        if self.bodies is not None:
+        if self._bodies is not None:
             given = np.array([pressure, shear])
-            found += fourier.product(grid.theta, grid.theta, h_left, h_right, self.bodies.coefficients, given).ravel()
-            if self.bodies.matrix.size:
-                found += self.bodies.matrix_product(grid, tractions)
-        return found if self.drive is None else found + self.drive.translation @ (self.drive.coupling @ tractions)
+            found += fourier.product(grid.theta, grid.theta, h_left, h_right, self._bodies.coefficients, given).ravel()
+            if self._bodies.matrix.size:
+                found += self._bodies.matrix_product(grid, tractions)
+        return found if self._drive is None else found + self._drive.translation @ (self._drive.coupling @ tractions)
+
+
+@dataclass(frozen=True, eq=False)
+class LargeSystem(System):
+    """A system whose operator has no stored entries. Solvers work on a window of neighbouring nodes."""
 
     def window(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
         return System.build(self.problem, self.grid.part(nodes), self.scales.force)
 
     @staticmethod
-    def _filled_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None) -> np.ndarray:
-        return np.empty((0, 0))
+    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+        return ColumnsOperator(problem, grid, bodies, drive)
 
 
 def build_system(problem: Problem, grid: Grid, force: float) -> System:

@@ -21,7 +21,7 @@ import numpy as np
 
 from fastpin.elasticity.bodies import BodyTerms, body_terms
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
-from fastpin.kernels import influence
+from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
@@ -70,8 +70,8 @@ class System:
         The clearance.
     friction : float
         Coefficient of friction.
-    operator : ndarray, shape (2n, 2n)
-        Maps (N, T) to (h, s).
+    operator : Operator
+        Matrix with 2n rows, stored or not. Maps (N, T) to (h, s).
     motion : ndarray, shape (2n, 3)
         Maps the motion (c_x, c_y, omega) of the pin to (h, s).
     loads : ndarray, shape (2n, loads)
@@ -98,7 +98,7 @@ class System:
     scales: Scales
     rest_clearance: float
     friction: float
-    operator: np.ndarray
+    operator: Operator
     motion: np.ndarray
     loads: np.ndarray
     equilibrium: np.ndarray
@@ -115,7 +115,6 @@ class System:
         n, theta = grid.size, grid.theta
         weights = grid.weights
         bodies = body_terms(problem)
-        operator = cls._filled_operator(problem, grid, bodies)
 
         cos, sin, one, zero = np.cos(theta), np.sin(theta), np.ones(n), np.zeros(n)
         motion = np.column_stack([np.r_[-cos, -sin], np.r_[-sin, cos], np.r_[zero, one]])
@@ -138,26 +137,17 @@ class System:
             forces[2, ROTATION] = unit
         drive = None
         if problem.drive != "force":
-            drive = replace_forces(problem, grid, operator, motion, loads, motion_rows)
+            drive = replace_forces(problem, grid, motion, loads, motion_rows)
             forces[:2] *= ~drive.axes[:, None]
-        scales = Scales.of(problem, force)
+        scales, operator = Scales.of(problem, force), cls._operator(problem, grid, bodies, drive)
         return cls(
             problem, grid, scales, problem.assembled_clearance / scales.displacement, problem.friction,
             operator, motion, loads, equilibrium, motion_rows, forces, weights, plate, bodies, drive,
         )  # fmt: skip
 
     @staticmethod
-    def _filled_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None) -> np.ndarray:
-        n, pair = grid.size, problem.surfaces
-        operator = np.empty((2 * n, 2 * n), order="F")
-        left, right = grid.knots()
-        influence.fill_operator(
-            grid.theta, left, right, grid.uniform, grid.closed, pair.alpha_star / pair.beta_star,
-            _uniform_part(problem), operator, None if bodies is None else bodies.coefficients,
-        )  # fmt: skip
-        if bodies is not None:
-            bodies.add_matrix(grid, operator)
-        return operator
+    def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+        return make_operator(problem, grid, bodies, drive)
 
     @property
     def is_toeplitz(self) -> bool:
@@ -167,7 +157,7 @@ class System:
     @cached_property
     def typical_compliance(self) -> float:
         """A typical compliance, to judge pivots: the median of the operator's diagonal."""
-        return float(np.median(np.abs(np.diagonal(self.operator))))
+        return float(np.median(np.abs(self.operator.diagonal())))
 
     def elastic(self, tractions: np.ndarray) -> np.ndarray:
         """The elastic part of gap and slip, shape (2n,), of tractions (N, T), shape (2n,)."""
@@ -181,8 +171,9 @@ class System:
         assert self.drive is None
         rows = np.r_[nodes, self.grid.size + nodes]
         return replace(
-            self, grid=self.grid.part(nodes), operator=self.operator[np.ix_(rows, rows)], motion=self.motion[rows],
-            loads=self.loads[rows], equilibrium=self.equilibrium[:, rows], weights=self.weights[nodes],
+            self, grid=self.grid.part(nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
+            motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
+            weights=self.weights[nodes],
         )  # fmt: skip
 
     def without_friction(self) -> System:
@@ -246,12 +237,6 @@ class System:
         return result
 
 
-def _uniform_part(problem: Problem) -> float:
-    """The part of the operator that a uniform pressure has in the pin, per beta*."""
-    pair = problem.surfaces
-    return (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
-
-
 def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) -> tuple[float, np.ndarray]:
     """The size R kappa'/(2 G) of the hole's displacement per remote stress, and the columns of all loads.
 
@@ -262,7 +247,7 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
     cos, sin, cos_double, sin_double = np.cos(theta), np.sin(theta), np.cos(2 * theta), np.sin(2 * theta)
     share = 1.0 if problem.pin_load == "centre" else 0.5  # the number w of section 4
     point = share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star) if bodies is None else bodies.force_factor
-    plate = 0.5 * (1.0 - _uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
+    plate = 0.5 * (1.0 - uniform_part(problem))  # R kappa'/(2 G) per beta*, Eq. (42)
     loads = np.zeros((2 * theta.size, len(LOADS)))
     loads[:, P] = point * np.r_[sin, cos]
     loads[:, Q] = point * np.r_[-cos, sin]

@@ -50,6 +50,9 @@ AROUND_PI_TERMS = 18
 
 GAUSS_POINT, GAUSS_WEIGHT = np.polynomial.legendre.leggauss(4)
 
+BLOCK_PARITY = np.array([[1.0, -1.0], [-1.0, 1.0]])
+"""Parity in the distance of two nodes of the blocks [[(gap, N), (gap, T)], [(slip, N), (slip, T)]]."""
+
 FAR = 6.0  # lengths of the longer half of a hat beyond which a series in its moments is used
 TERMS = 15  # terms of this series
 HAT_POINT, HAT_WEIGHT = np.polynomial.legendre.leggauss(8)  # for the moments of a half hat, on (0, 1)
@@ -360,9 +363,50 @@ def fill_operator(
     """
     n = theta.size
     blocks = operator.reshape((n, 2, n, 2), order="F").transpose(1, 3, 0, 2)
-    seen, nodes, h_left, h_right = _hats(theta, left, right, uniform, closed)
+    hats = _hats(theta, left, right, uniform, closed)
+    _fill_blocks(hats, ratio, uniform_part, smooth, blocks[..., : hats[1].size])
+    if uniform:
+        _copy_columns(blocks, BLOCK_PARITY, closed)
+
+
+def uniform_columns(
+    theta: np.ndarray,
+    left: np.ndarray,
+    right: np.ndarray,
+    uniform: bool,
+    closed: bool,
+    ratio: float,
+    uniform_part: float,
+    smooth: np.ndarray | None = None,
+) -> np.ndarray:
+    """The columns from which all columns of the operator of equally spaced nodes follow, shape (2, 2, n, k).
+
+    The first two indices choose the block of :func:`fill_operator`, which has the parameters. On an arc the columns are
+    the first half hat and the first whole hat. On a circle there is one.
+    """
+    hats = _hats(theta, left, right, uniform, closed)
+    blocks = np.empty((2, 2, hats[1].size, theta.size)).swapaxes(2, 3)
+    _fill_blocks(hats, ratio, uniform_part, smooth, blocks)
+    return blocks
+
+
+def by_distance(blocks: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Entries (gap, N), (slip, T) and (gap, T) of whole hats by the distance of two nodes, shape (n,) each.
+
+    `blocks` (2, 2, n, k) come from :func:`uniform_columns`. No two nodes of an arc have a whole hat between them at the
+    largest distance: this entry is 0.
+    """
+    values = _values_by_distance(blocks, BLOCK_PARITY, closed)
+    if not closed:
+        values = np.concatenate([values, np.zeros((2, 2, 1))], axis=-1)
+    return values[0, 0], values[1, 1], values[0, 1]
+
+
+def _fill_blocks(hats, ratio, uniform_part, smooth, blocks):
+    """Fill `blocks` (2, 2, n, k) with the columns of some `hats`, as :func:`_hats` gives them."""
+    seen, nodes, h_left, h_right = hats
     scale = 1.0 / (4.0 * math.pi)
-    (expanded, cross), (mirrored, direct) = blocks[..., : nodes.size]
+    (expanded, cross), (mirrored, direct) = blocks
     log_columns(seen, nodes, h_left, h_right, ratio, scale, direct, cross)
     np.subtract(direct, 0.5 * scale * uniform_part * (h_left + h_right), out=expanded)
     np.negative(cross, out=mirrored)
@@ -372,8 +416,6 @@ def fill_operator(
         direct += second
         cross += odd
         mirrored -= odd
-    if uniform:
-        _copy_columns(blocks, np.array([[1.0, -1.0], [-1.0, 1.0]]), closed)
 
 
 def fill_cauchy(
@@ -414,18 +456,28 @@ def _copy_columns(out, parity, closed):
     1 or -1 for each matrix.
     """
     n = out.shape[-1]
-    odd = parity < 0.0
+    values = _values_by_distance(out, parity, closed)
     parity = parity[..., np.newaxis]
     if closed:
-        values = out[..., 0].copy()
-        values[..., n // 2 + 1 :] = parity * values[..., (n - 1) // 2 : 0 : -1]
-        if n % 2 == 0:
-            values[odd, n // 2] = 0.0  # odd about the opposite node, so exactly zero
         inner = out
     else:
-        values = out[..., 1:, 1].copy()
         out[..., -1] = parity * out[..., ::-1, 0]
         inner = out[..., 1:-1]
     mirrored = np.concatenate([parity * values[..., :0:-1], values], axis=-1)
     windows = sliding_window_view(mirrored, n, axis=-1)
     inner[...] = windows[..., ::-1, :].swapaxes(-1, -2)
+
+
+def _values_by_distance(out, parity, closed):
+    """The entries of whole hats by the distance of two nodes, (..., n) on a circle, (..., n-1) on an arc.
+
+    Arguments are as in :func:`_copy_columns`.
+    """
+    if not closed:
+        return out[..., 1:, 1].copy()
+    n = out.shape[-2]
+    values = out[..., 0].copy()
+    values[..., n // 2 + 1 :] = parity[..., np.newaxis] * values[..., (n - 1) // 2 : 0 : -1]
+    if n % 2 == 0:
+        values[parity < 0.0, n // 2] = 0.0  # odd about the opposite node, so exactly zero
+    return values

@@ -72,6 +72,32 @@ def _fill(before, after, out):
             out[i, j] = out[i - 1, j - 1] + step
 
 
+@compiled
+def fill_column(first, second, cross, half_hat, closed, rows, column, out):
+    """Fill `out` (r,) with the entries of one `column` of the operator of equally spaced nodes, at `rows` (r,).
+
+    Rows belong to (gap, slip), columns to (N, T). By the distance of two nodes, `first`, `second` and `cross` (n,) are
+    the entries (gap, N), (slip, T) and (gap, T). On an arc, `half_hat` (4, n) has the column of the first half hat, in
+    the order (gap, N), (gap, T), (slip, N), (slip, T). On a circle (`closed`) it is not used.
+    """
+    n = first.size
+    of_shear = column >= n
+    node = column - n if of_shear else column
+    whole = closed or (node != 0 and node != n - 1)
+    for i in range(rows.size):
+        of_slip = rows[i] >= n
+        away = (rows[i] - n if of_slip else rows[i]) - node
+        distance = abs(away)
+        if whole:
+            if of_slip == of_shear:
+                out[i] = second[distance] if of_slip else first[distance]
+            else:  # odd in the distance; the slip of N is the opposite of the gap of T
+                out[i] = cross[distance] if (away >= 0) == of_shear else -cross[distance]
+        else:  # the last half hat mirrors the first one
+            value = half_hat[2 * int(of_slip) + int(of_shear), distance]
+            out[i] = -value if node != 0 and of_slip != of_shear else value
+
+
 def inverse(first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> np.ndarray:
     """Inverse of the symmetric matrix [[first, cross], [-cross, second]] of three Toeplitz matrices, shape (2m, 2m).
 

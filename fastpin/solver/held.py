@@ -99,7 +99,9 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
     nodes = np.flatnonzero(closed)
     entries = _distances(system, nodes)
-    core = _inverse(system.operator, rows) if entries is None else toeplitz.inverse(*entries[:, : nodes.size])
+    core = (
+        _inverse(np.asarray(system.operator), rows) if entries is None else toeplitz.inverse(*entries[:, : nodes.size])
+    )
     if core is None:
         return None
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
@@ -143,7 +145,7 @@ def _distances(system: System, nodes: np.ndarray) -> np.ndarray | None:
     It serves for equally spaced neighbours that keep clear of the ends of an arc, where hats are halves. The largest
     distance of an arc is left out.
     """
-    n, operator, end = system.grid.size, system.operator, 0 if system.grid.closed else 1
+    n, operator, end = system.grid.size, np.asarray(system.operator), 0 if system.grid.closed else 1
     if not system.is_toeplitz or nodes.size < LEAST_NEIGHBOURS or nodes[-1] - nodes[0] + 1 != nodes.size:
         return None
     if nodes[0] < end or nodes[-1] >= n - end or nodes.size == n:
@@ -172,10 +174,11 @@ def _responses(
         neighbours = toeplitz.NeighbourResponses(entries, core, int(rows[0]))
         responses = neighbours.responses()
         return -responses, responses.T, neighbours.complement()
-    beside = system.operator[others]
+    operator = np.asarray(system.operator)
+    beside = operator[others]
     from_held = beside[:, rows]
     tied = from_held @ core
-    free = -(core @ system.operator[rows][:, others]) if entries is None else -tied.T
+    free = -(core @ operator[rows][:, others]) if entries is None else -tied.T
     return free, tied, beside[:, others] + from_held @ free
 
 

@@ -134,11 +134,11 @@ class PathStep:
         self._queue.sums[exchange.WORK] = configuration.work
         self._all_at_once = max(32, n // 20)
         if n <= FEW_NODES:
-            self._sample, self._sampled = np.arange(2 * n), system.operator
+            self._sample, self._sampled = np.arange(2 * n), np.asarray(system.operator)
         else:
             nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
             self._sample = np.r_[nodes, n + nodes]
-            self._sampled = system.operator[self._sample]
+            self._sampled = system.operator.entries(self._sample, np.arange(2 * n))
         self.rebuilds = 0
         self.resettled = 0
         self._room: int | None = None

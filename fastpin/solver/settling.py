@@ -133,7 +133,7 @@ class FiniteStep:
         self._system, self._now = system, now
         self._base = np.where(now.closed, resting_status(system), OPEN).astype(np.int8)
         self._unknowns = DenseUnknowns(system, self._base)
-        self._length = float(np.median(np.abs(np.diagonal(system.operator))))
+        self._length = float(np.median(np.abs(system.operator.diagonal())))
         self._closed = self._unknowns.normal
         away = np.flatnonzero(~now.closed)
         if not system.grid.closed:

@@ -63,7 +63,7 @@ def find_state_beyond(system: System, now: Configuration, load: np.ndarray) -> C
         If the pin spins.
     """
     free = ~system.motion_rows.any(axis=1)  # directions in which nothing holds the pin
-    first = stiffness = float(system.weights.mean() / np.median(np.abs(np.diagonal(system.operator))))
+    first = stiffness = float(system.weights.mean() / np.median(np.abs(system.operator.diagonal())))
     last, found, steps = now, _step(system, now, load), 0
     while found is None:
         if not free.any() or steps == MOST_STEPS or stiffness > STIFFEST * first:

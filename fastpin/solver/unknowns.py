@@ -26,6 +26,13 @@ LEAST_NEIGHBOURS = 128
 """Smallest number of nodes for a fast inverse. With fewer nodes a factorisation is as fast."""
 
 
+FEW_UNKNOWNS = 300
+"""With at most so many unknowns a product with their stored columns takes less time than transforms (4,096 nodes)."""
+
+COPIED = 256
+"""Columns of slipping nodes that are copied together. It bounds the memory of the copies."""
+
+
 class Unknowns:
     """The unknown tractions of given statuses, and the displacement that they cause in all rows.
 
@@ -51,20 +58,29 @@ class Unknowns:
         self.count = self.rows.size
         self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where it slips
 
-    def columns(self, matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """The `rows` of `matrix`, with one column for each unknown traction, friction eliminated."""
-        result = matrix[np.ix_(rows, self.rows)]
+    def fill_columns(self, rows: np.ndarray, out: np.ndarray) -> None:
+        """Fill `out` with the `rows` of the operator, one column for each unknown traction, friction eliminated."""
+        operator = self._system.operator
+        operator.fill(rows, self.rows, out)
         slipping = np.flatnonzero(self._coupling[self.normal])
-        nodes = self.normal[slipping]
-        result[:, slipping] += matrix[np.ix_(rows, self._coupling.size + nodes)] * self._coupling[nodes]
+        for begin in range(0, slipping.size, COPIED):
+            part = slipping[begin : begin + COPIED]
+            nodes = self.normal[part]
+            out[:, part] += operator.entries(rows, self._coupling.size + nodes) * self._coupling[nodes]
+
+    def balance_columns(self) -> np.ndarray:
+        """The resultants (3, count) of unit unknown tractions, friction eliminated."""
+        equilibrium, slipping = self._system.equilibrium, np.flatnonzero(self._coupling[self.normal])
+        nodes, result = self.normal[slipping], equilibrium[:, self.rows]
+        result[:, slipping] += equilibrium[:, self._coupling.size + nodes] * self._coupling[nodes]
         return result
 
     def expand(self, unknowns: np.ndarray) -> np.ndarray:
-        """All tractions (2n,) from the unknowns (count+3,)."""
-        tractions = np.zeros(2 * self._coupling.size)
+        """All tractions, (2n,) or (2n, k), from the unknowns, (count+3,) or (count+3, k)."""
+        tractions = np.zeros((2 * self._coupling.size, *unknowns.shape[1:]), order="F")
         tractions[self.rows] = unknowns[: self.count]
         slipping = np.flatnonzero(self._coupling)
-        tractions[self._coupling.size + slipping] = self._coupling[slipping] * tractions[slipping]
+        tractions[self._coupling.size + slipping] = (self._coupling[slipping] * tractions[slipping].T).T
         return tractions
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -77,7 +93,7 @@ class Unknowns:
         return self.solve(np.r_[-system.load_displacement(load_rate)[self.rows], system.load_forces(load_rate)])
 
     def displacement(self, unknowns: np.ndarray) -> np.ndarray:
-        """Gap and slip (2n,) that the unknowns (count+3,) cause."""
+        """Gap and slip, (2n,) or (2n, k), that the unknowns, (count+3,) or (count+3, k), cause."""
         return self._system.operator @ self.expand(unknowns) + self._system.motion @ unknowns[-3:]
 
     def at_others(self, unknowns: np.ndarray, acting: np.ndarray) -> np.ndarray:
@@ -85,6 +101,9 @@ class Unknowns:
 
         `acting` may be overwritten.
         """
+        if self.count > FEW_UNKNOWNS and not self._system.operator.is_stored:
+            acting += self.displacement(unknowns)[self.others]
+            return acting
         others = np.asfortranarray(acting)
         add_product(others, self._tied, unknowns)
         return others
@@ -94,7 +113,7 @@ class Unknowns:
         """Rows of the others for the unknown tractions and the motion, shape (2n-count, count+3)."""
         system = self._system
         result = np.empty((self.others.size, self.count + 3), order="F")
-        result[:, :-3] = self.columns(system.operator, self.others)
+        self.fill_columns(self.others, result[:, :-3])
         result[:, -3:] = system.motion[self.others]
         return result
 
@@ -105,8 +124,9 @@ class Unknowns:
         """
         system, pairs = self._system, np.flatnonzero(coupling)
         shears = self._coupling.size + slots[pairs]
-        acting, balance = system.operator[:, slots], system.equilibrium[:, slots]
-        acting[:, pairs] += coupling[pairs] * system.operator[:, shears]
+        everywhere, balance = np.arange(2 * self._coupling.size), system.equilibrium[:, slots]
+        acting = system.operator.entries(everywhere, slots)
+        acting[:, pairs] += coupling[pairs] * system.operator.entries(everywhere, shears)
         balance[:, pairs] += coupling[pairs] * system.equilibrium[:, shears]
         return acting, balance
 
@@ -117,14 +137,14 @@ class DenseUnknowns(Unknowns):
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
         matrix = np.empty((self.count + 3, self.count + 3), order="F")
-        matrix[:-3, :-3] = self.columns(system.operator, self.rows)
+        self.fill_columns(self.rows, matrix[:-3, :-3])
         matrix[:-3, -3:] = system.motion[self.rows]
-        matrix[-3:, :-3] = self.columns(system.equilibrium, np.arange(3))
+        matrix[-3:, :-3] = self.balance_columns()
         matrix[-3:, -3:] = system.motion_rows
         # The unknowns are forces, not tractions: entries are then of order one, and the condition number has a meaning.
         self._width = float(system.weights.mean())
         matrix[:, :-3] /= self._width
-        norm = float(np.abs(matrix).sum(axis=0).max())
+        norm = float(lapack.dlange("1", matrix))
         self._lu, self._pivots, info = lapack.dgetrf(matrix, overwrite_a=1)
         self.singular = info != 0 or not np.isfinite(norm)
         if not self.singular:
@@ -163,8 +183,10 @@ class StickingRun(Unknowns):
         super().__init__(system, status)
         n, m = system.grid.size, self.normal.size
         operator, end = system.operator, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
+        nodes, first = np.arange(end, n), np.array([end])
         self._entries = np.zeros((3, n))  # by distance; the largest one of an arc is not needed
-        self._entries[:, : n - end] = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
+        for place, (rows, column) in enumerate([(nodes, first), (n + nodes, n + first), (nodes, n + first)]):
+            self._entries[place, : n - end] = operator.entries(rows, column)[:, 0]
         self._core = toeplitz.inverse(*self._entries[:, :m])
         motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
         self._moved = self._core @ motion

@@ -64,7 +64,8 @@ def test_the_operator_is_symmetric(name):
     """On uniform nodes of a circle the collocation is symmetric, as the kernels are (Betti). Measured: 2.6e-16."""
     system = System.build(joint_problem(name, 0.1, 0.3), GRIDS["circle"], 1.0)
     assert np.abs(system.operator).max() > 1e-2
-    assert system.operator == pytest.approx(system.operator.T, abs=1e-15)
+    matrix = np.asarray(system.operator)
+    assert matrix == pytest.approx(matrix.T, abs=1e-15)
 
 
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
@@ -148,10 +149,10 @@ def test_a_ring_by_its_compliance(support, grid):
 def test_a_compliance_with_few_harmonics_converges():
     """The error falls like K q^K, q = 1/4, with the highest harmonic K of the compliance of a ring to 2 R."""
     ring = unlike(plate_body=Ring(2.0, "normal"))
-    exact, errors = System.build(ring, GRIDS["arc"], 1.0).operator, []
+    exact, errors = np.asarray(System.build(ring, GRIDS["arc"], 1.0).operator), []
     for order in (5, 7, 9, 11, 13):
         found = System.build(replace(ring, plate_body=ring_compliance(ring, order)), GRIDS["arc"], 1.0)
-        errors.append(np.abs(found.operator - exact).max())
+        errors.append(np.abs(np.asarray(found.operator) - exact).max())
     ratios = np.divide(errors[:-1], errors[1:])
     assert np.all((ratios > 8.0) & (ratios < 20.0))
     assert errors[-1] < 1e-8
@@ -162,7 +163,7 @@ def test_the_product_of_a_large_system_is_the_operators(name):
     """Columns of the logarithm and Fourier sums against the filled operator. Measured: 5e-15."""
     problem, grid = joint_problem(name, 0.1, 0.3), GRIDS["graded"]
     dense, lazy = System.build(problem, grid, 1.0), LargeSystem.build(problem, grid, 1.0)
-    assert lazy.operator.size == 0
+    assert not lazy.operator.is_stored
     assert np.array_equal(dense.loads, lazy.loads)
     tractions = np.random.default_rng(4).normal(size=2 * grid.size)
     tractions[grid.size // 2 : grid.size] = tractions[-grid.size // 2 :] = 0.0

@@ -1,0 +1,211 @@
+"""The operator of a system: the map from the tractions (N, T) to the elastic part of gap and slip (h, s).
+
+Solvers need products with vectors, and entries. :class:`DenseOperator` holds all entries. :class:`ToeplitzOperator` is
+for many equally spaced nodes. There an entry depends on the distance of two nodes only, up to the half hats at the ends
+of an arc. So a product is a convolution, by fast Fourier transforms, and an entry is looked up by its distance.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from fastpin.elasticity.bodies import BodyTerms
+from fastpin.elasticity.drive import Drive
+from fastpin.kernels import influence, toeplitz
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+
+LARGEST_DENSE = 1_000
+"""Equally spaced nodes, at most, for which all entries are stored.
+
+Up to here the matrix has 32 MB. Lookups from it take as long as all that transforms save (measured at 801 nodes).
+"""
+
+
+class Operator:
+    """A square matrix that is not necessarily stored, with one row and one column for each traction.
+
+    Attributes
+    ----------
+    size : int
+        Number of rows, 2n.
+    is_stored : bool
+        Whether all entries are stored. If not, products with many columns are better made by the operator itself than
+        from a copy of its entries.
+    """
+
+    is_stored = False
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        """Gap and slip, shape (2n,) or (2n, k), of tractions (N, T) of the same shape."""
+        raise NotImplementedError
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        """Fill `out` (r, k), stored column by column, with the entries in `rows` (r,) and `columns` (k,).
+
+        Rows are indices among (h, s), columns among (N, T).
+        """
+        unit = np.zeros(self.size)
+        for place, column in enumerate(columns):
+            unit[column] = 1.0
+            out[:, place] = (self @ unit)[rows]
+            unit[column] = 0.0
+
+    def entries(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """A copy of the entries in `rows` (r,) and `columns` (k,), shape (r, k)."""
+        out = np.empty((rows.size, columns.size), order="F")
+        self.fill(rows, columns, out)
+        return out
+
+    def diagonal(self) -> np.ndarray:
+        """The entries of the diagonal, shape (2n,)."""
+        return np.array([self.entries(np.array([place]), np.array([place]))[0, 0] for place in range(self.size)])
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        """All entries, for tests and studies of small systems."""
+        everything = np.arange(self.size)
+        return self.entries(everything, everything).astype(dtype or float, copy=False)
+
+
+class DenseOperator(Operator):
+    """An operator whose entries are all stored in `matrix`, shape (2n, 2n)."""
+
+    is_stored = True
+
+    def __init__(self, matrix: np.ndarray) -> None:
+        super().__init__(len(matrix))
+        self.matrix = matrix
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        product: np.ndarray = self.matrix @ tractions
+        return product
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        out[...] = self.matrix[np.ix_(rows, columns)]
+
+    def entries(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        copied: np.ndarray = self.matrix[np.ix_(rows, columns)]
+        return copied
+
+    def diagonal(self) -> np.ndarray:
+        return np.diagonal(self.matrix)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self.matrix, dtype) if copy else self.matrix.astype(dtype or float, copy=False)
+
+
+class ToeplitzOperator(Operator):
+    """The operator of equally spaced nodes.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (2, 2, n, k)
+        Columns of the hats from which all columns follow, see :func:`fastpin.kernels.influence.uniform_columns`.
+    closed : bool
+        Whether the nodes go round the whole circle.
+    left : ndarray, shape (2n, r)
+    right : ndarray, shape (r, 2n)
+        Factors of a matrix that is added. It may have the rank r = 0.
+    """
+
+    def __init__(self, blocks: np.ndarray, closed: bool, left: np.ndarray, right: np.ndarray) -> None:
+        n = blocks.shape[2]
+        super().__init__(2 * n)
+        self._closed, self._left, self._right = closed, left, right
+        first, second, cross = influence.by_distance(blocks, closed)
+        self._by_distance = np.array([first, second, cross])
+        self._half_hat = np.zeros((4, 0)) if closed else np.ascontiguousarray(blocks[..., 0].reshape(4, n))
+        # On a circle the convolution is periodic. On an arc its period has room for all distances of either sign.
+        self._period = n if closed else scipy.fft.next_fast_len(2 * n - 1, real=True)
+        self._even, self._odd = self._spectra(first, second, cross)
+
+    def _spectra(self, first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The transforms of two even kernels, real, shape (2, m), and of an odd one, imaginary, shape (m,)."""
+        n, period = first.size, self._period
+        kernels = np.zeros((3, period))
+        kernels[:, :n] = first, second, cross
+        if not self._closed:
+            kernels[:, period - n + 1 :] = np.array([[1.0], [1.0], [-1.0]]) * kernels[:, n - 1 : 0 : -1]
+        spectra = scipy.fft.rfft(kernels, workers=1)
+        return np.ascontiguousarray(spectra[:2].real), 1j * spectra[2].imag
+
+    def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
+        n, period = self.size // 2, self._period
+        given = tractions.T.reshape(*tractions.shape[1:], 2, n)
+        whole = given
+        if not self._closed:
+            whole = given.copy()
+            whole[..., [0, -1]] = 0.0  # the ends have half hats
+        pressure, shear = np.moveaxis(scipy.fft.rfft(whole, period, workers=1), -2, 0)
+        turned = np.empty((*given.shape[:-1], pressure.shape[-1]), dtype=complex)
+        turned[..., 0, :] = self._even[0] * pressure + self._odd * shear
+        turned[..., 1, :] = self._even[1] * shear - self._odd * pressure
+        found = scipy.fft.irfft(turned, period, workers=1, overwrite_x=True)[..., :n].reshape(tractions.T.shape).T
+        if not self._closed and given[..., [0, -1]].any():
+            ends = np.array([0, n - 1, n, 2 * n - 1])
+            hats = np.empty((2 * n, 4), order="F")
+            self._fill_hats(np.arange(2 * n), ends, hats)
+            found = found + hats @ tractions[ends]
+        return found + self._left @ (self._right @ tractions) if self._right.size else found
+
+    def fill(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        self._fill_hats(rows, columns, out)
+        if self._right.size:
+            out += self._left[rows] @ self._right[:, columns]
+
+    def _fill_hats(self, rows: np.ndarray, columns: np.ndarray, out: np.ndarray) -> None:
+        """Fill `out` (r, k), column by column, with the entries without the added matrix."""
+        for place, column in enumerate(columns):
+            toeplitz.fill_column(*self._by_distance, self._half_hat, self._closed, rows, column, out[:, place])
+
+    def diagonal(self) -> np.ndarray:
+        n = self.size // 2
+        found = np.repeat(self._by_distance[:2, 0], n)
+        if not self._closed:
+            found[[0, n - 1]], found[[n, -1]] = self._half_hat[0, 0], self._half_hat[3, 0]
+        return found + np.einsum("ij,ji->i", self._left, self._right) if self._right.size else found
+
+
+def make_operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:
+    """The operator of `problem` on `grid`, dimensionless.
+
+    `bodies` are the smooth terms of pin and plate. A `drive` adds its coupling.
+    """
+    n, pair = grid.size, problem.surfaces
+    left, right = grid.knots()
+    hats = grid.theta, left, right, grid.uniform, grid.closed, pair.alpha_star / pair.beta_star, uniform_part(problem)
+    smooth = None if bodies is None else bodies.coefficients
+    if grid.uniform and n > LARGEST_DENSE:
+        return ToeplitzOperator(influence.uniform_columns(*hats, smooth), grid.closed, *_added(grid, bodies, drive))
+    matrix = np.empty((2 * n, 2 * n), order="F")
+    influence.fill_operator(*hats, matrix, smooth)
+    if bodies is not None:
+        bodies.add_matrix(grid, matrix)
+    if drive is not None:
+        matrix += drive.translation @ drive.coupling
+    return DenseOperator(matrix)
+
+
+def _added(grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> tuple[np.ndarray, np.ndarray]:
+    """Factors (2n, r) and (r, 2n) of the part of the operator that is no Toeplitz matrix."""
+    left, right = [np.zeros((2 * grid.size, 0))], [np.zeros((0, 2 * grid.size))]
+    if bodies is not None and bodies.matrix.size:
+        waves, integrals = bodies.factors(grid)
+        left.append(waves)
+        right.append(integrals)
+    if drive is not None:
+        left.append(drive.translation)
+        right.append(drive.coupling)
+    return np.hstack(left), np.vstack(right)
+
+
+def uniform_part(problem: Problem) -> float:
+    """The part of the operator that a uniform pressure has in the pin, per beta*."""
+    pair = problem.surfaces
+    return (pair.pin_kolosov + 1.0) * pair.pin_compliance / (2.0 * pair.beta_star)
