@@ -17,11 +17,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import Contact, Queue
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.configuration import (
-    Configuration,
-    Solution,
-    solve_unknowns,
-)
+from fastpin.solver.configuration import Configuration, Solution, solve_unknowns
 from fastpin.solver.driven import load_terms
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
@@ -371,22 +367,33 @@ class PathStep:
         return True
 
     def _repair(self) -> bool:
-        """Go back or compute the configuration anew, if its error is too large. Returns whether it was."""
+        """Go back or compute the configuration anew, if its error is too large. Returns whether the tableau is new."""
         drift = self._drift()
         if drift > SEVERE_DRIFT and self._go_back():
             return True
-        if drift <= MOST_DRIFT:
+        if drift <= MOST_DRIFT or self._mend_in_place():
             return False
-        self._mend()
-        return True
-
-    def _mend(self) -> None:
-        """Compute the present configuration anew, by a factorisation, and rebuild the tableau."""
         self._book()
         exact = self._exact_solution()
         if exact is not None:
             self._take(_snap_to_bounds(self.system, self.now, exact))
         self._rebuild()
+        return True
+
+    def _mend_in_place(self) -> bool:
+        """Correct configuration and rates by the tableau. Returns whether that was enough.
+
+        It is not enough if the tableau itself has lost its digits. With few nodes a factorisation is made instead.
+        """
+        if self.system.operator.is_stored or not isinstance(self._columns, Columns):
+            return False
+        self._book()
+        before = self.rebuilds
+        self._take(_snap_to_bounds(self.system, self.now, self._correct()))
+        if self.rebuilds > before:
+            return False
+        self._columns.refine_rates(self._contact, self.rate, int(self._queue.counts[exchange.UPDATES]))
+        return True
 
     def _take(self, better: Configuration) -> None:
         """Continue from better values of the present configuration."""

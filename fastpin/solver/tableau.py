@@ -13,6 +13,7 @@ from fastpin.kernels.exchange import CHUNK, WIDTH
 from fastpin.kernels.extensions import blas
 from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.solver.shortcut import TractionRows
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 
 ROOM = 2
@@ -94,6 +95,7 @@ class Columns:
             chunk=CHUNK,
         )
         self._tie(contact)
+        self._tractions = TractionRows(system, basis.rows, contact)
 
     def _rates(self, load_rate: np.ndarray) -> np.ndarray:
         """Rates (2n+3,) of the dependent variables."""
@@ -126,7 +128,9 @@ class Columns:
             self._compute(slots, values)
             tableau.fresh[block] = 0
         begin, end = int(tableau.fresh[block]), updates - updates % CHUNK
-        self._update(values, slots == tableau.slot[begin:end, None], begin, end)
+        factors = self._factors(values, slots == tableau.slot[begin:end, None], begin, end)
+        if not self._tractions.update(tableau, slots, values, slice(begin, end), factors):
+            add_product(values, tableau.left[:, begin:end], factors)
         tableau.fresh[block] = end
 
     def response(self, given: np.ndarray, updates: int) -> np.ndarray:
@@ -145,8 +149,23 @@ class Columns:
         acting += basis.displacement(unknowns)
         values = np.empty((2 * n + 3, 1), order="F")
         self._spread(np.r_[unknowns, acting[basis.others]][:, None], values)
-        self._update(values, given[self.tableau.slot[:updates], None], 0, updates)
+        factors = self._factors(values, given[self.tableau.slot[:updates], None], 0, updates)
+        add_product(values, self.tableau.left[:, :updates], factors)
         return values[:, 0]
+
+    def refine_rates(self, contact: Contact, load_rate: np.ndarray, updates: int) -> None:
+        """Correct the rates by their residual from the matrices, times the tableau with all `updates`."""
+        system, rates, n = self._system, self.tableau.rates, self._system.grid.size
+        closed, stick = contact.status != OPEN, contact.status == STICK
+        pressure = np.where(closed, rates[:n], 0.0)
+        shear = np.where(stick, rates[n : 2 * n], 0.0) - system.friction * contact.tie * pressure
+        tractions = np.r_[pressure, shear]
+        displaced = system.elastic(tractions) + system.motion @ rates[2 * n :] + system.load_displacement(load_rate)
+        balance = system.load_forces(load_rate) - system.equilibrium @ tractions - system.motion_rows @ rates[2 * n :]
+        dependent = np.r_[closed, stick]
+        change = self.response(np.r_[np.where(dependent, -displaced, 0.0), balance], updates)
+        rates[: 2 * n] = np.where(dependent, rates[: 2 * n], displaced)
+        rates += change
 
     def _compute(self, slots: np.ndarray, values: np.ndarray) -> None:
         """Fill `values` with the columns `slots` before any update."""
@@ -168,12 +187,11 @@ class Columns:
         np.take(stacked.T, self._order, axis=1, out=values.T, mode="clip")  # by rows of the transposed: contiguous
         values[n : 2 * n] += self._tied[:, None] * values[:n]
 
-    def _update(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> None:
-        """Apply the updates from `begin`, a multiple of CHUNK, to `end` to the columns `values`.
+    def _factors(self, values: np.ndarray, units: np.ndarray, begin: int, end: int) -> np.ndarray:
+        """The factors (end-begin, k) of the updates from `begin`, a multiple of CHUNK, to `end`, on columns `values`.
 
         The columns are responses to zero-rate variables. `units` (end-begin, k) holds these variables in the slots of
-        the updates. First come the factors of the updates, from the rows that the updates take. Then one product
-        applies all updates.
+        the updates. The factors come from the rows that the updates take. Then one product applies all updates.
         """
         tableau = self.tableau
         factors = np.where(tableau.source[begin:end, None] >= 0, values[tableau.source[begin:end]], 0.0)
@@ -184,7 +202,7 @@ class Columns:
             add_product(factors[rows], taken[:, begin:first], factors[: first - begin])
             # Updates of the chunk change the rows that later updates of the same chunk take.
             factors[rows] = blas.dtrsm(1.0, -taken[:, first:], factors[rows], lower=1, diag=1)
-        add_product(values, tableau.left[:, begin:end], factors)
+        return factors
 
     def _taken(self, chunk: slice) -> np.ndarray:
         """The rows of ``left`` that the updates of a chunk take, up to the end of the chunk.
