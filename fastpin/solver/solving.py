@@ -130,7 +130,10 @@ def _follow_task(task: Task, start: Result | None) -> Result:
         if kept.run is not None:  # None if it ended before a grid was found
             ended.result = kept.result(task, time.perf_counter() - began)
         raise
-    return kept.result(task, time.perf_counter() - began)
+    else:
+        return kept.result(task, time.perf_counter() - began)
+    finally:
+        kept.run = None  # run and recorder refer to each other: the memory of the tableau would wait for a collection
 
 
 def _check_halves(task: Task, start: Result | None) -> None:

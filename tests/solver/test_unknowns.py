@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.solver import path, unknowns
 from fastpin.solver.solving import solve
+from fastpin.solver.tableau import TableauMemory
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 
 BOTTOM = -0.5 * np.pi
@@ -64,3 +66,15 @@ def test_a_mended_tableau_shares_its_factorisation(system, monkeypatch):
     assert result.statistics["rebuilds"] > 4
     repeated = sum(one == two for one, two in itertools.pairwise(made))
     assert repeated == 0
+
+
+def test_a_solved_history_leaves_no_tableau_behind(system):
+    """Its memory is free at once, without a garbage collection."""
+    solve(system.problem, [{"P": 1.0}], nodes=61, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
+    gc.collect()
+    gc.disable()
+    try:
+        solve(system.problem, [{"P": 1.0}], nodes=61, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
+        assert not [one for one in gc.get_objects() if isinstance(one, TableauMemory)]
+    finally:
+        gc.enable()
