@@ -288,8 +288,8 @@ class StickingRun(Unknowns):
 class LatestUnknowns:
     """The latest unknowns that were asked for, kept for the next question: the same statuses give the same bits.
 
-    At most one :class:`StickingRun` and one :class:`DenseUnknowns` are kept. The old one is let go before a new one is
-    made, so that the memory of both is never needed at once.
+    At most one :class:`StickingRun` and one :class:`DenseUnknowns` are kept; of a system whose operator is not stored,
+    one of the two. The old one is let go before a new one is made, so that the memory of both is never needed at once.
     """
 
     def __init__(self) -> None:
@@ -303,6 +303,8 @@ class LatestUnknowns:
         key = status.tobytes()
         if self._sticking is None or self._sticking[0] is not system or self._sticking[1] != key:
             self._sticking = None
+            if not system.operator.is_stored:
+                self._dense = None
             self._sticking = system, key, StickingRun.of(system, status)
         return self._sticking[2]
 
@@ -311,6 +313,8 @@ class LatestUnknowns:
         key = status.tobytes()
         if self._dense is None or self._dense[0] is not system or self._dense[1] != key:
             self._dense = None
+            if not system.operator.is_stored:  # with many nodes there is memory for one of the two
+                self._sticking = None
             self._dense = system, key, DenseUnknowns(system, status)
         found = self._dense[2]
         return None if found.singular else found
