@@ -134,7 +134,7 @@ class PathStep:
         else:
             nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
             self._sample = np.r_[nodes, n + nodes]
-            self._sampled = system.operator.entries(self._sample, np.arange(2 * n))
+            self._sampled = system.operator.entries(rows=self._sample)
         self.rebuilds = 0
         self.resettled = 0
         self._room: int | None = None

@@ -124,9 +124,8 @@ class Unknowns:
         """
         system, pairs = self._system, np.flatnonzero(coupling)
         shears = self._coupling.size + slots[pairs]
-        everywhere, balance = np.arange(2 * self._coupling.size), system.equilibrium[:, slots]
-        acting = system.operator.entries(everywhere, slots)
-        acting[:, pairs] += coupling[pairs] * system.operator.entries(everywhere, shears)
+        acting, balance = system.operator.entries(columns=slots), system.equilibrium[:, slots]
+        acting[:, pairs] += coupling[pairs] * system.operator.entries(columns=shears)
         balance[:, pairs] += coupling[pairs] * system.equilibrium[:, shears]
         return acting, balance
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.elasticity import operator
+from fastpin.elasticity import large, operator
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.operator import DenseOperator, ToeplitzOperator
 from fastpin.elasticity.system import System
@@ -86,6 +86,15 @@ def test_entries_of_an_operator_that_only_has_products(titanium_in_aluminium):
     assert lazy.diagonal() == pytest.approx(stored.diagonal(), rel=0.0, abs=2e-15)
 
 
+@pytest.fixture
+def _transforms(monkeypatch):
+    """Small grids too are followed in the way of large ones."""
+    monkeypatch.setattr(path, "FEW_NODES", 0)
+    monkeypatch.setattr(large, "MOST_KEPT", 0)
+    monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
+
+
+@pytest.mark.usefixtures("_transforms")
 @pytest.mark.parametrize("drive", ["force", "both"])
 def test_histories_are_those_of_the_stored_operator(titanium_in_aluminium, monkeypatch, drive):
     """The same statuses, tractions and energies. Measured: 3e-13 of the largest traction."""
@@ -96,7 +105,6 @@ def test_histories_are_those_of_the_stored_operator(titanium_in_aluminium, monke
     corners = [{names[0]: size}, {names[1]: 0.3 * size}, {names[1]: -0.3 * size}, {names[0]: 0.5 * size}]
     stored = solve(problem, corners, grid=grid)
     monkeypatch.setattr(operator, "LARGEST_DENSE", 3)
-    monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
     found = solve(problem, corners, grid=grid)
     for one, two in zip(found, stored, strict=True):
         assert np.array_equal(one.status, two.status)
@@ -107,11 +115,11 @@ def test_histories_are_those_of_the_stored_operator(titanium_in_aluminium, monke
         assert max(one.residuals.values()) < 1e-13
 
 
+@pytest.mark.usefixtures("_transforms")
 def test_corrections_in_the_middle_of_a_step_change_nothing(titanium_in_aluminium, monkeypatch):
     """Configuration and rates are corrected after every chunk of updates. Measured: 2e-13 of the largest traction."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre")
     monkeypatch.setattr(operator, "LARGEST_DENSE", 3)
-    monkeypatch.setattr(shortcut, "WORTHWHILE", 1)
     corners = [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}]
     plain = solve(problem, corners, nodes=301, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
     monkeypatch.setattr(path, "MOST_DRIFT", 0.0)

@@ -100,7 +100,7 @@ problem = fastpin.Problem.from_load_parameter(pair, 0.1, friction=0.4, pin_load=
 result = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=701, arc=(-3.0, -0.1))
 digest = hashlib.sha256()
 operator.LARGEST_DENSE, shortcut.WORTHWHILE = 3, 1  # Fourier transforms
-transformed = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=401, arc=(-3.0, -0.1))
+transformed = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=521, arc=(-3.0, -0.1))
 for state in [*result, *transformed]:
     for name in ("pressure", "shear", "gap", "slip"):
         digest.update(getattr(state, name).tobytes())

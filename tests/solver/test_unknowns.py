@@ -60,6 +60,7 @@ def test_a_mended_tableau_shares_its_factorisation(system, monkeypatch):
             made.append(status.tobytes())
         build(self, system, status)
 
+    monkeypatch.setattr(path, "FEW_NODES", 0)
     monkeypatch.setattr(path, "MOST_DRIFT", 0.0)
     monkeypatch.setattr(DenseUnknowns, "__init__", counted)
     result = solve(system.problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.3}], nodes=201, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
