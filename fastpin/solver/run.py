@@ -146,19 +146,24 @@ class Run:
         self.keep = options.keep_rule
         self.fractions = options.fractions if self.keep.inside else options.fractions[-1:]
         start = _without_load(system) if start is None else start
-        self.load = start.load
-        self.dissipation, self.work = start.dissipation, start.work
-        self.repeats, self.corner_log = start.repeats, CornerLog(history, start.marks)
-        self.corner = start.corner
+        self.corner_log = CornerLog(history, start.marks)
         counts = options.slip_sums and recorder is not None
         self._no_slip = empty_slip_tally(system.grid.size) if counts else np.zeros((0, 0))
+        self.statistics = dict.fromkeys(COUNTED, 0.0)
+        self.stepper = _stepper(system, options, self.statistics, strict)
+        self._begin_at(start)
+
+    def _begin_at(self, start: Restart) -> None:
+        """Take the place of a restart."""
+        self.load = start.load
+        self.dissipation, self.work = start.dissipation, start.work
+        self.repeats, self.corner = start.repeats, start.corner
         self.slip_tally = start.slip_tally if start.slip_tally.shape == self._no_slip.shape else self._no_slip
         self._counted = self._no_slip  # the slip tally of the present step up to the latest kept state
         self.last_corner = self._at_corner(start.configuration)
         self.position = Position(self.last_corner, start.configuration.closed.copy())
         self.complete = False
-        self.statistics = {**dict.fromkeys(COUNTED, 0.0), **start.statistics}
-        self.stepper = _stepper(system, options, self.statistics, strict)
+        self.statistics.update(start.statistics)
 
     @property
     def now(self) -> Configuration:
@@ -194,6 +199,34 @@ class Run:
             self.corner_log.begin_cycles(self.corner - 1, self.now)
             self._show_corner()
         self.complete = True
+
+    def step_to(self, load: np.ndarray) -> None:
+        """Follow one more step, to a `load` (loads,), SI. The load is no corner of the history. Its state is kept.
+
+        Raises
+        ------
+        SolveError
+            See :meth:`follow`.
+        """
+        self._step(load, ends_cycle=False, kept=True)
+        self._close_step(load, kept=True)
+        self.corner += 1
+        self._show_corner()
+
+    def go_back(self, start: Restart) -> None:
+        """Go back to a corner on this grid, also from the middle of a step. Nothing is computed anew."""
+        self.stepper.leave(self.position)
+        self._begin_at(replace(start, repeats=Repeats(list(start.repeats))))
+
+    def bookmark(self) -> Restart:
+        """The restart from the last corner for :meth:`go_back`. It takes less time than :meth:`restart`.
+
+        The remembered configurations are shared. So it does not hold for a history with cycles.
+        """
+        return Restart(
+            self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
+            Repeats(list(self.repeats)), {}, self.statistics.copy(), self.slip_tally,
+        )  # fmt: skip
 
     def restart(self) -> Restart:
         """The restart from the last corner that was reached."""
