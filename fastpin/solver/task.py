@@ -20,7 +20,7 @@ from fastpin.model.case import check_arc, check_keep
 from fastpin.model.checks import as_toml, check_callable, instance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory, check_loads
-from fastpin.model.loads import REMOTE, M
+from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver.arc import candidate_grids, narrow_grids
@@ -90,7 +90,7 @@ class Task:
         Interrupted
             After Ctrl-C.
         """
-        with deferred_interrupts() as request, _one_blas_thread():
+        with deferred_interrupts() as request, one_blas_thread():
             progress = self._stoppable_progress(request)
             given = None if unfit is not None else self.grid
             task = replace(self, grid=given)
@@ -179,7 +179,7 @@ class Task:
         SolveError, Interrupted
             See :meth:`follow`.
         """
-        with deferred_interrupts() as request, _one_blas_thread():
+        with deferred_interrupts() as request, one_blas_thread():
             self._continue(recorder, start, grid, self._stoppable_progress(request), strict)
 
     def branch(self, recorder: Recorder, start: Restart, grid: Grid) -> None:
@@ -206,7 +206,7 @@ class Task:
         SolveError, Interrupted
             See :meth:`follow`.
         """
-        with deferred_interrupts() as request, _one_blas_thread():
+        with deferred_interrupts() as request, one_blas_thread():
             return self._continue(None, start, grid, self._stoppable_progress(request)).restart()
 
     def _continue(
@@ -250,18 +250,18 @@ def _is_same(one: Grid, two: Grid) -> bool:
     return one.size == two.size and bool(np.allclose(one.theta, two.theta, rtol=0.0, atol=1e-9))
 
 
-def as_history(history: LoadHistory | Sequence[dict[str, float]]) -> LoadHistory:
+def as_history(history: LoadHistory | Sequence[Corner], field: str = "history") -> LoadHistory:
     """A load history from corners, or the history itself.
 
     Raises
     ------
     InputError
-        If it is neither.
+        If it is neither. The error names the `field`.
     """
     if isinstance(history, LoadHistory):
         return history
     if not isinstance(history, Sequence):
-        raise InputError("history", f"must be a LoadHistory or a sequence of corners, not {as_toml(history)}")
+        raise InputError(field, f"must be a LoadHistory or a sequence of corners, not {as_toml(history)}")
     return LoadHistory(history)
 
 
@@ -311,7 +311,7 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     return unit * 2.0 ** math.ceil(math.log2(largest / unit))
 
 
-def _one_blas_thread() -> AbstractContextManager[Any]:
+def one_blas_thread() -> AbstractContextManager[Any]:
     """A context with one thread for BLAS, so that results don't depend on the number of cores.
 
     Large products have two threads all the same (kernels/products.py).
