@@ -30,6 +30,7 @@ from .solver.errors import Interrupted as Interrupted
 from .solver.errors import NoEquilibriumError as NoEquilibriumError
 from .solver.errors import SolveError as SolveError
 from .solver.result import Result as Result
+from .solver.session import Session as Session
 from .solver.solving import solve as solve
 from .states.state import State as State
 from .storage.recording import record as record

@@ -1,0 +1,596 @@
+"""A session follows a load history load by load, for programs that choose the next load from the present state.
+
+:class:`Session` keeps the matrices and the present contact. Its nodes grow with the contact, see
+:mod:`fastpin.solver.growth`.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from fastpin.elasticity.large import build_system
+from fastpin.elasticity.system import System
+from fastpin.errors import InputError
+from fastpin.model.checks import choice, whole_number
+from fastpin.model.grid import Grid
+from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
+from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load, named_load
+from fastpin.model.options import KeepRule, SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.model.units import named_loads
+from fastpin.solver.arc import first_direction, narrow_grids
+from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
+from fastpin.solver.growth import OutsideGap, carried, dividing_the_circle, most_nodes, wider_grid
+from fastpin.solver.interrupt import StopRequest, deferred_interrupts
+from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system
+from fastpin.solver.repeats import Repeats
+from fastpin.solver.result import Restart, Result
+from fastpin.solver.run import Run
+from fastpin.solver.solving import DEFAULTS, MemoryRecorder, solve
+from fastpin.solver.task import Task, as_history, check_options, one_blas_thread, reference_force
+from fastpin.states.state import State
+
+Replay = Literal["history", "load", "none"]
+"""What follows a change of the problem: the same history, the last load in one step, or nothing."""
+
+ALL_ROUND = (-1.5 * math.pi, 0.5 * math.pi)
+"""The whole circle as an arc, rad."""
+
+LAST_ONLY = f"every {MAX_CORNERS}"
+"""The rule that keeps only the last state of a history."""
+
+NO_HISTORY = LoadHistory([{}])
+"""The history of a run that gets its loads one by one."""
+
+
+class LatestState(MemoryRecorder):
+    """A recorder that keeps the latest state only, and notes whether the pin has touched the hole beyond the arc."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.outside: OutsideGap | None = None
+        self.touched_outside = False
+
+    def begin(self, run: Run) -> None:
+        """Forget the state. From here on all states come from `run`."""
+        super().begin(run)
+        self.touched_outside = False
+        if run.system.grid.closed:
+            self.outside = None
+        elif self.outside is None or self.outside.of is not run.system.operator:
+            self.outside = OutsideGap(run.system)
+
+    def add(self, state: State) -> None:
+        """Keep a state in place of the one before."""
+        self.states = [state]
+
+    def corner_reached(self) -> None:
+        """Look beyond the arc."""
+        if self.outside is not None and not self.touched_outside:
+            assert self.run is not None
+            self.touched_outside = self.outside.is_closed(self.run.system, self.run.now)
+
+
+class Session:
+    """A contact that is led from load to load.
+
+    A session gives the states of :func:`fastpin.solve`, to the same bits: the states of ``solve(session.problem,
+    session.history, grid=session.grid)``. It keeps the matrices, so a small step takes a millisecond.
+
+    The first nodes lie on the arc that :func:`fastpin.solve` would choose for the first load, or for `expected`. Later
+    the nodes follow the contact:
+
+    * Where the contact reaches an end of the arc, the arc gets more nodes in the same spacing, up to the whole circle.
+      The other nodes stay in their places. States then equal those of :func:`fastpin.solve` up to rounding.
+    * The gap beyond the arc is watched at every load. If the pin touches there, the arc becomes the whole circle.
+    * New nodes are chosen for the whole history, and the history is followed again, in three cases: the arc would get
+      more than 4 times `nodes` or 3,000 nodes; the spacing does not divide the circle; or the contact gets too narrow
+      for the nodes. A narrow contact is an error if `arc` or `grid` is given.
+
+    A session is not thread-safe. A process may have several sessions. Sessions can be copied and pickled.
+
+    Parameters
+    ----------
+    problem : Problem
+    nodes : int
+        Number of nodes of the first arc.
+    arc : (float, float), optional
+        Start and end angle of the first arc, rad; a full turn is the whole circle. The arc is longer by less than one
+        node distance, so that the spacing divides the circle.
+    grid : Grid, optional
+        The nodes, in place of `nodes` and `arc`. An arc can grow; a circle stays as it is.
+    expected : LoadHistory or sequence of dicts, optional
+        Loads that the session will probably see. The first arc spans their contacts. They are not followed.
+    undo : int, optional
+        Number of places to which :meth:`undo` can go back. Each holds a state and takes some 100 bytes a node.
+        None means all places; memory then grows with every load.
+    slip_sums : bool
+        Sum up the slip distance and the friction energy of each node from load to load, see :class:`State`.
+
+    Raises
+    ------
+    InputError
+        If an argument can't be used. The error names it.
+
+    Examples
+    --------
+    >>> import fastpin
+    >>> pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
+    >>> session = fastpin.Session(fastpin.Problem.from_load_parameter(pair, 0.1, friction=0.4), nodes=101)
+    >>> session.advance({"P": 1.0}).peak_pressure > 0.5
+    True
+    >>> round(session.advance({"Q": 0.1}).load["P"], 3)
+    1.0
+    >>> session.undo().load["Q"]
+    0.0
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        nodes: int = DEFAULTS.nodes,
+        *,
+        arc: tuple[float, float] | None = DEFAULTS.arc,
+        grid: Grid | None = None,
+        expected: LoadHistory | Sequence[Corner] | None = None,
+        undo: int | None = 100,
+        slip_sums: bool = False,
+    ) -> None:
+        keep = "corners" if slip_sums is True else LAST_ONLY  # slip sums count from load to load
+        self._options = SolveOptions(nodes=nodes, arc=arc, slip_sums=slip_sums, keep=keep)
+        check_options(self._options, grid, None)
+        Task(problem, NO_HISTORY, self._options, grid)
+        self._expected = None if expected is None else as_history(expected, "expected")
+        if self._expected is not None:
+            check_loads(problem, self._expected)
+        self._grid = grid
+        self._here = Place(problem, Loads())
+        self._undo = deque[Place](maxlen=None if undo is None else whole_number("undo", undo, 0))
+        self._redo: list[Place] = []
+        self._forget()
+
+    def _forget(self) -> None:
+        """Forget all that can be made anew from the present place."""
+        self._run: Run | None = None
+        self._system: System | None = None
+        self._limits: dict[str, tuple[int, float]] = {}
+        self._request: StopRequest | None = None
+        self._recorder = LatestState()
+
+    @property
+    def problem(self) -> Problem:
+        """The present problem."""
+        return self._here.problem
+
+    @property
+    def state(self) -> State | None:
+        """The present state; None before the first load."""
+        return self._here.state
+
+    @property
+    def history(self) -> LoadHistory | None:
+        """The loads that led to the present state; None before the first load."""
+        return self._here.loads.history() if self._here.loads.count else None
+
+    @property
+    def grid(self) -> Grid | None:
+        """The present nodes; None before the first load."""
+        return self._here.grid
+
+    @property
+    def undos(self) -> int:
+        """Number of places to which :meth:`undo` can go back."""
+        return len(self._undo)
+
+    @property
+    def redos(self) -> int:
+        """Number of places to which :meth:`redo` can go forward."""
+        return len(self._redo)
+
+    def advance(self, loads: Corner) -> State:
+        """Follow one straight step from the present loads to these, and return the state there.
+
+        Parameters
+        ----------
+        loads : mapping
+            Loads by name, as a corner of a :class:`LoadHistory`. A load that is left out keeps its value.
+
+        Returns
+        -------
+        State
+            It meets the contact conditions to 1e-9 (see ``State.residuals``). Its ``step`` counts the loads from 0.
+
+        Raises
+        ------
+        InputError
+            If a load can't be used.
+        NoEquilibriumError, ConvergenceError, ArcError
+            As for :func:`fastpin.solve`. ``step``, ``fraction`` and ``load`` of the error say where the load was lost.
+        Interrupted
+            After Ctrl-C.
+
+        After an error the session is at the state before. The ``result`` of the last two rows holds this state, and can
+        be saved and continued.
+        """
+        given = self._checked(loads)
+        here = self._here
+        place = replace(here, loads=here.loads.with_load(given))
+        with self._guarded(place):
+            self._arrive(place, self._first_step(place, given) if here.grid is None else self._next_step(place, given))
+        return self._present_state()
+
+    def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
+        """Change fields of the problem, follow the loads again, and return the state.
+
+        A contact has a memory, and no path leads from one friction or clearance to another under load. So a changed
+        problem begins with no load. Friction and clearance need no new matrices.
+
+        Parameters
+        ----------
+        replay : {"history", "load", "none"}
+            "history": follow all loads again, as if the problem had been this one from the start. "load": go from no
+            load straight to the present load; this is the new history. It takes the same short time however long the
+            session lasts. "none": stay without load.
+        new_arc : bool
+            Whether to choose a new arc. The nodes stay otherwise. A much larger clearance makes a contact narrow, and a
+            new arc then has more nodes on it.
+        **changes
+            Fields of :class:`Problem`, such as ``friction=0.3``. In a dimensionless problem ``clearance`` is the load
+            parameter, and a new ``pair`` is scaled to beta* = 1.
+
+        Returns
+        -------
+        State or None
+            None without load.
+
+        Raises
+        ------
+        InputError, NoEquilibriumError, ConvergenceError, Interrupted
+            See :meth:`advance`. The session then keeps its problem and its state.
+
+        :meth:`undo` takes the change back.
+        """
+        choice("replay", replay, ("history", "load", "none"))
+        here = self._here
+        problem = changed_problem(here.problem, changes)
+        loads = here.loads if replay == "history" else Loads()
+        if replay == "load" and here.restart is not None:
+            never = np.isnan(here.loads.rows()).all(axis=0)
+            loads = loads.with_load(np.where(never, np.nan, here.restart.load))
+        history = loads.history() if loads.count else NO_HISTORY
+        Task(problem, history, self._options, self._grid)
+        place = Place(problem, loads)
+        if here.grid is not None and not new_arc and (problem.assembled_clearance >= 0.0 or here.grid.closed):
+            force = here.force if changes.keys() <= IN_PLACE else reference_force(problem, history.distinct())
+            place = replace(place, grid=here.grid, force=force)
+        if loads.count:
+            with self._guarded(place):
+                self._arrive(place, self._replay(place))
+        else:
+            self._leave_for(place)
+        return self._here.state
+
+    def undo(self, times: int = 1) -> State | None:
+        """Go back to the place before the last load or change, and return its state; `times` times.
+
+        Raises
+        ------
+        InputError
+            If so many places are not remembered.
+        """
+        if whole_number("times", times, 1) > len(self._undo):
+            raise InputError("times", f"only {len(self._undo)} places before this one are remembered, not {times}")
+        for _ in range(times):
+            self._redo.append(self._here)
+            self._here = self._undo.pop()
+        self._go_back()
+        return self._here.state
+
+    def redo(self, times: int = 1) -> State | None:
+        """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
+
+        Raises
+        ------
+        InputError
+            If there were fewer.
+        """
+        if whole_number("times", times, 1) > len(self._redo):
+            raise InputError("times", f"only {len(self._redo)} steps were undone, not {times}")
+        for _ in range(times):
+            self._undo.append(self._here)
+            self._here = self._redo.pop()
+        self._go_back()
+        return self._here.state
+
+    def reset(self) -> None:
+        """Go back to no load, with the present problem and nodes. The history and all other places are forgotten."""
+        self._here = replace(self._here, loads=Loads(), restart=None, state=None)
+        self._undo.clear()
+        self._redo.clear()
+        self._run = None
+
+    def copy(self) -> Session:
+        """Another session at the same place. Both share the matrices and go on by themselves."""
+        other = Session.__new__(Session)
+        other.__setstate__(self.__getstate__())
+        other._system, other._recorder.outside = self._system, self._recorder.outside
+        return other
+
+    def result(self, keep: str | KeepRule = DEFAULTS.keep) -> Result:
+        """Follow the history once more, and return the result with a state for every load.
+
+        Parameters
+        ----------
+        keep : str
+            States to keep, as for :func:`fastpin.solve`.
+
+        Raises
+        ------
+        InputError
+            If no load was followed yet.
+        """
+        history = self.history
+        if history is None:
+            raise InputError("result", "no load was followed yet")
+        return solve(self.problem, history, grid=self.grid, keep=keep, slip_sums=self._options.slip_sums)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "options": self._options, "expected": self._expected, "grid": self._grid, "here": self._here,
+            "undo": self._undo.copy(), "redo": self._redo.copy(),
+        }  # fmt: skip
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, f"_{name}", value)
+        self._forget()
+
+    __copy__ = copy
+
+    def __repr__(self) -> str:
+        here = self._here
+        nodes = "no nodes yet" if here.grid is None else f"{here.grid.size} nodes"
+        load = "no load" if here.state is None else named_loads(here.problem, here.state.load)
+        return f"<Session: {here.loads.count:,} loads, now {load}, {nodes}, {self.undos} undo, {self.redos} redo>"
+
+    def _present_state(self) -> State:
+        assert self._here.state is not None
+        return self._here.state
+
+    def _checked(self, loads: Corner) -> np.ndarray:
+        """The given loads, shape (loads,), SI; NaN where a load is left out. Loads seen before are checked quickly."""
+        limits = self._limits
+        if type(loads) is dict:
+            given = np.full(len(LOADS), np.nan)
+            for name, value in loads.items():
+                place, limit = limits.get(name, (0, -1.0)) if type(name) is str else (0, -1.0)
+                if type(value) is not float or not -limit <= value <= limit:
+                    break
+                given[place] = value
+            else:
+                return given
+        history = LoadHistory([loads])
+        check_loads(self.problem, history)
+        natural = self.problem.natural_loads()
+        found: np.ndarray = history.blocks[0].given[0]
+        for place in np.flatnonzero(np.nan_to_num(found)).tolist():
+            limits[LOADS[place]] = place, MOST_LOAD * natural[LOAD_KIND[LOADS[place]]]
+        return found
+
+    @contextmanager
+    def _guarded(self, place: Place) -> Iterator[None]:
+        """Hold back Ctrl-C and BLAS's threads on the way to a place. After an error the session is where it was."""
+        with deferred_interrupts() as request, one_blas_thread():
+            self._request = request
+            try:
+                yield
+            except (SolveError, Interrupted) as ended:
+                self._go_back()
+                ended.result = self._result_before(place.loads)
+                raise
+            except BaseException:
+                self._run = None
+                raise
+            finally:
+                self._request = None
+        if request.stop:
+            raise Interrupted(self._result_before(self._here.loads))
+
+    def _check_request(self, done: float = 0.0, total: int = 0) -> None:
+        """The progress of all runs: raise Interrupted after Ctrl-C."""
+        if self._request is not None and self._request.stop:
+            raise Interrupted
+
+    def _result_before(self, loads: Loads) -> Result | None:
+        """The present state as the result of a history that was to go on; None without a state."""
+        here = self._here
+        if here.grid is None or here.restart is None or here.state is None:
+            return None
+        return Result(
+            [here.state], here.problem, loads.history(), here.grid, "path", here.restart.statistics.copy(), False,
+            here.restart,
+        )  # fmt: skip
+
+    def _arrive(self, place: Place, run: Run) -> None:
+        """Make the end of a run the present place."""
+        system = run.system
+        reached = replace(place, grid=system.grid, force=system.scales.force, restart=run.bookmark())
+        self._leave_for(replace(reached, state=self._recorder.states[-1]))
+        self._run, self._system = run if run.strict else None, system
+
+    def _leave_for(self, place: Place) -> None:
+        """Remember the present place, and go to another one."""
+        if place.problem is not self._here.problem:
+            self._limits = {}
+        self._undo.append(self._here)
+        self._redo.clear()
+        self._here, self._run = place, None
+
+    def _go_back(self) -> None:
+        """Let the run be at the present place, if it can."""
+        here, run = self._here, self._run
+        where = None if run is None else (run.system.problem, run.system.grid)
+        if run is not None and here.restart is not None and where == (here.problem, here.grid):
+            run.go_back(here.restart)
+            self._recorder.begin(run)  # it may have seen other runs since
+        else:
+            self._run = None
+        self._limits = {}
+
+    def _system_at(self, place: Place) -> System:
+        """The matrices of a place: the present ones, if they do."""
+        known = self._system
+        assert place.grid is not None
+        if known is not None and known.grid is place.grid and known.scales.force == place.force:
+            if known.problem == place.problem:
+                return known
+            changed = changed_system(known, place.problem)
+            if changed is not None:
+                return changed
+        return build_system(place.problem, place.grid, place.force)
+
+    def _start(
+        self, system: System, restart: Restart | None, strict: bool = True, history: LoadHistory = NO_HISTORY
+    ) -> Run:
+        """A run from a restart, or from no load."""
+        if restart is not None:
+            restart = replace(restart, repeats=Repeats(list(restart.repeats)))
+        run = Run(history, system, self._options, self._recorder, self._check_request, restart, (), strict)
+        self._recorder.begin(run)
+        return run
+
+    def _first_step(self, place: Place, given: np.ndarray) -> Run:
+        """Choose the nodes, and follow the first load."""
+        history = LoadHistory.from_array(given[None]) if self._expected is None else self._expected
+
+        def step(system: System, strict: bool) -> Run:
+            return self._step_to(self._start(system, None, strict), place, given)
+
+        return self._on_first_nodes(place.problem, history, step)
+
+    def _next_step(self, place: Place, given: np.ndarray) -> Run:
+        """Follow one more load on the present nodes."""
+        here = self._here
+        if self._run is None:
+            self._run = self._start(self._system_at(here), here.restart)
+        with suppress(ConvergenceError):
+            return self._step_to(self._run, place, given)
+        try:  # narrow contacts are let go
+            return self._step_to(self._start(self._system_at(here), here.restart, strict=False), place, given)
+        except ConvergenceError as error:
+            if self._has_given_nodes:
+                raise
+            return self._on_new_nodes(place, error)
+
+    def _replay(self, place: Place) -> Run:
+        """Follow the loads to a place from no load."""
+        history = place.loads.history()
+
+        def follow(system: System, strict: bool) -> Run:
+            return self._follow(self._start(system, None, strict, history), place)
+
+        if place.grid is not None:
+            return follow(self._system_at(place), True)
+        return self._on_first_nodes(place.problem, self._expected or history, follow)
+
+    def _on_first_nodes(self, problem: Problem, history: LoadHistory, work: Callable[[System, bool], Run]) -> Run:
+        """Do some work on the nodes for a history: first with nodes for its arc, then with nodes for narrow contacts.
+
+        At last narrow contacts are let go, as :class:`Task` does.
+        """
+        task = Task(problem, history, self._options, self._grid, self._check_request)
+        values = history.distinct()
+        first = next(task.grids(self._check_request))
+        if self._grid is None:
+            first = dividing_the_circle(first, first_direction(problem, values))
+        grids: Iterable[Grid] = [first]
+        if not self._has_given_nodes:
+            grids = itertools.chain(
+                grids, narrow_grids(problem, values, task.force, self._options, self._check_request)
+            )
+        for grid, strict in itertools.chain(((grid, True) for grid in grids), [(first, False)]):
+            try:
+                return work(build_system(problem, grid, task.force), strict)
+            except ConvergenceError as error:
+                failed = error
+        raise failed
+
+    def _step_to(self, run: Run, place: Place, given: np.ndarray) -> Run:
+        """Follow one step to the last load of a place, if need be on a wider arc. Returns the run that got there."""
+        load = complete_load(given, run.load)
+        while True:
+            restart = run.bookmark()
+            try:
+                run.step_to(load)
+            except ArcError as error:
+                lost = error
+            else:
+                if not self._recorder.touched_outside:
+                    return run
+                lost = touches_outside(run)
+            system = self._wider_system(run)
+            if system is None:
+                return self._on_new_nodes(place, lost)
+            run = self._start(system, carried(run.system, system, restart), run.strict)
+
+    def _follow(self, run: Run, place: Place) -> Run:
+        """Follow the history of a run to its end, if need be on a wider arc. Returns the run that got there."""
+        while True:
+            try:
+                run.follow()
+            except ArcError as error:
+                lost = error
+            except ConvergenceError:
+                if not run.strict:
+                    raise
+                run = self._start(run.system, run.restart(), False, run.history)
+                continue
+            else:
+                if not self._recorder.touched_outside:
+                    return run
+                lost = touches_outside(run)
+            system = self._wider_system(run)
+            if system is None:
+                return self._on_new_nodes(place, lost)
+            # Where the pin has touched beyond the arc, nobody knows since when: from no load.
+            last = None if self._recorder.touched_outside else carried(run.system, system, run.restart())
+            run = self._start(system, last, run.strict, run.history)
+
+    def _wider_system(self, run: Run) -> System | None:
+        """The system of the next wider arc; None if there is none."""
+        old = run.system
+        first = self._options.nodes if self._grid is None else self._grid.size
+        grid = wider_grid(old.grid, run.now.closed, most_nodes(first), self._recorder.touched_outside)
+        return None if grid is None else build_system(old.problem, grid, old.scales.force)
+
+    @property
+    def _has_given_nodes(self) -> bool:
+        return self._grid is not None or self._options.arc is not None
+
+    def _on_new_nodes(self, place: Place, lost: SolveError) -> Run:
+        """Choose new nodes for the whole history to a place, and follow it there. `lost` is the reason."""
+        if self._grid is not None:
+            lost.args = (f"{lost}; the given grid can't grow that far: give Grid.circle, or no grid",)
+            raise lost
+        arc = ALL_ROUND if self._recorder.touched_outside else None
+        while True:
+            task = Task(place.problem, place.loads.history(), self._options.changed(arc=arc), None, self._check_request)
+            task.follow(self._recorder)
+            if not self._recorder.touched_outside:
+                assert self._recorder.run is not None
+                return self._recorder.run
+            arc = ALL_ROUND
+
+
+def touches_outside(run: Run) -> ArcError:
+    """The error of a run whose pin touches the hole beyond the arc."""
+    message = f"step {run.corner}: the pin touches the hole beyond the arc"
+    return ArcError(message, run.corner - 1, 1.0, named_load(run.load))
