@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -113,6 +114,19 @@ def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture
     (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
     exec(compile(code, "fatigue.md", "exec"), {})
     assert capsys.readouterr().out == printed
+
+
+def test_the_examples_of_sessions_run() -> None:
+    text = (ROOT / "docs" / "sessions.md").read_text(encoding="utf-8")
+    names: dict[str, Any] = {}
+    for code in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(code, "sessions.md", "exec"), names)
+    session, state = names["session"], names["state"]
+    assert 1e5 < names["force"] < 7e5
+    assert 0.2 < names["friction"] < 0.4
+    assert session.problem.friction == pytest.approx(names["friction"], rel=1e-4)
+    assert session.state is state
+    assert names["lost"] is None
 
 
 RIVET = (ROOT / "docs" / "riveted-joint.md").read_text(encoding="utf-8")
