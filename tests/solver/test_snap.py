@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import fastpin.solver.path as path
+import fastpin.solver.path_stepper as path_stepper
 from fastpin import Problem, solve
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
@@ -31,7 +31,7 @@ def snaps(monkeypatch):
         found.append((system, now, after))
         return after
 
-    monkeypatch.setattr(path, "find_state_beyond", watched)
+    monkeypatch.setattr(path_stepper, "find_state_beyond", watched)
     return found
 
 
@@ -136,7 +136,7 @@ def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
 
 
 def test_a_snap_to_nowhere_is_told(monkeypatch):
-    monkeypatch.setattr(path, "find_state_beyond", lambda *_: None)
+    monkeypatch.setattr(path_stepper, "find_state_beyond", lambda *_: None)
     case, history = GRIPPED
     with pytest.raises(NoEquilibriumError, match="the pin snaps") as caught:
         solve(case, history, nodes=121)
