@@ -17,10 +17,11 @@ import bisect
 import functools
 import itertools
 import math
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+
+from fastpin import kernels
 
 SPARE = 4
 """Least number of nodes of a window beyond the number of unknowns."""
@@ -63,8 +64,11 @@ not fitted without the decaying part.
 EDGE_ERROR = 0.1
 """Largest standard error of a fitted edge, in node distances. A fit with a larger one is not taken."""
 
+EDGE_LIMITS = EDGE_INSIDE, EDGE_AGREEMENT, EDGE_NEAREST_ERROR, EDGE_ERROR
+"""The limits of the fits of an edge, in the order of the compiled search."""
+
 HALF_WIDTHS = (8, 12, 18, 27, 40, 60)
-"""Windows to try about a border or a corner: the number of nodes on either side."""
+"""Half-widths of the windows about a border or a corner: the number of nodes on either side."""
 
 CUSP_WINDOWS = ((8, 2), (12, 4), (18, 4), (27, 6), (40, 6), (60, 6), (90, 6))
 """Windows to try about a cusp: the number of nodes on either side, and the number left out beside the cusp."""
@@ -87,20 +91,23 @@ CUSP_STEPS = 2
 CUSP_STEP = 1e-4
 """Shift of the place, in node distances, for the derivative by a difference quotient."""
 
-BORDER_SHAPES = ((3, 2), (4, 3))
+BORDER_SHAPES = np.array([(3, 2), (4, 3)])
 """Shapes to try at a border: degree of the polynomial, terms of the cusp."""
 
-BORDER_SKIPPED = (1, 2, 4)
-"""Numbers of nodes left out on either side of a border."""
+BORDER_WINDOWS = np.array(list(itertools.product(HALF_WIDTHS, (1, 2, 4))))
+"""Windows to try about a border: the number of nodes on either side, and the number left out beside the border."""
+
+BORDER_PLACES = 401
+"""Number of places on the slip side at which the fitted bound is compared; they gather at the border."""
 
 BORDER_ERROR = 3e-3
 """Largest standard error of the bound mu N at a border, relative to the largest bound."""
 
-CORNER_DEGREES = (1, 2, 3, 4)
+CORNER_DEGREES = np.array([1, 2, 3, 4])
 """Degrees of the polynomials to try at a corner."""
 
-CORNER_SKIPPED = (2, 4)
-"""Numbers of nodes left out on either side of a corner."""
+CORNER_WINDOWS = np.array(list(itertools.product(HALF_WIDTHS, (2, 4))))
+"""Windows to try about a corner: the number of nodes on either side, and the number left out beside the corner."""
 
 CORNER_BEND = 50.0
 """Least fall from a corner over a node distance, mean of both sides, in standard errors.
@@ -151,12 +158,6 @@ class Peak:
     cusp: float = 0.0
 
 
-def _standard_error(residual: np.ndarray, unknowns: int, amplification: float) -> float:
-    """Standard error of a fitted number, a little enlarged if there are few nodes beyond the unknowns."""
-    spare = residual.size - unknowns
-    return math.sqrt(float(residual @ residual) / spare) * amplification * (1.0 + 10.0 / spare)
-
-
 def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: float, alike: int) -> float:
     """Angle at which a quantity falls to zero at the end of a zone, rad.
 
@@ -194,20 +195,11 @@ def edge(theta: np.ndarray, quantity: np.ndarray, exponent: float, outside: floa
     x = np.round((used - theta[0]) / spacing + 0.5, 9)  # 0 is halfway to the next node of an equal spacing
     powered = np.abs(quantity[: x.size]) ** (1.0 / exponent)
     designs = _edge_designs(x.tobytes())
-    roots, slopes = _roots((designs.series @ powered).reshape(len(designs.fits), -1))
-    offsets = roots - 0.5
-    possible = (offsets >= 1.25 * low) & (offsets <= EDGE_INSIDE)
-    if not possible[0]:
-        return float(theta[0]) + spacing * place
-    if designs.fits[0].error(powered, slopes[0]) <= EDGE_NEAREST_ERROR:
-        place = max(offsets[0], low)
-    least = EDGE_ERROR
-    agreeing = possible & (np.abs(offsets - offsets[0]) <= EDGE_AGREEMENT)
-    for k in np.flatnonzero(agreeing[1:]) + 1:
-        error = designs.fits[k].error(powered, slopes[k])
-        if error < least:
-            least, place = error, max(offsets[k], low)
-    return float(theta[0] + spacing * place)
+    series = (designs.series @ powered).reshape(len(designs.windows), -1)
+    found = kernels.least_squares.edge(
+        series, designs.windows, designs.amplifications, designs.columns, designs.inverses, powered, low, EDGE_LIMITS
+    )
+    return float(theta[0]) + spacing * (place if math.isnan(found) else found)
 
 
 def by_two_nodes(first: float, second: float, exponent: float, low: float) -> float:
@@ -221,74 +213,42 @@ def by_two_nodes(first: float, second: float, exponent: float, low: float) -> fl
 
 
 @dataclass(frozen=True, eq=False)
-class _EdgeFit:
-    """Least squares on one window: a polynomial of the distance, and perhaps a part like the inverse distance."""
-
-    nodes: slice
-    columns: np.ndarray
-    inverse: np.ndarray
-    series: np.ndarray  # (degree + 1, count): times the nodal values, the coefficients of the polynomial
-    amplification: float
-
-    @classmethod
-    def of(cls, x: np.ndarray, first: int, count: int, degree: int, decaying: bool) -> _EdgeFit:
-        window = x[first : first + count]
-        scaled, powers = window / window[-1], np.arange(degree + 1)
-        columns = np.column_stack([scaled[:, None] ** powers, *([1.0 / scaled] * decaying)])
-        inverse = np.linalg.pinv(columns)
-        series = inverse[: degree + 1] / window[-1] ** powers[:, None]
-        return cls(slice(first, first + count), columns, inverse, series, float(np.linalg.norm(series[0])))
-
-    def error(self, values: np.ndarray, slope: float) -> float:
-        """Standard error of the root, at which the polynomial has this slope."""
-        wanted = values[self.nodes]
-        residual = self.columns @ (self.inverse @ wanted) - wanted
-        return _standard_error(residual, self.columns.shape[1], self.amplification) / abs(slope)
-
-
-@dataclass(frozen=True, eq=False)
 class _EdgeDesigns:
-    """All fits to try at an edge.
+    """All fits to try at an edge, as :func:`fastpin.kernels.least_squares.edge` takes them.
 
     ``series``, shape (fits * terms, nodes), times the nodal values gives the coefficients of all polynomials.
     """
 
-    fits: list[_EdgeFit]
     series: np.ndarray
+    windows: np.ndarray
+    amplifications: np.ndarray
+    columns: np.ndarray
+    inverses: np.ndarray
 
 
 @functools.lru_cache(maxsize=64)
 def _edge_designs(places: bytes) -> _EdgeDesigns:
     """The fits to try for nodes at these distances from the edge. The first one uses the nearest window."""
     x = np.frombuffer(places)
-    fits = [_EdgeFit.of(x, *EDGE_NEAREST, 2, False)]
+    chosen = [(*EDGE_NEAREST, 2, False)]
     for first, count in EDGE_WINDOWS:
         for degree in EDGE_DEGREES:
             for decaying in (False, True):
                 too_simple = count >= EDGE_LONG and (degree == 1 or (not decaying and first == EDGE_FAR))
                 if first + count <= x.size and not too_simple and count >= degree + 1 + decaying + SPARE:
-                    fits.append(_EdgeFit.of(x, first, count, degree, decaying))
-    series = np.zeros((len(fits), max(EDGE_DEGREES) + 1, x.size))
-    for fit, rows in zip(fits, series, strict=True):
-        rows[: fit.series.shape[0], fit.nodes] = fit.series
-    return _EdgeDesigns(fits, series.reshape(-1, x.size))
-
-
-def _roots(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Roots near 0 of power series, shape (fits, terms), by Newton's method, and the slopes there.
-
-    Both have shape (fits,). A series without a root near 0 has the root NaN.
-    """
-    places = np.zeros(series.shape[0])
-    slopes = places
-    with np.errstate(all="ignore"):
-        for _ in range(4):
-            values, slopes = np.zeros_like(places), np.zeros_like(places)
-            for k in range(series.shape[1] - 1, -1, -1):
-                slopes = slopes * places + values
-                values = values * places + series[:, k]
-            places = places - values / slopes
-    return np.where(np.isfinite(places) & (slopes != 0.0), places, np.nan), slopes
+                    chosen.append((first, count, degree, decaying))
+    terms, longest = max(EDGE_DEGREES) + 1, max(count for _, count, _, _ in chosen)
+    series = np.zeros((len(chosen), terms, x.size))
+    columns, inverses = np.zeros((2, len(chosen), terms + 1, longest))
+    for k, (first, count, degree, decaying) in enumerate(chosen):
+        window = x[first : first + count]
+        scaled, powers = window / window[-1], np.arange(degree + 1)
+        of_fit = np.column_stack([scaled[:, None] ** powers, *([1.0 / scaled] * decaying)])
+        inverse = np.linalg.pinv(of_fit)
+        series[k, : degree + 1, first : first + count] = inverse[: degree + 1] / window[-1] ** powers[:, None]
+        columns[k, : of_fit.shape[1], :count], inverses[k, : of_fit.shape[1], :count] = of_fit.T, inverse
+    windows = np.array([(first, count, degree + 1 + decaying) for first, count, degree, decaying in chosen])
+    return _EdgeDesigns(series.reshape(-1, x.size), windows, np.linalg.norm(series[:, 0], axis=1), columns, inverses)
 
 
 def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | None:
@@ -309,45 +269,24 @@ def border_peak(x: np.ndarray, bound: np.ndarray, exponent: float) -> Peak | Non
     Peak or None
         None if no fit is good enough, or if the bound still rises at the end of the window.
     """
-    best, shape = None, (np.zeros(0), 0, 0)
-    for half, taken in _windows(x, itertools.product(HALF_WIDTHS, BORDER_SKIPPED)):
-        for degree, terms in BORDER_SHAPES:
-            if np.count_nonzero(taken) < degree + 1 + terms + SPARE:
-                continue
-            columns = _cusp_columns(-x[taken] / half, exponent, degree, terms)
-            coefficients, error = _fit_windows(columns, bound[taken])
-            if best is None or error < best.error:
-                best, shape = Peak(0.0, error, float(half)), (coefficients, degree, terms)
-    if best is None or best.error > BORDER_ERROR * float(bound.max()):
+    fitted = np.empty(BORDER_PLACES)
+    error, half = kernels.least_squares.border(
+        _own(x), _own(bound), exponent, BORDER_WINDOWS, BORDER_SHAPES, SPARE, fitted
+    )
+    if error > BORDER_ERROR * float(bound.max()):
         return None
-    t = np.linspace(0.0, 1.0, 401)  # square roots of the distances, so that the places gather at the border
-    coefficients, degree, terms = shape
-    fitted = _cusp_columns(-(t**2), exponent, degree, terms) @ coefficients
     top = int(np.argmax(fitted))
     if top == 0:
-        return Peak(float(fitted[0]), best.error, 0.0)
-    if top == t.size - 1:
+        return Peak(float(fitted[0]), error, 0.0)
+    if top == fitted.size - 1:
         return None
     shift, value = _vertex(*(float(height) for height in fitted[top - 1 : top + 2]))
-    return Peak(value, best.error, best.place * float(t[top] + shift * t[1]) ** 2)
+    return Peak(value, error, half * ((top + shift) / (fitted.size - 1)) ** 2)
 
 
-def _windows(x: np.ndarray, sizes: Iterable[tuple[int, int]]) -> Iterator[tuple[int, np.ndarray]]:
-    """Half-width and nodes of every window about x = 0 that lies inside the range of `x`.
-
-    `sizes` are pairs: the half-width, and the number of nodes left out on either side of 0.
-    """
-    for half, skipped in sizes:
-        if x[0] <= 0.5 - half and x[-1] >= half - 0.5:
-            yield half, (np.abs(x) > skipped + 0.5) & (np.abs(x) < half + 0.5)
-
-
-def _fit_windows(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float]:
-    """Coefficients of a least-squares fit, and the standard error of the first coefficient."""
-    inverse = np.linalg.pinv(columns)
-    coefficients = inverse @ values
-    residual = columns @ coefficients - values
-    return coefficients, _standard_error(residual, columns.shape[1], float(np.linalg.norm(inverse[0])))
+def _own(values: np.ndarray) -> np.ndarray:
+    """A copy without gaps that may be written to. Compiled code is compiled anew for any other array."""
+    return np.array(values, dtype=float)
 
 
 def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
@@ -386,22 +325,23 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
         None if no cusp is found within two node distances of the largest value.
     """
     tried: list[tuple[float, int, float, np.ndarray, np.ndarray, tuple[int, int, bool]]] = []
-    for _, taken in _windows(x, CUSP_WINDOWS):
-        window, wanted = np.round(x[taken], 9), values[taken]
+    rounded = np.round(x, 9)
+    for half, skipped in CUSP_WINDOWS:
+        if x[0] > 0.5 - half or x[-1] < half - 0.5:
+            continue
+        first, left, right, last = np.searchsorted(x, [-half - 0.5, -skipped - 0.5, skipped + 0.5, half + 0.5])
+        window, wanted = (np.concatenate([given[first:left], given[right:last]]) for given in (rounded, values))
         for shape in CUSP_SHAPES:
             if window.size >= shape[0] + 1 + shape[1] + shape[2] + 1 + SPARE:
-                error, place = _cusp_place(window, wanted, shape, exponent)
+                bases, amplification = _cusp_bases(window.tobytes(), shape, exponent)
+                error, place = kernels.least_squares.search_cusp(bases, wanted, amplification, CUSP_REACH)
                 tried.append((error, len(tried), place, window, wanted, shape))
     best: Peak | None = None
-    for _, _, place, window, wanted, shape in sorted(tried)[:CUSP_REFINED]:
-        for _ in range(CUSP_STEPS):
-            columns = _left_cusp(window, place, shape, exponent)
-            coefficients = np.linalg.pinv(columns) @ wanted
-            moved = _left_cusp(window, place + CUSP_STEP, shape, exponent) - columns
-            inverse = np.linalg.pinv(np.column_stack([columns, moved @ coefficients / CUSP_STEP]))
-            residual = columns @ coefficients - wanted
-            place -= float(inverse[-1] @ residual)
-        error = _standard_error(residual, inverse.shape[0], float(np.linalg.norm(inverse[0])))
+    for _, _, begin, window, wanted, shape in sorted(tried)[:CUSP_REFINED]:
+        coefficients = np.empty(sum(shape) + 1)
+        place, error = kernels.least_squares.refine_cusp(
+            window, wanted, begin, shape, exponent, CUSP_STEPS, CUSP_STEP, coefficients
+        )
         if abs(place) <= CUSP_REACH and (best is None or error < best.error):
             steepness = float(coefficients[shape[0] + 1]) / float(window[-1]) ** exponent
             best = Peak(float(coefficients[0]), error, place, steepness)
@@ -419,27 +359,9 @@ def _left_cusp(x: np.ndarray, place: float, shape: tuple[int, int, bool], expone
     return columns
 
 
-def _cusp_place(
-    window: np.ndarray, values: np.ndarray, shape: tuple[int, int, bool], exponent: float
-) -> tuple[float, float]:
-    """Approximate standard error of the value of the cusp, and the place with the smallest misfit.
-
-    The error is infinite if this place is an end of the reach.
-    """
-    orthogonal, amplification = _cusp_bases(window.tobytes(), shape, exponent)
-    left = values - np.einsum("pmk,pk->pm", orthogonal, np.einsum("pmk,m->pk", orthogonal, values))
-    misfit = np.einsum("pm,pm->p", left, left)
-    lowest = int(np.argmin(misfit))
-    if lowest in (0, CUSP_PLACES - 1):
-        return math.inf, 0.0
-    shift, _ = _vertex(*misfit[lowest - 1 : lowest + 2])
-    place = CUSP_REACH * (2.0 * (lowest + shift) / (CUSP_PLACES - 1) - 1.0)
-    return _standard_error(left[lowest], orthogonal.shape[2] + 1, amplification), place
-
-
 @functools.lru_cache(maxsize=256)
 def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> tuple[np.ndarray, float]:
-    """Orthonormal columns for every place to try, shape (places, nodes, unknowns), and the amplification of errors.
+    """Orthonormal columns for every place to try, shape (places, unknowns, nodes), and the amplification of errors.
 
     The amplification is the norm of the row that gives the value, for a cusp at the middle place.
     """
@@ -447,7 +369,8 @@ def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) ->
     places = np.linspace(-CUSP_REACH, CUSP_REACH, CUSP_PLACES)
     columns = np.array([_left_cusp(x, place, shape, exponent) for place in places])
     middle = np.linalg.pinv(columns[CUSP_PLACES // 2])
-    return np.linalg.qr(columns)[0], float(np.linalg.norm(middle[0]))
+    bases = np.ascontiguousarray(np.linalg.qr(columns)[0].transpose(0, 2, 1))
+    return bases, float(np.linalg.norm(middle[0]))
 
 
 def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
@@ -465,19 +388,10 @@ def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:
     Peak or None
         None if the values do not fall on both sides with a clear change of slope.
     """
-    best: Peak | None = None
-    for half, taken in _windows(x, itertools.product(HALF_WIDTHS, CORNER_SKIPPED)):
-        y, wanted = x[taken] / half, values[taken]
-        for degree in CORNER_DEGREES:
-            if y.size < 2 * degree + 1 + SPARE:
-                continue
-            columns = np.column_stack([y**k for k in range(degree + 1)] + [np.abs(y) * y**k for k in range(degree)])
-            coefficients, error = _fit_windows(columns, wanted)
-            bend = -coefficients[degree + 1] / half
-            falling = bend > max(abs(coefficients[1]) / half, CORNER_BEND * error)
-            if falling and (best is None or error < best.error):
-                best = Peak(float(coefficients[0]), error, 0.0)
-    return best
+    error, value = kernels.least_squares.corner(
+        _own(x), _own(values), CORNER_WINDOWS, CORNER_DEGREES, SPARE, CORNER_BEND
+    )
+    return Peak(value, error, 0.0) if error < math.inf else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -548,7 +462,9 @@ def law(place: float, exponent: complex, theta: np.ndarray, values: np.ndarray) 
             continue
         powers = [window ** (exponent + k) for k in range(degree + 1)]
         parts = [np.imag(powers[0])] * (exponent.imag != 0.0) + [window ** (exponent.real - 2.0)] * decaying
-        coefficients, error = _fit_windows(np.column_stack([*np.real(powers), *parts]), wanted)
+        columns = np.column_stack([*np.real(powers), *parts])
+        coefficients = np.empty(columns.shape[1])
+        error = kernels.least_squares.fit(columns, _own(wanted), coefficients)
         if best is None or error < best[0]:
             series = coefficients[: degree + 1].astype(complex)
             if exponent.imag != 0.0:
