@@ -197,6 +197,7 @@ def add_sweep(commands: Any) -> None:
     )
     sweep.add_argument("--status", action="store_true", help="report the progress; solve nothing")
     sweep.add_argument("--retry", action="store_true", help="also solve failed runs again")
+    sweep.add_argument("--files", action="store_true", help="also write each result to an HDF5 file of its own")
     sweep.add_argument(
         "--workers", metavar="N", type=literal, help="worker processes (default: one for each processor)"
     )

@@ -56,7 +56,9 @@ def _run(
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
         try:
-            return studies.sweep.run(plan, directory, executor, options.workers, options.retry, shard, progress)
+            return studies.sweep.run(
+                plan, directory, executor, options.workers, options.retry, shard, progress, options.files
+            )
         except InputError as error:
             if error.field == "workers":
                 raise InputError("--workers", error.reason) from None
@@ -96,6 +98,8 @@ def _check_combination(options: argparse.Namespace) -> None:
         raise InputError("--workers", "is for processes of this machine; the scheduler has its own workers")
     if options.status and options.retry:
         raise InputError("--retry", "runs what failed again, --status runs nothing")
+    if options.status and options.files:
+        raise InputError("--files", "writes the results to files, --status writes nothing")
     for name in ("value", "x", "y"):
         if getattr(options, name) is not None and options.plot is None:
             raise InputError(f"--{name}", "says what a figure shows; --plot FILE is missing")

@@ -12,6 +12,7 @@ import numpy as np
 
 from fastpin.errors import FastpinError, InputError
 from fastpin.model.checks import number
+from fastpin.storage.packed import Array
 
 
 @contextmanager
@@ -52,7 +53,7 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     """
     dataset = group.get(name)
     label = f"{group.name}/{name}".strip("/")
-    if not isinstance(dataset, h5py.Dataset):
+    if not isinstance(dataset, (h5py.Dataset, Array)):
         raise ValueError(f"there is no array {label}")
     if dataset.dtype != np.dtype(dtype):
         raise ValueError(f"{label} has numbers of the type {dataset.dtype}, not {np.dtype(dtype)}")

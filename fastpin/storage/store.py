@@ -22,6 +22,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
+from fastpin.storage import packed
 from fastpin.storage.damage import reading
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import check_free, consistent_view, open_h5
@@ -80,16 +81,55 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
     with replacing(path) as temporary, h5py.File(temporary, "w") as file:
-        options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
-        write_head(file, result.problem, result.history, result.grid, options)
-        file.attrs["complete"] = result.complete
-        if error is not None:
-            file.attrs["error"] = error
-        write_statistics(file, result.statistics)
-        append(file["states"], rows_of(list(result)))
-        append(file["cycles"], cycle_rows(result.cycles))
+        _write(file, result, error)
         if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)
+
+
+def _write(file: h5py.File | packed.Group, result: Result, error: str | None) -> None:
+    """Write a result into an empty file, all but its restart."""
+    options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
+    write_head(file, result.problem, result.history, result.grid, options)
+    file.attrs["complete"] = result.complete
+    if error is not None:
+        file.attrs["error"] = error
+    write_statistics(file, result.statistics)
+    append(file["states"], rows_of(list(result)))
+    append(file["cycles"], cycle_rows(result.cycles))
+
+
+def pack(result: Result, error: str | None, most: int) -> bytes | None:
+    """Return a result in few bytes, without its restart; see packed.py. None if it needs more than `most` bytes.
+
+    `error` tells why the result is incomplete.
+    """
+    if len(result) * result.grid.size > most:  # a byte of status each, and more
+        return None
+    file = packed.Group()
+    _write(file, result, error)
+    content = packed.to_bytes(file)
+    return content if len(content) <= most else None
+
+
+def unpack(content: bytes, path: Path) -> Result:
+    """Return the result of :func:`pack`. `path` names it in errors.
+
+    Raises
+    ------
+    InputError
+        If the bytes are damaged.
+    """
+    with _opened(content, path) as file:
+        return _read(file, path, ALL, None)[0]
+
+
+@contextmanager
+def _opened(content: bytes, path: Path) -> Iterator[packed.Group]:
+    """Open a packed result for reading. `path` names it in errors."""
+    with reading(path):
+        file = packed.from_bytes(content)
+        check_format(file, str(path))
+        yield file
 
 
 def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | None = None) -> Result:
@@ -122,39 +162,48 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         if not all(map(is_whole, states)):
             raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
     with open_result(path) as file:
-        problem, grid, history = read_problem(file), read_grid(file), read_history(file)
-        complete, restart, task = bool(file.attrs["complete"]), None, None
-        restarts = file.get("restart", {})
-        found = count(file["states"])
-        if after is not None:
-            task, restart = _way_to(path, file, history, after, grid.size)
-            history, complete = history[:after], True
-            found = int(np.searchsorted(file["states/step"][()], after))
-        elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
-            restart = read_restart(restarts["latest"], grid.size)
-        if isinstance(states, slice):
-            states = slice(*states.indices(found))
-        elif any(not -found <= state < found for state in states):
-            raise InputError("states", f"must be places from 0 to {found - 1}, not {as_toml(states)}")
-        else:
-            states = [state % found for state in states]
-        found_states = read_states(file, problem, grid, states, len(history))
-        places = range(*states.indices(found)) if isinstance(states, slice) else states
-        cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
-        result = Result(
-            states=_without_gaps(found_states, places),
-            problem=problem,
-            history=history,
-            grid=grid,
-            method=str(file["solver"].attrs["method"]),
-            statistics=read_statistics(file),
-            complete=complete,
-            restart=restart,
-            cycles=tuple(cycles),
-        )
+        result, task = _read(file, path, states, after)
+    restart = result.restart
     if task is not None and restart is not None and restart.corner < len(task.history):
-        result.restart = task.reach(restart, grid)  # The file is closed by now: this may take long.
+        result.restart = task.reach(restart, result.grid)  # The file is closed by now: this may take long.
     return result
+
+
+def _read(
+    file: h5py.File | packed.Group, path: Path, states: slice | Sequence[int], after: int | None
+) -> tuple[Result, Task | None]:
+    """Read a result, see :func:`load`. The task leads from its restart to the corner `after`; None without one."""
+    problem, grid, history = read_problem(file), read_grid(file), read_history(file)
+    complete, restart, task = bool(file.attrs["complete"]), None, None
+    restarts = file.get("restart", {})
+    found = count(file["states"])
+    if after is not None:
+        task, restart = _way_to(path, file, history, after, grid.size)
+        history, complete = history[:after], True
+        found = int(np.searchsorted(file["states/step"][()], after))
+    elif "latest" in restarts and ("run" not in file.attrs or complete or "error" in file.attrs):
+        restart = read_restart(restarts["latest"], grid.size)
+    if isinstance(states, slice):
+        states = slice(*states.indices(found))
+    elif any(not -found <= state < found for state in states):
+        raise InputError("states", f"must be places from 0 to {found - 1}, not {as_toml(states)}")
+    else:
+        states = [state % found for state in states]
+    found_states = read_states(file, problem, grid, states, len(history))
+    places = range(*states.indices(found)) if isinstance(states, slice) else states
+    cycles = [cycle for cycle in read_cycles(file) if after is None or cycle.corner < after]
+    result = Result(
+        states=_without_gaps(found_states, places),
+        problem=problem,
+        history=history,
+        grid=grid,
+        method=str(file["solver"].attrs["method"]),
+        statistics=read_statistics(file),
+        complete=complete,
+        restart=restart,
+        cycles=tuple(cycles),
+    )
+    return result, task
 
 
 def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:
@@ -213,11 +262,18 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
 def open_result(path: Path) -> Iterator[Any]:
     """Open a result for reading, as its last transaction left it.
 
+    A result in the index of a sweep has the path of a file that is not there, see :func:`packed.packed_result`.
+
     Raises
     ------
     InputError
         If the file can't be read, was cut short, or is no result of fastpin. Also if the block finds damaged data.
     """
+    content = packed.packed_result(path)
+    if content is not None:
+        with _opened(content, path) as file:
+            yield file
+        return
     check_exists(path)
     with consistent_view(path), open_h5(path) as file, reading(path):
         check_format(file, str(path))

@@ -1,8 +1,8 @@
-"""The index of a sweep: an SQLite file with one row for each run. Only the main process writes it.
+"""The index of a sweep: an SQLite file with one row for each run, and its result. Only the main process writes it.
 
-A row is committed as soon as its run ends. It survives when the main process is killed. The journal is SQLite's
-ordinary journal: it works on the network file systems of clusters, where a write-ahead log does not. Other processes
-can read the index during a sweep.
+A row and the result are committed together as soon as the main process has them. They survive when it is killed. The
+journal is SQLite's ordinary journal: it works on the network file systems of clusters, where a write-ahead log does
+not. Other processes can read the index during a sweep.
 """
 
 from __future__ import annotations
@@ -16,13 +16,11 @@ from typing import Any, get_args
 
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, number, string, whole_number
+from fastpin.storage.packed import BUSY_SECONDS, INDEX, TABLE
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Spacing
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS, RunEnd
 from fastpin.version import __version__
-
-FILE = "index.sqlite"
-"""Name of the index in its directory."""
 
 APPLICATION = 0x6670696E
 """Application id in the header of the file: "fpin"."""
@@ -38,12 +36,11 @@ _OUTCOMES_TABLE = (
     "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, value REAL, "
     "reason TEXT, PRIMARY KEY (run, name))"
 )
-_BUSY_SECONDS = 60.0
 
 
 def has_index(directory: Path) -> bool:
     """Whether a directory has an index. An empty file does not count: another process is creating the index."""
-    path = directory / FILE
+    path = directory / INDEX
     return path.is_file() and path.stat().st_size > 0
 
 
@@ -63,13 +60,13 @@ class Index:
     """
 
     def __init__(self, directory: Path, create: bool = False) -> None:
-        self.path = directory / FILE
+        self.path = directory / INDEX
         if not create and not has_index(directory):
             raise InputError(str(directory), "holds no sweep: there is no index.sqlite")
         with self._as_input_error():
             mode = "rwc" if create else "rw"
             self._database = sqlite3.connect(
-                f"{self.path.resolve().as_uri()}?mode={mode}", uri=True, timeout=_BUSY_SECONDS, isolation_level=None
+                f"{self.path.resolve().as_uri()}?mode={mode}", uri=True, timeout=BUSY_SECONDS, isolation_level=None
             )
             try:
                 self._check(create)
@@ -97,9 +94,10 @@ class Index:
             raise InputError(str(self.path), "is an SQLite file, but not the index of a sweep")
         if self._one("PRAGMA user_version") != FORMAT_VERSION:
             raise InputError(str(self.path), "is the index of another version of fastpin, which this one can't read")
-        damage = self._one("PRAGMA quick_check(1)")
-        if damage != "ok":
-            raise sqlite3.DatabaseError(damage)
+        for table in ("runs", "sweep", "outcomes") if self._has_table("outcomes") else ("runs", "sweep"):
+            damage = self._one(f"PRAGMA quick_check({table})")  # Every result has a checksum of its own.
+            if damage != "ok":
+                raise sqlite3.DatabaseError(damage)
 
     # -- writing --------------------------------------------------------------------------------------------------
 
@@ -112,6 +110,7 @@ class Index:
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
             self._database.execute(_OUTCOMES_TABLE)
+            self._database.execute(TABLE)
             self._database.executemany(
                 "DELETE FROM outcomes WHERE name = ? AND definition <> ?",
                 [(name, outcome.definition) for name, outcome in plan.outcomes.items()],
@@ -135,28 +134,31 @@ class Index:
                 ),
             )
 
-    def record(self, end: RunEnd) -> None:
-        """Write the end of a run into its row, and the values of its outcomes."""
-        cells: dict[str, Any] = {
-            "status": DONE if end.reason is None else FAILED,
-            "reason": end.reason,
-            **dict.fromkeys(KEY_FIGURES),
-            **end.figures,
-            "seconds": end.seconds,
-            "started": end.started,
-            "host": end.host,
-            "versions": json.dumps(end.versions),
-        }
+    def record(self, ends: Iterable[RunEnd]) -> None:
+        """Write the ends of runs into their rows, with their results and the values of their outcomes, all at once."""
         assignments = ", ".join(f'"{name}" = ?' for name in _END_COLUMNS)
         with self._as_input_error(), self._transaction():
-            values = [cells[name] for name in _END_COLUMNS]
-            self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
-            self._write_outcomes(end.id, end.outcomes)
+            for end in ends:
+                cells: dict[str, Any] = {
+                    "status": DONE if end.reason is None else FAILED,
+                    "reason": end.reason,
+                    **dict.fromkeys(KEY_FIGURES),
+                    **end.figures,
+                    "seconds": end.seconds,
+                    "started": end.started,
+                    "host": end.host,
+                    "versions": json.dumps(end.versions),
+                }
+                values = [cells[name] for name in _END_COLUMNS]
+                self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
+                self._write_outcomes(end.id, end.outcomes)
+                self._write_result(end.id, end.content)
 
-    def record_outcomes(self, run: str, values: dict[str, OutcomeValue]) -> None:
-        """Write the values of outcomes of a finished run."""
+    def record_outcomes(self, ends: Iterable[RunEnd]) -> None:
+        """Write the values of outcomes of finished runs, all at once."""
         with self._as_input_error(), self._transaction():
-            self._write_outcomes(run, values)
+            for end in ends:
+                self._write_outcomes(end.id, end.outcomes)
 
     def forget_unread(self) -> None:
         """Remove the outcomes that could not be read."""
@@ -188,7 +190,7 @@ class Index:
 
     def outcomes(self) -> dict[str, dict[str, OutcomeValue]]:
         """Read the values of all outcomes, by run and name. Only finished runs have some."""
-        if not self._one("SELECT count(*) FROM sqlite_master WHERE name = 'outcomes'"):
+        if not self._has_table("outcomes"):
             return {}
         found: dict[str, dict[str, OutcomeValue]] = {}
         with self._as_input_error():
@@ -197,6 +199,21 @@ class Index:
                 checked = None if value is None else number(name, value)
                 found.setdefault(run, {})[name] = OutcomeValue(definition, checked, _text("reason", reason))
         return found
+
+    def packed(self) -> set[str]:
+        """Return the ids of the runs whose results are in the index."""
+        if not self._has_table("results"):
+            return set()
+        with self._as_input_error():
+            return {str(run) for (run,) in self._database.execute("SELECT run FROM results")}
+
+    def content(self, run: str) -> bytes | None:
+        """Read the packed result of a run; None if it is not in the index."""
+        if not self._has_table("results"):
+            return None
+        found = self._one("SELECT content FROM results WHERE run = ?", run)
+        with self._as_input_error():
+            return None if found is None else bytes(instance("content", found, bytes, "bytes"))
 
     def rows(self) -> list[dict[str, Any]]:
         """Read all rows, in the order of their insertion. A row is a dict from column to value.
@@ -217,7 +234,7 @@ class Index:
             return rows
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
-        """Copy the rows and outcomes of these ids, and the notes, from another index of the same plan."""
+        """Copy the rows, outcomes and results of these ids, and the notes, from another index of the same plan."""
         with self._as_input_error(), self._transaction():
             names = list(other.fields)
             self._add_columns(names)
@@ -230,9 +247,11 @@ class Index:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
                 self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)
             self._database.execute(_OUTCOMES_TABLE)
+            self._database.execute(TABLE)
             outcomes = other.outcomes()
             for run in ids:
                 self._write_outcomes(run, outcomes.get(run, {}))
+                self._write_result(run, other.content(run))
 
     # -- the database --------------------------------------------------------------------------------------------
 
@@ -247,6 +266,17 @@ class Index:
             "INSERT OR REPLACE INTO outcomes VALUES (?, ?, ?, ?, ?)",
             [(run, name, *value) for name, value in values.items()],
         )
+
+    def _write_result(self, run: str, content: bytes | None) -> None:
+        """Write a packed result. Without one, the result has a file of its own, and an older one is removed."""
+        if content is None:
+            self._database.execute("DELETE FROM results WHERE run = ?", [run])
+        else:
+            self._database.execute("INSERT OR REPLACE INTO results VALUES (?, ?)", [run, content])
+
+    def _has_table(self, name: str) -> bool:
+        """Whether there is a table of this name. An index from before the table was invented has none."""
+        return bool(self._one("SELECT count(*) FROM sqlite_master WHERE name = ?", name))
 
     def _write_notes(self, **values: str | None) -> None:
         self._database.executemany("INSERT OR REPLACE INTO sweep VALUES (?, ?)", values.items())
@@ -264,7 +294,8 @@ class Index:
         try:
             yield
         except BaseException:
-            self._database.execute("ROLLBACK")
+            if self._database.in_transaction:  # SQLite itself undoes it when the disk is full.
+                self._database.execute("ROLLBACK")
             raise
         self._database.execute("COMMIT")
 

@@ -124,6 +124,8 @@ class RunEnd:
         Versions of fastpin, Python and the libraries.
     outcomes : dict of str to OutcomeValue
         Values of the outcomes that the user chose. Empty after a failure.
+    content : bytes or None
+        The packed result, for the index. None if the result has a file of its own, or there is no state.
     """
 
     id: str
@@ -134,3 +136,4 @@ class RunEnd:
     host: str | None = None
     versions: dict[str, str] = field(default_factory=dict)
     outcomes: dict[str, OutcomeValue] = field(default_factory=dict)
+    content: bytes | None = field(default=None, repr=False)

@@ -10,31 +10,25 @@ Finished runs are skipped. Thus a sweep continues after a stop, a kill or an ext
 
 from __future__ import annotations
 
-import os
 import shutil
 import time
-from collections.abc import Callable, Collection, Generator, Iterable, Sequence
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
-from fastpin.errors import FastpinError, InputError
+from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
 from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
+from fastpin.storage import store
 from fastpin.storage.files import replacing
-from fastpin.studies.index import DONE, FAILED, FILE, WAITING, Index, ensure_directory, has_index, lock_directory
-from fastpin.studies.outcomes import OutcomeValue, pickled
+from fastpin.storage.packed import FOLDER, INDEX
+from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
+from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point
-from fastpin.studies.run_end import RunEnd
-from fastpin.studies.workers import DIED, BrokenError, PickledOutcomes, Submit, read_run, run_tasks, solve_run
-from fastpin.version import __version__
-
-RESULTS = "results"
-"""Folder of the results in the directory of a sweep."""
+from fastpin.studies.work import Work, pickled_outcomes
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """First bytes of an HDF5 file."""
@@ -94,6 +88,7 @@ def run(
     retry: bool = False,
     shard: tuple[int, int] | None = None,
     progress: Progress | None = None,
+    files: bool = False,
 ) -> Summary:
     """Solve all unfinished runs of a plan, and read the outcomes of all runs.
 
@@ -104,8 +99,8 @@ def run(
     plan : Plan
         A function of :meth:`Plan.with_outcomes` runs in the workers, which import it by its name.
     directory : path
-        Folder of the index (``index.sqlite``), the results (``results/ID.h5``) and a copy of the plan. It is created if
-        there is none. A changed plan may use the same directory: common runs are not solved again.
+        Folder of the index with the results (``index.sqlite``) and a copy of the plan. It is created if there is none.
+        A changed plan may use the same directory: common runs are not solved again.
     executor : Executor, optional
         An object with the interface of :mod:`concurrent.futures`, such as ``client.get_executor()`` of a dask cluster.
         Its workers must see the directory under the same path. Without an executor the function starts processes on
@@ -120,6 +115,9 @@ def run(
     progress : callable, optional
         Called as ``progress(ended, all)`` with numbers of runs, at the beginning and when a run has ended or its
         outcomes have been read.
+    files : bool
+        Write each result to an HDF5 file ``results/ID.h5``, also those of runs that are finished already. Otherwise
+        only results of more than 1 MB get files. :func:`fastpin.load` reads both kinds by this path.
 
     Returns
     -------
@@ -135,16 +133,17 @@ def run(
     """
     points = shard_of(plan, shard)
     true_or_false("retry", retry)
+    true_or_false("files", files)
     if executor is not None and not callable(getattr(executor, "submit", None)):
         raise InputError("executor", f"must be an executor of concurrent.futures, not {as_toml(executor)}")
     check_callable("progress", progress)
     workers = cores() if workers is None else whole_number("workers", workers, 1)
-    content = _pickled_outcomes(plan)
+    content = pickled_outcomes(plan)
     directory = ensure_directory(file_path("directory", directory))
     with lock_directory(directory):
         _check_plan_copy(directory, plan.text)
         with Index(directory, create=True) as index:
-            results = ensure_directory(directory / RESULTS).resolve()
+            results = ensure_directory(directory / FOLDER).resolve()
             _clear(results)
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
@@ -153,19 +152,22 @@ def run(
             skipped = (DONE,) if retry else (DONE, FAILED)
             todo = [run for run, (state, _) in _now(index, points, results).items() if state not in skipped]
             missing = _missing_outcomes(index, plan, points, results)
-            work = _Work(plan, results, content, executor, workers)
+            work = Work(plan, index, results, content, executor, workers, files)
             report = progress or (lambda ended, all_runs: None)
             began = time.perf_counter()
-            report(0, len(todo) + len(missing))
-            with closing(work.solve(todo)) as ends:
-                for ended, end in enumerate(ends, start=1):
-                    index.record(end)
-                    report(ended, len(todo) + len(missing))
+            count = _Counter(report, len(todo) + len(missing))
+            with closing(work.solve(todo)) as batches:
+                for ends in batches:
+                    index.record(ends)
+                    count.add(len(ends))
             missing = _missing_outcomes(index, plan, points, results)  # Also of runs that were solved again alone.
-            with closing(work.read(missing)) as ends:
-                for ended, end in enumerate(ends, start=len(todo) + 1):
-                    index.record_outcomes(end.id, end.outcomes)
-                    report(ended, len(todo) + len(missing))
+            count.total = len(todo) + len(missing)
+            with closing(work.read(missing)) as batches:
+                for ends in batches:
+                    index.record_outcomes(ends)
+                    count.add(len(ends))
+            if files:
+                _write_files(index, points, results)
             summary = _summary(index, plan, points, results)
             return replace(summary, ended=len(todo), seconds=time.perf_counter() - began, read=len(missing))
 
@@ -182,7 +184,7 @@ def status(plan: Plan, directory: str | Path, shard: tuple[int, int] | None = No
     if not has_index(directory):
         return Summary(0, len(points), [])
     with Index(directory) as index:
-        return _summary(index, plan, points, directory / RESULTS)
+        return _summary(index, plan, points, directory / FOLDER)
 
 
 def load(directory: str | Path) -> list[dict[str, Any]]:
@@ -262,17 +264,6 @@ def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:
 # -- running and status --------------------------------------------------------------------------------------
 
 
-def _pickled_outcomes(plan: Plan) -> PickledOutcomes:
-    """Return the outcomes of a plan for workers."""
-    content = {}
-    for name, outcome in plan.outcomes.items():
-        try:
-            content[name] = outcome.definition, pickled(outcome)
-        except FastpinError as error:
-            raise InputError("outcomes", f"{name}: {error}") from None
-    return content
-
-
 def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], results: Path) -> dict[str, list[str]]:
     """Return the names of the outcomes that finished runs lack, by run."""
     if not plan.outcomes:
@@ -286,79 +277,36 @@ def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], result
     return {run: names for run, names in missing.items() if names}
 
 
-class _Work:
-    """The tasks of one call: runs that are solved, and finished runs whose outcomes are read."""
+class _Counter:
+    """Counts the runs that have ended, and reports each."""
 
-    def __init__(
-        self, plan: Plan, results: Path, outcomes: PickledOutcomes, executor: Executor | None, workers: int
-    ) -> None:
-        self._plan, self._results, self._outcomes = plan, results, outcomes
-        self._executor, self._workers = executor, workers
-        self._submitted: set[str] = set()
+    def __init__(self, report: Progress, total: int) -> None:
+        self._report, self._ended, self.total = report, 0, total
+        report(0, total)
 
-    def solve(self, todo: Collection[str]) -> Generator[RunEnd, None, None]:
-        """Yield the end of each run when it ends."""
-        with closing(self._run(todo, self._submit_solve)) as ended:
-            for run, end in ended:
-                yield _check_end(run, end, self._results)
-
-    def read(self, missing: dict[str, list[str]]) -> Generator[RunEnd, None, None]:
-        """Yield the outcomes of finished runs, when they are read. `missing` has their names by run."""
-
-        def submit(executor: Executor, run: str) -> Future[RunEnd]:
-            wanted = {name: self._outcomes[name] for name in missing[run]}
-            return executor.submit(read_run, run, self._path(run), wanted, os.getpid(), __version__)
-
-        with closing(self._run(missing, submit)) as ended:
-            for run, unchecked in ended:
-                end = _as_end(run, unchecked)
-                lost = {name: OutcomeValue(self._outcomes[name][0], None, end.reason) for name in missing[run]}
-                yield end if end.reason is None else RunEnd(run, None, outcomes=lost)
-
-    def _submit_solve(self, executor: Executor, run: str) -> Future[RunEnd]:
-        """Submit a run. If its worker died, perhaps in a function of the user, its outcomes are left for later."""
-        outcomes = {} if run in self._submitted else self._outcomes
-        self._submitted.add(run)
-        case = self._plan.case(self._plan.runs[run])
-        return executor.submit(solve_run, run, case, self._path(run), outcomes, os.getpid(), __version__)
-
-    def _run(
-        self, tasks: Collection[str], submit: Submit[str, RunEnd]
-    ) -> Generator[tuple[str, RunEnd | BaseException], None, None]:
-        if not tasks:
-            return
-        # An executor may run its tasks in this process. They have one thread for BLAS, as in every worker.
-        with threadpool_limits(limits=1, user_api="blas"):
-            try:
-                ended = run_tasks(self._executor, self._workers, tasks, submit)
-                with closing(ended):
-                    yield from ended
-            except BrokenError:
-                raise FastpinError("the executor has stopped working; runs that are finished are kept") from None
-
-    def _path(self, run: str) -> str:
-        return str(self._results / f"{run}.h5")
+    def add(self, runs: int) -> None:
+        """Count and report some runs."""
+        for _ in range(runs):
+            self._ended += 1
+            self._report(self._ended, self.total)
 
 
-def _as_end(run: str, end: RunEnd | BaseException) -> RunEnd:
-    """Return the end of a run. An exception of the worker becomes a failure."""
-    if not isinstance(end, BaseException):
-        return end
-    died = type(end).__name__ in ("WorkerDiedError", "KilledWorker")  # KilledWorker is dask's.
-    return RunEnd(run, DIED if died else f"{type(end).__name__}: {end}")
-
-
-def _check_end(run: str, end: RunEnd | BaseException, results: Path) -> RunEnd:
-    """Return the end of a run. An exception of the worker, or a missing result, becomes a failure."""
-    end = _as_end(run, end)
-    if end.reason is None and not (results / f"{run}.h5").exists():
-        return RunEnd(run, f"the result did not arrive: {end.host} must see {results} under the same path")
-    return end
+def _write_files(index: Index, points: Iterable[str], results: Path) -> None:
+    """Write the results of finished runs that are only in the index to files."""
+    for run, (state, _) in _now(index, points, results).items():
+        path = results / f"{run}.h5"
+        content = None if state != DONE or path.exists() else index.content(run)
+        if content is not None:
+            store.save(store.unpack(content, path), path, restart=False)
 
 
 def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[str, str | None]]:
-    """Return status and reason of each run. A done run without its result file is waiting again."""
-    present = {path.stem for path in results.glob("[!.]*.h5") if _is_hdf5(path)}  # Unfinished files begin with a dot.
+    """Return status and reason of each run. A done run without its result is waiting again.
+
+    A file stands before the result of the same run in the index, as for a reader.
+    """
+    files = {path.stem: _is_hdf5(path) for path in results.glob("[!.]*.h5")}  # Unfinished files begin with a dot.
+    present = {run for run, whole in files.items() if whole} | (index.packed() - files.keys())
     waiting = WAITING, None
     known = index.statuses()
     stored = {run: known.get(run, waiting) for run in points}
@@ -396,7 +344,7 @@ def _is_of(plan: Plan, name: str, value: OutcomeValue) -> bool:
 def _check_plan_copy(directory: Path, text: str = "") -> None:
     """Raise :class:`InputError` if the copy of the plan would overwrite another file of the user."""
     path = directory / PLAN
-    if path.exists() and not (directory / FILE).exists() and path.read_bytes() != text.encode():
+    if path.exists() and not (directory / INDEX).exists() and path.read_bytes() != text.encode():
         raise InputError(str(directory), f"holds another {PLAN}, but no sweep; choose another directory")
 
 
@@ -445,10 +393,10 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
     for source in parts:
         if source.resolve() == target.resolve():
             raise InputError(str(source), "can't be merged into itself")
-    _check_parts([*([target] if (target / FILE).exists() else []), *parts])
+    _check_parts([*([target] if (target / INDEX).exists() else []), *parts])
     _check_plan_copy(ensure_directory(target))
     with lock_directory(target), Index(target, create=True) as index:
-        ensure_directory(target / RESULTS)
+        ensure_directory(target / FOLDER)
         for source in parts:
             with Index(source) as other:
                 _absorb(index, other, target, source)
@@ -482,9 +430,10 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
         if run not in statuses or rank.index(state) > rank.index(statuses[run][0])
     ]
     for run in wanted:
-        path = source / RESULTS / f"{run}.h5"
+        path = source / FOLDER / f"{run}.h5"
+        (target / FOLDER / path.name).unlink(missing_ok=True)  # It would stand before a result in the index.
         if path.exists():
-            with replacing(target / RESULTS / path.name) as temporary:
+            with replacing(target / FOLDER / path.name) as temporary:
                 shutil.copyfile(path, temporary)
     index.absorb(other, wanted)
     _keep_plan(target, index.read_note("text") or "")

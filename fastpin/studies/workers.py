@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import multiprocessing
 import os
 import signal
@@ -13,9 +14,10 @@ from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from multiprocessing import resource_tracker
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
@@ -43,8 +45,14 @@ DIED = "the worker process died; perhaps it needed more memory than there is"
 MOST_SUBMITTED = 1_000
 """Most tasks in a user's executor at a time: enough for a cluster."""
 
-Submit = Callable[[Executor, K], "Future[T]"]
-"""Submits one task to an executor."""
+Batch = tuple[K, ...]
+"""Tasks that a worker does one after the other. Their return values come back together."""
+
+Submit = Callable[[Executor, Batch[K]], "Future[list[T]]"]
+"""Submits a batch to an executor."""
+
+Size = Callable[[int], int]
+"""Number of tasks of the next batch, from the number of tasks that wait."""
 
 
 class WorkerDiedError(Exception):
@@ -52,7 +60,7 @@ class WorkerDiedError(Exception):
 
 
 class BrokenError(Exception):
-    """An executor broke, or cancelled its tasks. ``tasks`` were submitted and had not ended."""
+    """An executor broke, or cancelled its tasks. ``tasks`` were submitted, and their batches had not ended."""
 
     def __init__(self, tasks: list[Any]) -> None:
         super().__init__("the executor broke")
@@ -114,20 +122,31 @@ def _interrupts_held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+Ended = Generator[tuple[Batch[K], list[T] | BaseException], None, None]
+"""Yields each batch with its return values or exception when it ends."""
+
+
+def single(waiting: int) -> int:
+    """A batch of one task, however many are waiting."""
+    return 1
+
+
 def run_tasks(
-    executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T]
-) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Run tasks. Yield each task with its return value or exception, in the order in which the tasks end.
+    executor: Executor | None, workers: int, tasks: Collection[K], submit: Submit[K, T], size: Size
+) -> Ended[K, T]:
+    """Run tasks in batches. Yield each batch with its return values or exception, in the order in which they end.
 
     Parameters
     ----------
     executor : Executor or None
-        Runs the tasks. None starts worker processes.
+        Runs the tasks, one at a time: its workers may be far apart. None starts worker processes.
     workers : int
         Number of worker processes; without effect if there is an executor.
     tasks : collection
     submit : callable
-        Submits one task to an executor.
+        Submits a batch to an executor.
+    size : callable
+        Gives the number of tasks of the next batch for worker processes.
 
     Raises
     ------
@@ -138,31 +157,34 @@ def run_tasks(
     """
     if executor is not None:
         return through(executor, deque(tasks), submit)
-    return through_processes(workers, tasks, submit)
+    return through_processes(workers, tasks, submit, size)
 
 
 def through(
-    executor: Executor, waiting: deque[K], submit: Submit[K, T], ahead: int = MOST_SUBMITTED
-) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Run tasks with any executor. Yield each task with its return value or exception when it ends.
+    executor: Executor, waiting: deque[K], submit: Submit[K, T], size: Size = single, ahead: int = MOST_SUBMITTED
+) -> Ended[K, T]:
+    """Run tasks with any executor. Yield each batch with its return values or exception when it ends.
 
-    At most `ahead` tasks are submitted at a time. A submitted task leaves `waiting`.
+    At most `ahead` batches are submitted at a time. A submitted task leaves `waiting`.
 
     Raises
     ------
     BrokenError
         If the executor breaks. It holds the submitted tasks.
     """
-    running: dict[Future[T], K] = {}
-    ended_futures: SimpleQueue[Future[T]] = SimpleQueue()
+    running: dict[Future[list[T]], Batch[K]] = {}
+    ended_futures: SimpleQueue[Future[list[T]]] = SimpleQueue()
     try:
         while waiting or running:
             while waiting and len(running) < ahead:
+                batch = tuple(itertools.islice(waiting, size(len(waiting))))
                 try:
-                    future = submit(executor, waiting[0])
+                    future = submit(executor, batch)
                 except RuntimeError:  # The executor is broken, or shut down.
-                    raise BrokenError(list(running.values())) from None
-                running[future] = waiting.popleft()
+                    raise BrokenError(_tasks(running)) from None
+                running[future] = batch
+                for _ in batch:
+                    waiting.popleft()
                 future.add_done_callback(ended_futures.put)
             future = ended_futures.get()
             error = future.exception()
@@ -170,16 +192,20 @@ def through(
                 raise error
             yield running.pop(future), future.result() if error is None else error
     except (BrokenExecutor, CancelledError):  # A task ended with it.
-        raise BrokenError(list(running.values())) from None
+        raise BrokenError(_tasks(running)) from None
     finally:
         for future in running:
             future.cancel()
 
 
+def _tasks(running: dict[Future[list[T]], Batch[K]]) -> list[K]:
+    return [task for batch in running.values() for task in batch]
+
+
 def through_processes(
-    workers: int, tasks: Collection[K], submit: Submit[K, T], alone: bool = False
-) -> Generator[tuple[K, T | BaseException], None, None]:
-    """Run tasks in worker processes. Yield each task with its return value or exception when it ends.
+    workers: int, tasks: Collection[K], submit: Submit[K, T], size: Size = single, alone: bool = False
+) -> Ended[K, T]:
+    """Run tasks in worker processes. Yield each batch with its return values or exception when it ends.
 
     After the death of a process all submitted tasks are repeated, one task at a time (`alone`). A task whose process
     dies again gets a :class:`WorkerDiedError`.
@@ -190,16 +216,21 @@ def through_processes(
         pool = Pool(min(workers, len(waiting)))
         busy = True
         try:
-            yield from through(pool.executor, waiting, submit, 1 if alone else 2 * workers)
+            yield from through(pool.executor, waiting, submit, size, 1 if alone else 2 * workers)
             busy = False
         except BrokenError as broken:
             suspects = broken.tasks or [waiting.popleft()]
         finally:
             pool.stop(busy)
         if alone:
-            yield from ((task, WorkerDiedError(DIED)) for task in suspects)
+            yield from (((task,), WorkerDiedError(DIED)) for task in suspects)
         elif suspects:
             yield from through_processes(1, suspects, submit, alone=True)
+
+
+def in_turn(function: Callable[..., T], batch: list[tuple[Any, ...]]) -> list[T]:
+    """Call a function with the arguments of each task of a batch: what a worker does."""
+    return [function(*arguments) for arguments in batch]
 
 
 def prepare() -> None:
@@ -220,8 +251,27 @@ PickledOutcomes = dict[str, tuple[str, bytes]]
 """Definition and pickled outcome by name, see :func:`fastpin.studies.outcomes.values_in_worker`."""
 
 
-def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, main_process: int, version: str) -> RunEnd:
-    """Solve one case, save its result, and read its outcomes.
+@dataclass(frozen=True)
+class Setting:
+    """What all tasks of one call of a sweep share.
+
+    Attributes
+    ----------
+    main_process : int
+        Process id of the sweep. The threads of this process are not limited by its tasks.
+    version : str
+        Version of fastpin in the sweep. Another version in a worker is a failure.
+    most : int
+        Largest packed result, bytes. A larger result gets a file of its own; 0: every result.
+    """
+
+    main_process: int
+    version: str
+    most: int
+
+
+def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
+    """Solve one case, pack or save its result, and read its outcomes.
 
     Parameters
     ----------
@@ -229,29 +279,27 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, main_p
         Id of the run.
     case : Case
     path : str
-        HDF5 file of the result. It is written only if there is a state.
+        HDF5 file of a result that is too large to be packed. It is written only if there is a state.
     outcomes : dict of str to (str, bytes)
         Definition and pickled outcome by name.
-    main_process : int
-        Process id of the sweep. The threads of this process are not limited here.
-    version : str
-        Version of fastpin in the sweep. Another version here is a failure.
+    setting : Setting
 
     Returns
     -------
     RunEnd
-        Key figures, times and outcomes. Every exception of the run becomes the reason of a failure. An exception of
-        an outcome becomes the reason of its missing value.
+        Key figures, times, outcomes and the packed result. Every exception of the run becomes the reason of a failure.
+        An exception of an outcome becomes the reason of its missing value.
     """
-    if version != __version__:
-        return RunEnd(run, _other_version(version))
-    if os.getpid() != main_process:
+    if setting.version != __version__:
+        return RunEnd(run, _other_version(setting.version))
+    if os.getpid() != setting.main_process:
         one_thread()
     started = datetime.now(UTC).isoformat(timespec="milliseconds")
     began = time.perf_counter()
     reason: str | None = None
     figures: dict[str, Any] = {}
     values: dict[str, OutcomeValue] = {}
+    content: bytes | None = None
     try:
         try:
             with in_one_thread():
@@ -261,35 +309,39 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, main_p
         seconds = time.perf_counter() - began
         if result is not None and len(result):
             figures = key_figures(result)
-            store.save(result, path, error=reason, restart=False)
-            if reason is None:  # Without its restart, the result is the same as in its file.
+            content = store.pack(result, reason, setting.most)
+            if content is None:
+                store.save(result, path, error=reason, restart=False)
+            if reason is None:  # Without its restart, the result is the same as the stored one.
                 values = values_in_worker(outcomes, replace(result, restart=None))
     except MemoryError:
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values)
+    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values, content)
 
 
-def read_run(run: str, path: str, outcomes: PickledOutcomes, main_process: int, version: str) -> RunEnd:
+def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:
     """Read outcomes from the stored result of a finished run.
 
-    Parameters are those of :func:`solve_run`.
+    Parameters are those of :func:`solve_run`, and the packed result; None if `path` holds the result.
 
     Returns
     -------
     RunEnd
-        The outcomes only. A reason: the file can't be read, or the worker has another version of fastpin.
+        The outcomes and their time. A reason: the result can't be read, or the worker has another version of fastpin.
     """
-    if version != __version__:
-        return RunEnd(run, _other_version(version))
-    if os.getpid() != main_process:
+    if setting.version != __version__:
+        return RunEnd(run, _other_version(setting.version))
+    if os.getpid() != setting.main_process:
         one_thread()
+    began = time.perf_counter()
     try:
-        result = store.load(path)
+        result = store.load(path) if content is None else store.unpack(content, Path(path))
     except Exception as error:  # The other runs continue.
         return RunEnd(run, f"the result can't be read: {error}")
-    return RunEnd(run, None, outcomes=values_in_worker(outcomes, result))
+    values = values_in_worker(outcomes, result)
+    return RunEnd(run, None, seconds=time.perf_counter() - began, outcomes=values)
 
 
 def _other_version(version: str) -> str:

@@ -22,14 +22,14 @@ from tests.support.plans import MOMENT
 def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A plan file in the working directory; its runs are made in this process."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(workers, "through_processes", lambda _, tasks, submit: inline(tasks, submit))
+    monkeypatch.setattr(workers, "through_processes", lambda _, tasks, submit, size: inline(tasks, submit))
     (tmp_path / "moment.toml").write_text(MOMENT)
     return Path("moment.toml")
 
 
 def inline(tasks: list[str], submit: Callable[..., Any]) -> Any:
     for task in tasks:
-        yield task, submit(Inline(), task).result()
+        yield (task,), submit(Inline(), (task,)).result()
 
 
 def test_a_sweep_says_what_was_done_and_what_failed(path: Path, capsys: pytest.CaptureFixture[str]) -> None:

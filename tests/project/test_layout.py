@@ -42,7 +42,7 @@ BREAKS = {
     "matplotlib elsewhere": ("one_home", "report/table.py", "from matplotlib import figure\n"),
     "h5py elsewhere": ("one_home", "studies/sweep.py", "import h5py\n"),
     "tomllib elsewhere": ("one_home", "studies/plan.py", "import tomllib\n"),
-    "sqlite3 elsewhere": ("one_home", "storage/files.py", "import sqlite3\n"),
+    "sqlite3 elsewhere": ("one_home", "solver/run.py", "import sqlite3\n"),
     "argparse elsewhere": ("one_home", "report/case.py", "import argparse\n"),
     "print elsewhere": ("one_home", "report/case.py", "print(1)\n"),
     "a private name of another file": (

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.studies.index import FILE, Index, lock_directory
+from fastpin.storage.packed import INDEX
+from fastpin.studies.index import Index, lock_directory
 from fastpin.studies.plan import Plan, Point, parse_plan
 from fastpin.studies.run_end import KEY_FIGURES, RunEnd
 
@@ -39,8 +40,8 @@ def directory(plan: Plan, tmp_path: Path) -> Path:
         index.expect(plan, plan.points)
         first, second = (point.id for point in plan.points[:2])
         figures = dict.fromkeys(KEY_FIGURES) | {"states": 3, "peak_pressure": 0.1 + 0.2, "nodes": 41}
-        index.record(RunEnd(first, None, figures, 0.5, "2026-01-01T00:00:00.000+00:00", "here", {"fastpin": "1"}))
-        index.record(RunEnd(second, "lost; it's gone", {"states": 1, "nodes": 41}, 0.25, "x", "there"))
+        done = RunEnd(first, None, figures, 0.5, "2026-01-01T00:00:00.000+00:00", "here", {"fastpin": "1"})
+        index.record([done, RunEnd(second, "lost; it's gone", {"states": 1, "nodes": 41}, 0.25, "x", "there")])
     return tmp_path
 
 
@@ -64,7 +65,7 @@ def test_rows_come_back(plan: Plan, directory: Path) -> None:
 
 
 def test_plain_sql_reads_it(plan: Plan, directory: Path) -> None:
-    database = sqlite3.connect(directory / FILE)
+    database = sqlite3.connect(directory / INDEX)
     found = database.execute(
         "SELECT id, json_extract(\"load.2.Q\", '$[1]'), json_extract(input, '$.plate.E') FROM runs "
         "WHERE \"plate.material\" = 'steel' AND status = 'done' AND nodes > 40"
@@ -137,18 +138,18 @@ def a_directory(path: Path) -> None:
     ],
 )
 def test_what_is_no_index_is_refused(damage: Callable[[Path], None], words: str, create: bool, directory: Path) -> None:
-    damage(directory / FILE)
-    before = (directory / FILE).read_bytes()
+    damage(directory / INDEX)
+    before = (directory / INDEX).read_bytes()
     with pytest.raises(InputError) as caught:
         Index(directory, create=create)
     assert words in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
-    assert (directory / FILE).read_bytes() == before
+    assert (directory / INDEX).read_bytes() == before
 
 
 @pytest.mark.parametrize(("damage", "words"), [(missing, "holds no sweep"), (a_directory, "holds no sweep")])
 def test_a_sweep_that_is_not_there(damage: Callable[[Path], None], words: str, directory: Path) -> None:
-    damage(directory / FILE)
+    damage(directory / INDEX)
     with pytest.raises(InputError, match=words):
         Index(directory)
 
@@ -158,7 +159,7 @@ def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) 
         index._database.execute("PRAGMA query_only = ON")  # what SQLite says of a file that may only be read
         for write in (
             lambda: index.expect(plan, plan.points),
-            lambda: index.record(RunEnd(plan.points[0].id, "lost")),
+            lambda: index.record([RunEnd(plan.points[0].id, "lost")]),
         ):
             with pytest.raises(InputError, match=r"index.sqlite: can't be used: attempt to write a readonly database"):
                 write()
@@ -202,7 +203,7 @@ def test_a_lock_that_can_not_be_made_is_named() -> None:
 
 
 def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
-    (tmp_path / FILE).touch()  # as SQLite does before it writes
+    (tmp_path / INDEX).touch()  # as SQLite does before it writes
     with pytest.raises(InputError, match="holds no sweep"):
         Index(tmp_path)
     with Index(tmp_path, create=True):

@@ -20,9 +20,10 @@ from fastpin.kernels.status import OPEN
 from fastpin.kernels.threads import works_alone
 from fastpin.model.angles import interval_from_bottom
 from fastpin.storage import store
-from fastpin.studies import run_end, sweep, workers
+from fastpin.storage.packed import INDEX
+from fastpin.studies import run_end, sweep, work, workers
 from fastpin.studies.identity import run_id
-from fastpin.studies.index import FILE, lock_directory
+from fastpin.studies.index import lock_directory
 from fastpin.studies.plan import Plan, parse_plan
 from fastpin.studies.run_end import KEY_FIGURES, key_figures
 from fastpin.studies.sweep import Summary
@@ -55,8 +56,10 @@ def copy(swept: tuple[Path, Summary], tmp_path: Path) -> Path:
     return tmp_path / "copy"
 
 
-def files(directory: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in (directory / "results").iterdir()}
+def contents(directory: Path) -> dict[str, bytes | None]:
+    """The results in the index, by run."""
+    with sweep.Index(directory) as index:
+        return {run: index.content(run) for run in index.packed()}
 
 
 def comparable(directory: Path) -> dict[str, dict[str, Any]]:
@@ -138,11 +141,12 @@ def open_result() -> fastpin.Result:
 
 
 def test_what_is_finished_is_skipped(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = files(copy)
+    before = contents(copy)
+    assert set(before) == set(plan.runs)
     monkeypatch.setattr(workers, "solve", None)  # not needed
     summary = sweep.run(plan, copy, Inline())
     assert (summary.done, len(summary.failed), summary.ended) == (4, 2, 0)
-    assert files(copy) == before
+    assert contents(copy) == before
 
 
 def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
@@ -154,17 +158,20 @@ def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
 
 
 def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None:
-    before = files(copy)
+    before = contents(copy)
     run = plan.points[4].id
-    (copy / "results" / f"{run}.h5").unlink()
+    with sweep.Index(copy) as index:
+        index._database.execute("DELETE FROM results WHERE run = ?", [run])
     assert sweep.status(plan, copy).waiting == 1
     assert sweep.run(plan, copy, Inline()).ended == 1
-    assert set(files(copy)) == set(before)
-    (copy / "results" / f"{run}.h5").write_text("x\n")  # nor is another file a result
+    assert set(contents(copy)) == set(before)
+    path = copy / "results" / f"{run}.h5"
+    path.write_text("x\n")  # another file stands before the result, and is none
     (copy / "results" / f".{run}.1.h5").symlink_to("nowhere")  # what is being written does not count
     assert sweep.status(plan, copy).waiting == 1
-    shutil.rmtree(copy / "results")
-    assert sweep.status(plan, copy).waiting == 4
+    assert sweep.run(plan, copy, Inline()).ended == 1
+    assert not path.exists()
+    assert len(store.load(path)) > 0
 
 
 def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
@@ -197,6 +204,88 @@ def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -
     unknown = sweep.rows(plan, tmp_path)
     assert {row["status"] for row in unknown} == {"waiting"}
     assert unknown[1]["load.2.M"] == plan.points[1].values["load.2.M"]
+
+
+# -- results in files ------------------------------------------------------------------------------------------
+
+
+def same_states(one: fastpin.Result, other: fastpin.Result) -> bool:
+    pairs = list(zip(one, other, strict=True))
+    return all(np.array_equal(a.pressure, b.pressure) and np.array_equal(a.shear, b.shear) for a, b in pairs)
+
+
+def stems(directory: Path) -> set[str]:
+    return {path.stem for path in (directory / "results").iterdir()}
+
+
+def test_results_get_files_when_asked_for(plan: Plan, copy: Path, tmp_path: Path) -> None:
+    """Those of finished runs are written from the index; a run that is solved now has a file only."""
+    done = {row["id"] for row in sweep.load(copy) if row["status"] == "done"}
+    packed = {run: store.load(copy / "results" / f"{run}.h5") for run in plan.runs}
+    assert stems(copy) == set()
+    assert sweep.run(plan, copy, Inline(), files=True).ended == 0
+    assert stems(copy) == done
+    assert contents(copy).keys() == plan.runs.keys()
+    sweep.run(plan, tmp_path / "new", Inline(), files=True)
+    assert (stems(tmp_path / "new"), contents(tmp_path / "new")) == (set(plan.runs), {})
+    for run in done:
+        for directory in (copy, tmp_path / "new"):
+            assert same_states(store.load(directory / "results" / f"{run}.h5"), packed[run])
+
+
+def test_a_sweep_of_files_without_results_in_its_index_goes_on(plan: Plan, tmp_path: Path) -> None:
+    """As earlier versions have written it."""
+    sweep.run(plan, tmp_path, Inline(), files=True)
+    (tmp_path / "results" / f"{plan.points[0].id}.h5").unlink()
+    with sweep.Index(tmp_path) as index:
+        index._database.execute("DROP TABLE results")
+    assert sweep.status(plan, tmp_path) == Summary(3, 1, sweep.status(plan, tmp_path).failed)
+    assert sweep.run(plan, tmp_path, Inline()).ended == 1
+    assert set(contents(tmp_path)) == {plan.points[0].id}
+    assert len(stems(tmp_path)) == 5
+    assert sweep.merge([tmp_path], tmp_path / "whole") == 6
+    assert (stems(tmp_path / "whole"), contents(tmp_path / "whole")) == (stems(tmp_path), contents(tmp_path))
+
+
+def test_a_large_result_has_a_file(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work, "MOST_PACKED", 8000)
+    sweep.run(plan, tmp_path, Inline())
+    small = {run for run in plan.runs if len(store.load(tmp_path / "results" / f"{run}.h5")) == 1}
+    assert 0 < len(small) < 6
+    assert (set(contents(tmp_path)), stems(tmp_path)) == (small, set(plan.runs) - small)
+
+
+def test_a_full_disk_ends_a_sweep_and_keeps_what_is_finished(plan: Plan, tmp_path: Path) -> None:
+    class Small(sweep.Index):
+        """An index that has room for some results."""
+
+        def expect(self, *arguments: Any) -> None:
+            super().expect(*arguments)
+            self._database.execute(f"PRAGMA max_page_count = {self._one('PRAGMA page_count') + 10}")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sweep, "Index", Small)
+        with pytest.raises(InputError, match=r"index.sqlite: can't be used: database or disk is full"):
+            sweep.run(plan, tmp_path, Inline())
+    finished = set(contents(tmp_path))
+    assert 0 < len(finished) < 6
+    assert sweep.run(plan, tmp_path, Inline()).ended == 6 - len(finished)
+
+
+# -- batches -----------------------------------------------------------------------------------------------------
+
+
+def test_batches_take_as_long_as_a_message_is_worth() -> None:
+    pace = work.Pace(2)
+    assert pace.size(1000) == 1  # nothing is known
+    pace.learn([run_end.RunEnd("a", None, seconds=0.01), run_end.RunEnd("b", "lost", seconds=0.03)])
+    assert pace.size(1000) == 12  # 0.25 s of 20 ms each
+    assert (pace.size(40), pace.size(3)) == (5, 1)  # fewer towards the end
+    pace.learn([run_end.RunEnd("c", None, seconds=9.0)])
+    assert pace.size(1000) == 1
+    quick = work.Pace(1)
+    quick.learn([run_end.RunEnd("d", "it could not begin")])
+    assert quick.size(1000) == work.MOST_IN_BATCH
 
 
 # -- executors -------------------------------------------------------------------------------------------------
@@ -244,7 +333,7 @@ def test_a_full_disk_is_a_failure_without_figures(plan: Plan, tmp_path: Path, mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(store, "save", full)
-    summary = sweep.run(plan, tmp_path, Inline())
+    summary = sweep.run(plan, tmp_path, Inline(), files=True)
     assert summary.failed[0][1] == "OSError: [Errno 28] No space left on device"
     assert {row["peak_pressure"] for row in sweep.load(tmp_path)} == {None}
 
@@ -259,7 +348,7 @@ def test_a_result_that_does_not_arrive_is_a_failure(
     plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store, "save", lambda *_, **__: None)  # as if to a disk of another machine
-    summary = sweep.run(plan, tmp_path, Inline())
+    summary = sweep.run(plan, tmp_path, Inline(), files=True)
     assert summary.done == 0
     assert "the result did not arrive" in summary.failed[0][1]
 
@@ -323,7 +412,7 @@ def test_a_plan_of_the_user_s_is_not_overwritten(plan: Plan, tmp_path: Path) -> 
     with pytest.raises(InputError, match=r"holds another plan.toml, but no sweep"):
         sweep.run(plan, tmp_path, Inline())
     assert (tmp_path / "plan.toml").read_text() == "mine"
-    assert not (tmp_path / FILE).exists()
+    assert not (tmp_path / INDEX).exists()
 
 
 def test_merging_does_not_overwrite_a_plan_either(copy: Path, tmp_path: Path) -> None:
@@ -355,7 +444,7 @@ def test_parts_make_the_whole(plan: Plan, parts: list[Path], swept: tuple[Path, 
     assert sweep.merge(parts[:2], tmp_path) == 4
     assert sweep.merge(parts[1:], tmp_path) == 6
     assert comparable(tmp_path) == comparable(swept[0])
-    assert set(files(tmp_path)) == set(files(swept[0]))
+    assert set(contents(tmp_path)) == set(contents(swept[0]))
     summary = sweep.run(plan, tmp_path, Inline())
     assert (summary.done, summary.ended) == (4, 0)
 
@@ -370,7 +459,7 @@ def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, t
     other = tmp_path / "other"
     shutil.copytree(copy, other)
     with sweep.Index(other) as index:
-        index.record(run_end.RunEnd(plan.points[0].id, "lost"))
+        index.record([run_end.RunEnd(plan.points[0].id, "lost")])
         index._database.execute("UPDATE runs SET status = 'waiting' WHERE id = ?", [plan.points[1].id])
     for name, order in (("a", (copy, other)), ("b", (other, copy))):
         sweep.merge(order, tmp_path / name)

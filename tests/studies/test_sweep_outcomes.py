@@ -22,6 +22,7 @@ from fastpin.studies.index import Index
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, parse_plan, read_plan
 from fastpin.studies.run_end import RunEnd
+from fastpin.version import __version__
 from scripts.inline import Inline
 from tests.support.outcomes import CYCLES, FILE, TABLE, deadly, last_work
 from tests.support.plans import MOMENT
@@ -144,17 +145,28 @@ def test_a_failed_run_has_no_outcomes(tmp_path: Path) -> None:
 
 
 def test_a_result_that_can_not_be_read_is_the_reason(copy: Path) -> None:
-    for path in (copy / "results").iterdir():
-        path.write_bytes(path.read_bytes()[:1000])
+    with Index(copy) as index:
+        index._database.execute("UPDATE results SET content = substr(content, 1, 1000)")
     summary = sweep.run(parse_plan(CYCLES + TABLE), copy, Inline())
     assert len(summary.unread) == 6
+    assert all(reason.startswith("the result can't be read: ") for _, _, reason in summary.unread)
+    assert all(reason.endswith("is damaged: its checksum is wrong") for _, _, reason in summary.unread)
+
+
+def test_outcomes_are_read_from_files_too(tmp_path: Path) -> None:
+    sweep.run(parse_plan(CYCLES), tmp_path, Inline(), files=True)
+    assert sweep.run(parse_plan(CYCLES + TABLE), tmp_path, Inline()).read == 2
+    for path in (tmp_path / "results").iterdir():
+        path.write_bytes(path.read_bytes()[:1000])
+    summary = sweep.run(parse_plan(CYCLES + TABLE.replace("largest magnitude", "smallest")), tmp_path, Inline())
+    assert summary.unread
     assert all(reason.startswith("the result can't be read: ") for _, _, reason in summary.unread)
 
 
 def test_a_worker_of_another_version_reads_nothing(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "__version__", "0.0")
     summary = sweep.run(parse_plan(CYCLES + TABLE), copy, Inline())
-    assert {reason for _, _, reason in summary.unread} == {f"the worker has fastpin 0.0, the sweep {sweep.__version__}"}
+    assert {reason for _, _, reason in summary.unread} == {f"the worker has fastpin 0.0, the sweep {__version__}"}
 
 
 def test_parts_bring_their_outcomes(tmp_path: Path) -> None:
@@ -188,7 +200,7 @@ def test_plain_sql_reads_outcomes(copy: Path) -> None:
 def test_a_damaged_value_is_described(copy: Path) -> None:
     with Index(copy) as index:
         run = index.rows()[0]["id"]
-        index.record_outcomes(run, {"shear": OutcomeValue("x", 1.0)})
+        index.record_outcomes([RunEnd(run, None, outcomes={"shear": OutcomeValue("x", 1.0)})])
         index._database.execute("UPDATE outcomes SET value = 'high'")
     with pytest.raises(InputError, match='is damaged: shear: must be a number, not "high"'):
         sweep.load(copy)
@@ -198,7 +210,7 @@ def test_a_run_that_fails_when_solved_again_shows_no_old_outcome(copy: Path) -> 
     plan = parse_plan(CYCLES + TABLE)
     sweep.run(plan, copy, Inline())
     with Index(copy) as index:
-        index.record(RunEnd(plan.points[0].id, "not enough memory"))
+        index.record([RunEnd(plan.points[0].id, "not enough memory")])
     assert [row["loss"] is None for row in sweep.rows(plan, copy)] == [True, False]
 
 

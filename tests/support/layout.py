@@ -40,7 +40,7 @@ HOMES = {
     "matplotlib": ("figures", "paper"),
     "h5py": ("storage",),
     "tomllib": ("casefile",),
-    "sqlite3": ("studies",),
+    "sqlite3": ("storage", "studies"),
     "multiprocessing": ("studies",),
     "argparse": ("cli",),
     "tqdm": ("cli",),

@@ -1,0 +1,146 @@
+"""Results in few bytes: everything comes back, and every change of a byte is noticed."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin import storage
+from fastpin.cli.main import main
+from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Ring, Tube
+from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.storage import packed, store
+from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS
+
+STEEL = MATERIALS["steel"]
+LIMIT = 10**6
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    """A cycle between bodies, with slip sums."""
+    problem = Problem(
+        MaterialPair(STEEL, MATERIALS["aluminium"]), hole_radius=0.01, clearance=2e-5, friction=0.4,
+        pin_load="centre", pin_body=Tube(0.003), plate_body=Ring(0.03, "held"),
+    )  # fmt: skip
+    history = fastpin.LoadHistory([{"P": 1e5}]) + fastpin.LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(2)
+    return fastpin.solve(problem, history, nodes=31, between=1, slip_sums=True)
+
+
+@pytest.fixture
+def path(result: Result, tmp_path: Path) -> Path:
+    """The path of a result that is in the index of a sweep."""
+    (tmp_path / "results").mkdir()
+    database = sqlite3.connect(tmp_path / packed.INDEX)
+    database.execute(packed.TABLE)
+    database.execute("INSERT INTO results VALUES ('abc', ?)", [store.pack(result, "lost", LIMIT)])
+    database.commit()
+    database.close()
+    return tmp_path / "results" / "abc.h5"
+
+
+def assert_same(one: Result, other: Result) -> None:
+    assert (one.problem, one.complete, one.method, one.statistics) == (
+        other.problem, other.complete, other.method, other.statistics,
+    )  # fmt: skip
+    assert np.array_equal(one.grid.theta, other.grid.theta)
+    assert np.array_equal(one.history.values(), other.history.values(), equal_nan=True)
+    assert [[getattr(cycle, name) for name in CYCLE_FIELDS] for cycle in one.cycles] == [
+        [getattr(cycle, name) for name in CYCLE_FIELDS] for cycle in other.cycles
+    ]
+    for first, second in zip(one, other, strict=True):
+        assert (first.load, first.residuals) == (second.load, second.residuals)
+        summed = SLIP_FIELDS if first.slip_distance is not None else {}
+        for name in (*NODE_FIELDS, *summed, *NUMBER_FIELDS):
+            a, b = np.asarray(getattr(first, name)), np.asarray(getattr(second, name))
+            assert a.dtype == b.dtype
+            assert np.array_equal(a, b, equal_nan=True), name
+
+
+def test_everything_comes_back(result: Result, tmp_path: Path) -> None:
+    """The same as from an HDF5 file."""
+    content = store.pack(result, None, LIMIT)
+    assert content is not None
+    found = store.unpack(content, Path("a"))
+    assert len(found) == len(result) > 5
+    assert_same(found, result)
+    store.save(result, tmp_path / "a.h5", restart=False)
+    assert_same(found, store.load(tmp_path / "a.h5"))
+    assert len(content) < 0.5 * (tmp_path / "a.h5").stat().st_size
+    with pytest.raises(ValueError, match="read-only"):
+        found[0].pressure[0] = 1.0
+
+
+def test_a_bush_and_constants_of_fatigue_come_back() -> None:
+    bush = Bushing(MATERIALS["2024-T3"], 0.0125, 2e-5, friction=0.2)
+    problem = Problem(MaterialPair(STEEL, MATERIALS["2024-T3"]), hole_radius=0.01, clearance=2e-5, friction=0.4,
+                      plate_body=bush)  # fmt: skip
+    result = fastpin.solve(problem, [{"P": 1e5}], nodes=21)
+    assert_same(store.unpack(store.pack(result, None, LIMIT) or b"", Path("a")), result)
+
+
+def test_a_result_that_is_too_large_is_not_packed(result: Result) -> None:
+    content = store.pack(result, None, LIMIT)
+    assert content is not None
+    assert store.pack(result, None, len(content)) == content
+    assert store.pack(result, None, len(content) - 1) is None
+    assert store.pack(result, None, 10) is None
+
+
+def test_every_changed_byte_is_noticed(result: Result) -> None:
+    content = store.pack(result, None, LIMIT)
+    assert content is not None
+    places = [*range(40), *np.random.default_rng(1).integers(40, len(content), 100)]
+    for place in places:
+        changed = bytearray(content)
+        changed[place] ^= 1
+        with pytest.raises(InputError, match=r"^a: is damaged: "):
+            store.unpack(bytes(changed), Path("a"))
+    for size in (0, 5, 16, 100, len(content) - 1):
+        with pytest.raises(InputError, match=r"^a: is damaged: "):
+            store.unpack(content[:size], Path("a"))
+
+
+def test_the_path_of_a_file_reads_the_result_in_an_index(
+    result: Result, path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert_same(store.load(path), result)
+    assert len(store.load(path, states=[-1])) == 1
+    assert storage.state_count(path) == len(result)
+    assert storage.load_points(path)[-1] == 5.0
+    assert storage.stored_error(path) == "lost"
+    assert storage.to_xarray(path).sizes["theta"] == 31
+    assert main(["show", str(path)]) == 0
+    assert "peak N" in capsys.readouterr().out
+    with pytest.raises(InputError, match="there is no such file"):
+        storage.resume(path)
+
+
+def test_a_file_stands_before_the_result_in_an_index(result: Result, path: Path) -> None:
+    store.save(replaced := store.load(path, states=slice(0, 2)), path)
+    assert len(store.load(path)) == len(replaced) == 2
+
+
+@pytest.mark.parametrize("name", ["abd.h5", "abc.json", "../abc.h5", "../../results/abc.h5"])
+def test_other_paths_are_no_results(name: str, path: Path) -> None:
+    with pytest.raises(InputError, match="there is no such file"):
+        store.load(path.parent / name)
+
+
+def test_an_index_that_can_not_be_read_is_named(path: Path) -> None:
+    (path.parent.parent / packed.INDEX).write_bytes(b"x" * 1000)
+    with pytest.raises(InputError, match=r"index.sqlite: can't be used: file is not a database"):
+        store.load(path)
+    database = sqlite3.connect(path.parent.parent / "other.sqlite")
+    database.execute("CREATE TABLE runs (id TEXT)")
+    database.close()
+    (path.parent.parent / "other.sqlite").replace(path.parent.parent / packed.INDEX)
+    with pytest.raises(InputError, match="there is no such file"):
+        store.load(path)
