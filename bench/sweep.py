@@ -2,21 +2,30 @@
 
     python bench/sweep.py                                  1,000 runs with 101 nodes, 1 and 2 workers
     python bench/sweep.py --runs 100 --nodes 201 --workers 4
+    python bench/sweep.py --against ../before              a sweep here against a loop over ``solve`` of a checkout
+    python bench/sweep.py --parts ../before                a run in parts, here and in a checkout
     python bench/sweep.py --dask                           the same on a dask cluster, one of whose workers is killed
 
 Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)). The time of a sweep includes the
-start of its workers. "Without the start" counts from the end of the first run. All code is compiled before.
+start of its workers. "Without the start" counts from the end of the first run. All code is compiled before. A loop
+solves every case, reads its key figures, and writes a file. Against a checkout the measurements take turns, and the
+medians count. The checkout needs its environment ``.venv``.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import signal
+import statistics
+import subprocess
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -26,6 +35,9 @@ from fastpin.kernels.threads import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
+from fastpin.studies.run_end import key_figures
+
+HERE = Path(__file__).resolve().parents[1]
 
 PLAN = """
 [grid]
@@ -42,14 +54,80 @@ def plan_of(runs: int, nodes: int) -> Plan:
 
 
 def loop(plan: Plan) -> float:
-    """Return the seconds of all runs one after the other, in this process, on one thread, with their files."""
+    """Return the seconds of all runs one after the other, in this process, on one thread, with readings and files."""
     with tempfile.TemporaryDirectory() as directory, threadpool_limits(limits=1), in_one_thread():
         began = time.perf_counter()
         for run, point in plan.runs.items():
             case = plan.case(point)
             result = fastpin.solve(case.problem, case.history, **case.options.keywords())
-            store.save(result, Path(directory) / f"{run}.h5")
+            key_figures(result)
+            store.save(result, Path(directory) / f"{run}.h5", restart=False)
         return time.perf_counter() - began
+
+
+def parts(plan: Plan) -> dict[str, float]:
+    """Return the processor time of the parts of a run, ms: those of every run of a sweep, in this process."""
+    times = dict.fromkeys(("plan", "case", "solve", "key figures", "store"), 0.0)
+
+    def timed(name: str, work: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
+        began = time.process_time()
+        found = work(*arguments, **keywords)
+        times[name] += 1e3 * (time.process_time() - began) / len(plan.runs)
+        return found
+
+    pack = getattr(store, "pack", None)  # earlier checkouts have files only
+    with tempfile.TemporaryDirectory() as directory, threadpool_limits(limits=1), in_one_thread():
+        timed("plan", parse_plan, plan.text)
+        for run, point in plan.runs.items():
+            case = timed("case", plan.case, point)
+            result = timed("solve", fastpin.solve, case.problem, case.history, **case.options.keywords())
+            timed("key figures", key_figures, result)
+            if pack is None:
+                timed("store", store.save, result, Path(directory) / f"{run}.h5", restart=False)
+            else:
+                timed("store", pack, result, None, 10**6)
+    return times | {"all": sum(times.values())}
+
+
+def elsewhere(checkout: Path, what: str, options: argparse.Namespace) -> Any:
+    """Return what a measurement gives in the environment of a checkout."""
+    command = [checkout / ".venv/bin/python", __file__, "--only", what]
+    sizes = ["--runs", str(options.runs), "--nodes", str(options.nodes), "--workers", str(options.workers[0])]
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    done = subprocess.run([*command, *sizes], cwd=checkout, env=environment, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"the measurement of {checkout} failed:\n{done.stdout}{done.stderr}")
+    return json.loads(done.stdout)
+
+
+def only(what: str, plan: Plan, workers: int) -> Any:
+    """Return one measurement, for :func:`elsewhere`. The code is compiled before."""
+    first = plan_of(1, int(plan.points[0].values["solve.nodes"]))
+    loop(first)
+    if what == "sweep":
+        swept(first, 1)
+        return swept(plan, workers)[0]
+    return parts(plan) if what == "parts" else loop(plan)
+
+
+def against(options: argparse.Namespace) -> None:
+    """Compare a sweep here with a loop over ``solve`` in another checkout."""
+    ratios = []
+    for _ in range(options.rounds):
+        there = elsewhere(options.against, "loop", options)
+        here = elsewhere(HERE, "sweep", options)
+        ratios.append(here / there)
+        print(f"sweep with {options.workers[0]} workers {here:8.2f} s, loop there {there:8.2f} s: {ratios[-1]:.3f}")
+    print(f"median of the ratios {statistics.median(ratios):.3f}")
+
+
+def compared_parts(options: argparse.Namespace) -> None:
+    """Compare the parts of a run here and in another checkout."""
+    pairs = [[elsewhere(path, "parts", options) for path in (options.parts, HERE)] for _ in range(options.rounds)]
+    print(f"{'ms of one run':16}{'there':>10}{'here':>10}{'ratio':>8}")
+    for name in pairs[0][0]:
+        there, here = (statistics.median(pair[side][name] for pair in pairs) for side in (0, 1))
+        print(f"{name:16}{there:10.2f}{here:10.2f}{here / there:8.3f}")
 
 
 def swept(plan: Plan, workers: int) -> tuple[float, float]:
@@ -104,11 +182,21 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=1000)
     parser.add_argument("--nodes", type=int, default=101)
     parser.add_argument("--workers", type=int, nargs="+", default=[2])
+    parser.add_argument("--rounds", type=int, default=3, help="turns against a checkout")
+    parser.add_argument("--against", type=Path, metavar="CHECKOUT", help="compare with a loop over solve there")
+    parser.add_argument("--parts", type=Path, metavar="CHECKOUT", help="compare the parts of a run with those there")
+    parser.add_argument("--only", choices=["loop", "sweep", "parts"], help=argparse.SUPPRESS)
     parser.add_argument("--dask", action="store_true", help="only see whether a cluster gives the same")
     options = parser.parse_args()
     plan = plan_of(options.runs, options.nodes)
+    if options.only:
+        print(json.dumps(only(options.only, plan, options.workers[0])))
+        return
     if options.dask:
         on_a_cluster(plan)
+        return
+    if options.against or options.parts:
+        (against if options.against else compared_parts)(options)
         return
     loop(plan_of(1, options.nodes))
     serial = loop(plan)

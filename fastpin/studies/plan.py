@@ -28,13 +28,16 @@ from fastpin.model.checks import as_toml, choice, closest, file_path, instance, 
 from fastpin.model.loads import LOADS
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
-from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units
+from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
 MAX_RUNS = 100_000
 """Most runs of one plan."""
 
 MAX_FAULTS = 50
 """Most faults of runs in one message."""
+
+MOST_CASES = 5_000
+"""Most cases that a plan keeps after it has checked them: some 20 MB. Reading a case again takes 1 ms."""
 
 DIGITS = 12
 """Significant digits of the values between the ends of a range. Thus 0.3 in a range equals 0.3 in a list."""
@@ -91,6 +94,7 @@ class Plan:
     points: list[Point]
     outcomes: Outcomes
     _base: BaseCase
+    _cases: dict[str, Case]
 
     def __repr__(self) -> str:
         return f"<Plan: {len(self.points):,} points of {', '.join(self.fields)}>"
@@ -140,6 +144,8 @@ class Plan:
             If a file of its loads or of its plate has changed since the plan was read, or `point` is no point.
         """
         instance("point", point, Point, "a Point of this plan")
+        if point.id in self._cases:
+            return self._cases[point.id]
         text, case = self._base.vary(point.values)
         if case is None or text.placed or run_id(canonical(case)) != point.id:
             raise InputError(f"run {point.id}", "files of its loads or bodies have changed since the plan was read")
@@ -224,8 +230,9 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     outcomes = outcomes_in_text(source, folder)
     if base is None or source.faults:
         return None
-    points = _points(source, base, places, rows or [{}], axes)
-    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, base)
+    cases: dict[str, Case] = {}
+    points = _points(source, base, places, rows or [{}], axes, cases)
+    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, base, cases)
 
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:
@@ -356,9 +363,17 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
 
 
 def _points(
-    source: CaseText, base: BaseCase, places: dict[str, Place], rows: list[Row], axes: dict[str, list[Any]]
+    source: CaseText,
+    base: BaseCase,
+    places: dict[str, Place],
+    rows: list[Row],
+    axes: dict[str, list[Any]],
+    cases: dict[str, Case],
 ) -> list[Point]:
-    """Make and check all points. A fault of a run is reported on the line of the field, or of the case."""
+    """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
+
+    The first cases without files of their own are kept in `cases`, by id.
+    """
     points: list[Point] = []
     faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
     count = 0
@@ -376,6 +391,8 @@ def _points(
         if case is not None and not text.placed:
             document = canonical(case)
             points.append(Point(run_id(document), values, canonical_json(document)))
+            if len(cases) < MOST_CASES and not reads_files(text.root.table):
+                cases[points[-1].id] = case
     for (place, message), runs in itertools.islice(faults.items(), MAX_FAULTS):
         source.report(f"{message}{_which(runs, count)}", *place)
     if len(faults) > MAX_FAULTS:

@@ -103,6 +103,13 @@ def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any
     return new
 
 
+def reads_files(table: Any) -> bool:
+    """Whether the tables of a case name a CSV file or the file of a plate, which may change later."""
+    if isinstance(table, dict):
+        return "csv" in table or "file" in table or any(map(reads_files, table.values()))
+    return isinstance(table, list) and any(map(reads_files, table))
+
+
 def conflict(values: dict[str, Any]) -> tuple[str, str] | None:
     """Return two fields of which one replaces the input that the other changes, or None.
 

@@ -115,6 +115,15 @@ def test_the_base_case_lies_beside_the_plan_and_its_loads_beside_it(tmp_path: Pa
     assert [plan.case(point).history.values()[0, 0] for point in plan.points] == [1.0, 2.0]
 
 
+def test_a_plan_reads_a_case_once_unless_there_are_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fastpin.studies.plan.MOST_CASES", 2)
+    plan = parse_plan("[grid]\ncontact.friction = [0.1, 0.2, 0.3]\n")
+    first, second, third = plan.points
+    assert plan.case(first) is plan.case(first)
+    assert plan.case(third) is not plan.case(third)
+    assert [plan.case(point).problem.friction for point in (first, second, third)] == [0.1, 0.2, 0.3]
+
+
 @pytest.mark.parametrize("change", [lambda path: path.write_text("P\n2\n"), Path.unlink], ids=["changed", "gone"])
 def test_loads_that_change_after_the_plan_was_read_are_not_run(change: Callable[[Path], None], tmp_path: Path) -> None:
     for name in ("a", "b"):
