@@ -355,14 +355,69 @@ def _misfit(columns, inverse, values, left):
     return _product(left, left, 0)
 
 
+@inner
+def _orthonormalise(column, others):
+    """Subtract the parts of a column along orthonormal `others`, a row each, and divide it by its norm."""
+    for k in range(others.shape[0]):
+        part = _product(others[k], column, 0)
+        for i in range(column.size):
+            column[i] -= part * others[k, i]
+    norm = math.sqrt(_product(column, column, 0))
+    for i in range(column.size):
+        column[i] = column[i] / norm if norm > 0.0 else 0.0
+
+
 @compiled
-def search_cusp(bases, values, amplification, reach):
+def cusp_bases(x, places, shape, exponent, smooth, bases):
+    """Fill the orthonormal columns of a cusp at every place. The polynomials are the same at all places.
+
+    Parameters
+    ----------
+    x : ndarray, shape (m,)
+        Distances of the nodes in node distances, increasing.
+    places : ndarray, shape (p,)
+    shape : (int, int, bool)
+        As for :func:`refine_cusp`.
+    exponent : float
+        Power of the cusp.
+    smooth : ndarray, shape (degree + 1, m)
+        Output: orthonormal polynomials, a row each.
+    bases : ndarray, shape (p, terms + decaying, m)
+        Output: what the columns of the cusp at each place add to them, orthonormal, a row each.
+
+    Returns
+    -------
+    float
+        Norm of the row that gives the value at a cusp at the middle place.
+    """
+    degree, terms, decaying = shape
+    n, m = degree + 1 + bases.shape[1], x.size
+    A = np.empty((n + 1, m))
+    for k in range(degree + 1):
+        for i in range(m):
+            smooth[k, i] = (x[i] / x[-1]) ** k
+        _orthonormalise(smooth[k], smooth[:k])
+    for p in range(places.size):
+        _left_cusp(x, places[p], degree, terms, decaying, exponent, A)
+        for k in range(bases.shape[1]):
+            bases[p, k] = A[degree + 1 + k]
+            _orthonormalise(bases[p, k], smooth)
+            _orthonormalise(bases[p, k], bases[p, :k])
+    _left_cusp(x, places[places.size // 2], degree, terms, decaying, exponent, A)
+    diagonal, rows, row = np.empty(n), np.empty(n, np.int64), np.empty(n)
+    A[n] = 0.0
+    _factor(A, n, diagonal, rows)
+    return math.sqrt(_first_row(A, n, diagonal, rows, row))
+
+
+@compiled
+def search_cusp(smooth, bases, values, amplification, reach):
     """Find the place of a cusp with the smallest misfit, among equally spaced places.
 
     Parameters
     ----------
-    bases : ndarray, shape (p, n, m)
-        Orthonormal columns, a row each, for every place.
+    smooth, bases : ndarray
+        See :func:`cusp_bases`.
     values : ndarray, shape (m,)
     amplification : float
         Norm of the row that gives the value at the cusp.
@@ -376,16 +431,18 @@ def search_cusp(bases, values, amplification, reach):
         of the parabola through the misfits at the best place and its neighbours.
     """
     count, n, m = bases.shape
-    misfits, left = np.empty(count), np.empty(m)
+    rough, misfits, left = np.empty(m), np.empty(count), np.empty(m)
+    _misfit(smooth, smooth, values, rough)
     for p in range(count):
-        misfits[p] = _misfit(bases[p], bases[p], values, left)
+        misfits[p] = _misfit(bases[p], bases[p], rough, left)
     lowest = np.argmin(misfits)
     if lowest == 0 or lowest == count - 1:
         return np.inf, 0.0
     before, middle, after = misfits[lowest - 1], misfits[lowest], misfits[lowest + 1]
     bend = before - 2.0 * middle + after
     shift = 0.5 * (before - after) / bend if bend != 0.0 else 0.0
-    return standard_error(middle, m - n - 1, amplification), reach * (2.0 * (lowest + shift) / (count - 1) - 1.0)
+    error = standard_error(middle, m - smooth.shape[0] - n - 1, amplification)
+    return error, reach * (2.0 * (lowest + shift) / (count - 1) - 1.0)
 
 
 @inner

@@ -289,12 +289,6 @@ def _own(values: np.ndarray) -> np.ndarray:
     return np.array(values, dtype=float)
 
 
-def _cusp_columns(y: np.ndarray, exponent: float, degree: int, terms: int) -> np.ndarray:
-    """Columns y^k, and |y|^(exponent + k) where y is negative."""
-    cusp_side = np.maximum(-y, 0.0)
-    return np.column_stack([y**k for k in range(degree + 1)] + [cusp_side ** (exponent + k) for k in range(terms)])
-
-
 def _vertex(before: float, middle: float, after: float) -> tuple[float, float]:
     """Place and value of the extreme of the parabola through three equally spaced values.
 
@@ -333,8 +327,8 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
         window, wanted = (np.concatenate([given[first:left], given[right:last]]) for given in (rounded, values))
         for shape in CUSP_SHAPES:
             if window.size >= shape[0] + 1 + shape[1] + shape[2] + 1 + SPARE:
-                bases, amplification = _cusp_bases(window.tobytes(), shape, exponent)
-                error, place = kernels.least_squares.search_cusp(bases, wanted, amplification, CUSP_REACH)
+                smooth, bases, amplification = _cusp_bases(window.tobytes(), shape, exponent)
+                error, place = kernels.least_squares.search_cusp(smooth, bases, wanted, amplification, CUSP_REACH)
                 tried.append((error, len(tried), place, window, wanted, shape))
     best: Peak | None = None
     for _, _, begin, window, wanted, shape in sorted(tried)[:CUSP_REFINED]:
@@ -348,29 +342,17 @@ def cusp(x: np.ndarray, values: np.ndarray, exponent: float) -> Peak | None:
     return best
 
 
-def _left_cusp(x: np.ndarray, place: float, shape: tuple[int, int, bool], exponent: float) -> np.ndarray:
-    degree, terms, decaying = shape
-    y = (x - place) / x[-1]
-    columns = _cusp_columns(y, exponent, degree, terms)
-    if decaying:
-        before = y < 0.0
-        falling = np.where(before, np.maximum(np.abs(x - place), 1.0) ** (exponent - 2.0), 0.0)
-        columns = np.column_stack([columns, falling])
-    return columns
-
-
 @functools.lru_cache(maxsize=256)
-def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> tuple[np.ndarray, float]:
-    """Orthonormal columns for every place to try, shape (places, unknowns, nodes), and the amplification of errors.
+def _cusp_bases(window: bytes, shape: tuple[int, int, bool], exponent: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """The columns of a cusp for every place to try, see :func:`fastpin.kernels.least_squares.cusp_bases`.
 
-    The amplification is the norm of the row that gives the value, for a cusp at the middle place.
+    They are the orthonormal polynomials, the rest of the columns for each place, and the amplification of errors.
     """
-    x = np.frombuffer(window)
+    x = np.frombuffer(window).copy()
+    degree, terms, decaying = shape
+    smooth, bases = np.empty((degree + 1, x.size)), np.empty((CUSP_PLACES, terms + decaying, x.size))
     places = np.linspace(-CUSP_REACH, CUSP_REACH, CUSP_PLACES)
-    columns = np.array([_left_cusp(x, place, shape, exponent) for place in places])
-    middle = np.linalg.pinv(columns[CUSP_PLACES // 2])
-    bases = np.ascontiguousarray(np.linalg.qr(columns)[0].transpose(0, 2, 1))
-    return bases, float(np.linalg.norm(middle[0]))
+    return smooth, bases, kernels.least_squares.cusp_bases(x, places, shape, exponent, smooth, bases)
 
 
 def corner(x: np.ndarray, values: np.ndarray) -> Peak | None:

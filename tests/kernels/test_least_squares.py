@@ -10,9 +10,9 @@ import pytest
 
 from fastpin.kernels import least_squares
 
-KERNELS = ("standard_error", "fit", "border", "corner", "refine_cusp", "search_cusp", "edge")
+KERNELS = ("standard_error", "fit", "border", "corner", "refine_cusp", "cusp_bases", "search_cusp", "edge")
 INNER = ("_product", "_turn", "_factor", "_substitute", "_first_row", "_solve", "_window", "_border_columns",
-         "_left_cusp", "_misfit", "_root")  # fmt: skip
+         "_left_cusp", "_misfit", "_orthonormalise", "_root")  # fmt: skip
 WINDOWS = np.array([(8, 1), (8, 4), (12, 2), (18, 2), (90, 2)])
 SHAPES = np.array([(3, 2), (4, 3)])
 X = np.arange(-20.0, 21.0) + 0.3
@@ -182,18 +182,25 @@ def test_a_cusp_in_zeros_stays(kernels):
 
 def test_the_search_for_the_place_of_a_cusp(kernels):
     x, places = X[np.abs(X) > 2.0], np.linspace(-2.0, 2.0, 33)
-    bases = np.array([np.linalg.qr(left_cusp(x, place, (3, 2, True), 0.5))[0].T for place in places])
+    all_columns = [left_cusp(x, place, (3, 2, True), 0.5) for place in places]
+    smooth, bases = np.empty((4, x.size)), np.empty((33, 3, x.size))
+    amplification = kernels.cusp_bases(x, places, (3, 2, True), 0.5, smooth, bases)
+    assert amplification == pytest.approx(np.linalg.norm(np.linalg.pinv(all_columns[16])[0]), rel=1e-10)
+    for columns, rest in zip(all_columns, bases, strict=True):
+        basis = np.vstack([smooth, rest])
+        assert basis @ basis.T == pytest.approx(np.eye(7), abs=1e-11)  # measured: 2e-13
+        assert basis.T @ (basis @ columns) == pytest.approx(columns, abs=1e-12)
     for wanted in (0.4, -1.1):
         values = cusped(x, wanted)
-        misfits = [naive(basis.T, values)[0] @ basis - values for basis in bases]
+        misfits = [columns @ naive(columns, values)[0] - values for columns in all_columns]
         misfits = [float(residual @ residual) for residual in misfits]
         best = int(np.argmin(misfits))
         bend = np.polyfit([-1.0, 0.0, 1.0], misfits[best - 1 : best + 2], 2)
         expected = places[best] - 0.5 * bend[1] / bend[0] * (places[1] - places[0])
-        error, place = kernels.search_cusp(bases, values, 2.0, 2.0)
+        error, place = kernels.search_cusp(smooth, bases, values, 2.0, 2.0)
         assert place == pytest.approx(expected, abs=1e-9)
         assert error == pytest.approx(kernels.standard_error(misfits[best], x.size - 8, 2.0), rel=1e-9)
-    assert kernels.search_cusp(bases[20:], cusped(x, -1.1), 2.0, 2.0) == (math.inf, 0.0)
+    assert kernels.search_cusp(smooth, bases[20:], cusped(x, -1.1), 2.0, 2.0) == (math.inf, 0.0)
 
 
 # --- edges --------------------------------------------------------------------------------------------------------
