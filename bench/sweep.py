@@ -18,6 +18,7 @@ import argparse
 import json
 import math
 import os
+import resource
 import signal
 import statistics
 import subprocess
@@ -38,6 +39,7 @@ from fastpin.studies.plan import Plan, parse_plan
 from fastpin.studies.run_end import key_figures
 
 HERE = Path(__file__).resolve().parents[1]
+CHILDREN = resource.RUSAGE_CHILDREN
 
 PLAN = """
 [grid]
@@ -106,19 +108,30 @@ def only(what: str, plan: Plan, workers: int) -> Any:
     loop(first)
     if what == "sweep":
         swept(first, 1)
-        return swept(plan, workers)[0]
-    return parts(plan) if what == "parts" else loop(plan)
+    began = _processor_time()
+    if what == "parts":
+        return parts(plan)
+    seconds = swept(plan, workers)[0] if what == "sweep" else loop(plan)
+    return seconds, _processor_time() - began
+
+
+def _processor_time() -> float:
+    """Processor time of this process and its ended children, s."""
+    return sum(each.ru_utime + each.ru_stime for each in map(resource.getrusage, (resource.RUSAGE_SELF, CHILDREN)))
 
 
 def against(options: argparse.Namespace) -> None:
     """Compare a sweep here with a loop over ``solve`` in another checkout."""
     ratios = []
     for _ in range(options.rounds):
-        there = elsewhere(options.against, "loop", options)
-        here = elsewhere(HERE, "sweep", options)
-        ratios.append(here / there)
-        print(f"sweep with {options.workers[0]} workers {here:8.2f} s, loop there {there:8.2f} s: {ratios[-1]:.3f}")
-    print(f"median of the ratios {statistics.median(ratios):.3f}")
+        there, here = elsewhere(options.against, "loop", options), elsewhere(HERE, "sweep", options)
+        ratios.append([mine / theirs for mine, theirs in zip(here, there, strict=True)])
+        print(
+            f"sweep with {options.workers[0]} workers {here[0]:8.2f} s, loop there {there[0]:8.2f} s: "
+            f"{ratios[-1][0]:.3f}; processor time {here[1]:8.2f} s and {there[1]:8.2f} s: {ratios[-1][1]:.3f}"
+        )
+    wall, processor = (statistics.median(column) for column in zip(*ratios, strict=True))
+    print(f"medians of the ratios: {wall:.3f}, of processor time {processor:.3f}")
 
 
 def compared_parts(options: argparse.Namespace) -> None:
