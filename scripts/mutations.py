@@ -305,9 +305,11 @@ def change_index(rng: np.random.Generator, path: Path) -> None:
                     (str(rng.choice(["version", "plan", "text", "fields", "title"])),),
                 ),
                 ("DELETE FROM runs WHERE rowid = ?", (int(rng.integers(1, 5)),)),
+                ("UPDATE results SET content = ? WHERE rowid = ?", (value, int(rng.integers(1, 5)))),
+                ("UPDATE results SET content = substr(content, 1, ?)", (int(rng.integers(20_000)),)),
                 (f'ALTER TABLE runs RENAME COLUMN "{column}" TO "other"', ()),
                 (f'ALTER TABLE runs DROP COLUMN "{column}"', ()),
-                (f"DROP TABLE {rng.choice(['runs', 'sweep'])}", ()),
+                (f"DROP TABLE {rng.choice(['runs', 'sweep', 'results'])}", ()),
                 (f"PRAGMA user_version = {int(rng.integers(5))}", ()),
                 (f"PRAGMA application_id = {int(rng.integers(5))}", ()),
                 ("UPDATE sweep SET value = ? WHERE name = 'fields'", (str(rng.choice(["[]", "{", '{"a": 1}', "5"])),)),
@@ -497,6 +499,8 @@ def examine_index(rng: np.random.Generator, folder: Path, seen: Examination) -> 
     seen.python("load", lambda: sweep.load(directory))
     seen.python("status", lambda: sweep.status(plan, directory))
     seen.python("rows", lambda: sweep.rows(plan, directory))
+    for run in plan.runs:
+        seen.python("load of a run", lambda run=run: store.load(directory / "results" / f"{run}.h5"))
     outputs = ("--table", folder / "out.csv", "--plot", folder / "out.png")
     written = r"^out\.(csv|png)$"
     seen.command("sweep", folder / "plan.toml", "-o", directory, "--status", *outputs, may_change=(written,))
@@ -557,10 +561,10 @@ def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
         os._exit(code)
 
 
-def _through_this_process(_: int, tasks: Any, submit: Callable[..., Any]) -> Any:
+def _through_this_process(_: int, tasks: Any, submit: Callable[..., Any], size: Any) -> Any:
     """Run tasks one after the other, in place of worker processes."""
     for task in tasks:
-        yield task, submit(Inline(), task).result()
+        yield (task,), submit(Inline(), (task,)).result()
 
 
 def _wait(process: int) -> str:

@@ -195,7 +195,9 @@ def packed_result(path: Path) -> bytes | None:
             row = database.execute("SELECT content FROM results WHERE run = ?", [path.stem]).fetchone()
     except sqlite3.Error as error:
         raise InputError(str(index), f"can't be used: {error}") from None
-    return None if row is None else bytes(row[0])
+    if row is not None and not isinstance(row[0], bytes):
+        raise InputError(str(path), "is damaged: it is no packed result")
+    return None if row is None else row[0]
 
 
 def _described(group: Group, blocks: list[bytes]) -> dict[str, Any]:

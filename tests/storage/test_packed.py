@@ -134,6 +134,18 @@ def test_other_paths_are_no_results(name: str, path: Path) -> None:
         store.load(path.parent / name)
 
 
+@pytest.mark.parametrize("value", ["'text'", "5", "NULL"])
+def test_another_value_in_the_place_of_a_result_is_damage(value: str, path: Path) -> None:
+    database = sqlite3.connect(path.parent.parent / packed.INDEX)
+    database.executescript(
+        f"CREATE TABLE other (run TEXT, content BLOB); INSERT INTO other VALUES ('abc', {value});"
+        "DROP TABLE results; ALTER TABLE other RENAME TO results"
+    )
+    database.close()
+    with pytest.raises(InputError, match=r"abc.h5: is damaged: it is no packed result"):
+        store.load(path)
+
+
 def test_an_index_that_can_not_be_read_is_named(path: Path) -> None:
     (path.parent.parent / packed.INDEX).write_bytes(b"x" * 1000)
     with pytest.raises(InputError, match=r"index.sqlite: can't be used: file is not a database"):
