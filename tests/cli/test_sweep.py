@@ -209,6 +209,6 @@ def test_the_progress_bar_has_the_time_left(
         assert "{n} of {total}" in text
         return Bar()
 
-    monkeypatch.setattr(sweep_command, "bar", bar)
+    monkeypatch.setattr(sweep_command, "Bar", bar)
     main(["sweep", str(path)])
     assert shown == [(k, 6) for k in range(7)]
