@@ -21,16 +21,26 @@ from fastpin.kernels.machine import CAN_LOAD, Code, helpers, load
 def dispatcher(kernel: Kernel, alone: bool) -> Any:
     """Numba's function for a kernel: `alone` for calls from Python, else without a wrapper for these.
 
-    Numba keeps the code on disk beside the package. If the folder of the package can't be written, Numba keeps it in
-    the user's cache directory. Code of fastpin's own store is not kept a second time.
+    Code of fastpin's own store is not kept by Numba a second time.
     """
     settings = dict(SETTINGS) if alone else {**SETTINGS, "no_cpython_wrapper": True}
     if CACHED and not (alone and CAN_LOAD):
-        try:
-            return numba.njit(cache=True, **settings)(kernel.py_func)
-        except RuntimeError:  # no directory can be written
-            pass
+        return _kept_by_numba(kernel, settings)
     return numba.njit(**settings)(kernel.py_func)
+
+
+@functools.cache
+def kept(kernel: Kernel) -> Any:
+    """Numba's function for a kernel whose machine code can't be stored. Numba keeps it on disk."""
+    return _kept_by_numba(kernel, SETTINGS)
+
+
+def _kept_by_numba(kernel: Kernel, settings: dict[str, Any]) -> Any:
+    """A function that Numba keeps beside the package, else in the user's cache directory, else nowhere."""
+    try:
+        return numba.njit(cache=True, **settings)(kernel.py_func)
+    except RuntimeError:  # no directory can be written
+        return numba.njit(**settings)(kernel.py_func)
 
 
 def callee(kernel: Kernel) -> Any:
@@ -56,6 +66,17 @@ def compile_kernel(kernel: Kernel, arguments: tuple[Any, ...]) -> tuple[Callable
 
 
 def _machine_code(result: Any) -> Code | None:
+    """The machine code of a compiled function; None if a process without Numba can't load it."""
+    try:
+        code = _object_code(result)
+        if code is not None:
+            load(code, result.fndesc.qualname, result.fndesc.modname)
+    except Exception:  # these parts of Numba may change with any version: Numba keeps the code then
+        return None
+    return code
+
+
+def _object_code(result: Any) -> Code | None:
     """The machine code of a compiled function. None if it needs more than C, Python and the known helpers."""
     library, description, process = result.library, result.fndesc, ctypes.CDLL(None)
     module = library._final_module
@@ -66,17 +87,12 @@ def _machine_code(result: Any) -> Code | None:
     ]
     if unknown or library.has_dynamic_globals or result.environment.consts or result.reload_init:
         return None
-    code = Code(
+    return Code(
         library._get_compiled_object(),
         description.llvm_cpython_wrapper_name,
         description.env_name,
         tuple(sorted(intrinsics.INTR_MATH)),
     )
-    try:
-        load(code, description.qualname, description.modname)
-    except Exception:  # these parts of Numba may change with any version: then every process compiles
-        return None
-    return code
 
 
 def read_environment() -> None:

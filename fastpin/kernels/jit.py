@@ -91,7 +91,7 @@ class Kernel:
                 if entry is None:
                     _announce()
                     entry, code = _compiler().compile_kernel(self, arguments)
-                    if place and code is not None:
+                    if place:
                         place.save(code)
                 self._entries[types] = entry
             return self._entries[types]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import marshal
 import os
 import sys
@@ -28,13 +29,18 @@ UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 """Settings of Numba that do not change the code. All others belong to the code."""
 
 
+SHARED = ("arrays.py", "status.py")
+"""Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
+
+
 class Place:
     """The files of a kernel for arguments of some types."""
 
     def __init__(self, kernel: Kernel, signature: str) -> None:
-        function = kernel.py_func
+        self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
-        texts = tuple(Path(file).read_bytes() for file in (self.source, Path(__file__).with_name("status.py")))
+        shared = [Path(__file__).with_name(name) for name in SHARED]
+        texts = tuple(Path(file).read_bytes() for file in (self.source, *shared))
         rest = (signature, repr(SETTINGS), *_environment())
         self.key = (texts, rest)
         self.name, self.module = function.__qualname__, function.__module__
@@ -42,7 +48,10 @@ class Place:
         self.file = f"{self.stem}{zlib.crc32(b''.join(texts)):08x}{SUFFIX}"
 
     def load(self) -> Callable[..., Any] | None:
-        """The function from the first file that agrees; None if there is none."""
+        """The function from the first file that agrees; None if there is none.
+
+        Where code can't be stored, the function comes from the cache of Numba.
+        """
         for directory in self._directories():
             try:
                 content = (directory / self.file).read_bytes()
@@ -53,12 +62,18 @@ class Place:
                 continue
             key, code = marshal.loads(body)
             if key == self.key:
+                if not code:
+                    kept: Callable[..., Any] = importlib.import_module("fastpin.kernels.compiler").kept(self.kernel)
+                    return kept
                 return machine.load(machine.Code(*code), self.name, self.module)
         return None
 
-    def save(self, code: machine.Code) -> None:
-        """Write the machine code to the first directory that can be written, whole or not at all."""
-        body = marshal.dumps((self.key, tuple(code)))
+    def save(self, code: machine.Code | None) -> None:
+        """Write the machine code, or that there is none, to the first directory that can be written.
+
+        The file is written whole or not at all.
+        """
+        body = marshal.dumps((self.key, tuple(code or ())))
         for directory in self._directories():
             try:
                 directory.mkdir(parents=True, exist_ok=True)

@@ -15,10 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.kernels import compiler, exchange, influence, jit, machine
+from fastpin.kernels import compiler, exchange, influence, jit, machine, stored
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
-STATUS = "fastpin.kernels.status"
 KERNEL = """
 from fastpin.kernels.jit import compiled
 @compiled
@@ -51,7 +50,7 @@ def cache(installed: Path) -> Path:
     return installed / "fastpin" / "kernels" / "__pycache__"
 
 
-def stored(directory: Path) -> list[str]:
+def stored_in(directory: Path) -> list[str]:
     return sorted(path.name.split("-")[0] for path in directory.glob("*.machine"))
 
 
@@ -69,7 +68,7 @@ def compiles(installed: Path, **more: str) -> bool:
 @keeps
 def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path, tmp_path: Path) -> None:
     assert compiles(installed)
-    assert stored(cache(installed)) == ["small.doubled"]
+    assert stored_in(cache(installed)) == ["small.doubled"]
     assert not compiles(installed)
     moved = installed.rename(tmp_path / "elsewhere")
     assert not compiles(moved)
@@ -83,7 +82,7 @@ def test_kept_beside_the_package_until_it_does_not_fit_any_more(installed: Path,
     with (moved / "fastpin" / "kernels" / "small.py").open("a") as source:
         source.write("# changed\n")
     assert compiles(moved)
-    assert stored(cache(moved)) == ["small.doubled"]
+    assert stored_in(cache(moved)) == ["small.doubled"]
     assert not file.exists()
 
 
@@ -92,18 +91,18 @@ def test_other_settings_need_other_code(installed: Path) -> None:
     assert compiles(installed)
     assert compiles(installed, FASTPIN_CACHE="0")
     assert compiles(installed, NUMBA_OPT="1")
-    assert stored(cache(installed)) == ["small.doubled"] * 2
+    assert stored_in(cache(installed)) == ["small.doubled"] * 2
 
 
 @keeps
 def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path) -> None:
     cache(installed).touch()  # nobody, not even root, can make a directory where a file is
     assert compiles(installed)
-    assert stored(installed / ".cache" / "fastpin") == ["small.doubled"]
+    assert stored_in(installed / ".cache" / "fastpin") == ["small.doubled"]
     assert not compiles(installed)
     chosen = installed / "chosen"
     assert compiles(installed, NUMBA_CACHE_DIR=str(chosen))
-    assert stored(chosen) == ["small.doubled"]
+    assert stored_in(chosen) == ["small.doubled"]
     assert compiles(installed, HOME=str(Path(os.devnull) / "home"))
 
 
@@ -134,10 +133,11 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
 
 @pytest.mark.parametrize("file", sorted(path.stem for path in (PACKAGE / "kernels").glob("[a-z]*.py")))
 def test_code_depends_on_the_files_that_are_stored_with_it(file: str) -> None:
-    """Stored code is compared with the text of its own file and of status.py only."""
+    """Stored code is compared with the text of its own file and of the shared files only."""
     module = importlib.import_module(f"fastpin.kernels.{file}")
+    shared = [f"fastpin.kernels.{Path(name).stem}" for name in stored.SHARED]
     imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
-    others = [node for node in imports if str(node.module).startswith("fastpin") and node.module != STATUS]
+    others = [node for node in imports if str(node.module).startswith("fastpin") and node.module not in shared]
     foreign = {alias.asname or alias.name for node in others for alias in node.names}
     for kernel in vars(module).values():
         if isinstance(kernel, jit.Kernel):
@@ -176,6 +176,35 @@ def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: py
     assert [record.message for record in caplog.records] == ["compiling the solver; this takes some seconds"]
 
 
+KEPT = """
+import sys
+from fastpin.kernels import influence
+if len(sys.argv) > 1:
+    from fastpin.kernels import compiler
+    compiler._object_code = lambda result: 1 / 0  # a Numba whose parts have other names
+print(influence.clausen(1.0), "numba" in sys.modules)
+"""
+
+
+def test_numba_keeps_code_that_can_not_be_stored(tmp_path: Path) -> None:
+    variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+
+    def run(*arguments: str) -> list[str]:
+        done = subprocess.run(
+            [sys.executable, "-c", KEPT, *arguments], env=variables, capture_output=True, text=True, check=True
+        )
+        return done.stdout.split()
+
+    value = repr(float(influence.clausen(1.0)))
+    assert run("changed") == [value, "True"]
+    assert run() == [value, "True"]
+    assert list(tmp_path.rglob("influence.clausen*.nbc"))  # Numba's own file
+    for path in tmp_path.glob("influence.clausen*.machine"):
+        path.unlink()
+    assert run() == [value, "True"]
+    assert run() == [value, "False"]
+
+
 def test_only_kernels_call_inner_kernels() -> None:
     with pytest.raises(TypeError, match="_column is called by kernels only"):
         exchange._column(np.zeros(1))
@@ -200,6 +229,7 @@ assert numba.config.NUMBA_NUM_THREADS == 1
 
 
 def test_packages_that_are_imported_later_work() -> None:
+    influence.clausen(1.0)  # its machine code is stored now
     assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""
 
 
