@@ -26,8 +26,8 @@ from fastpin.solver.tableau import TableauMemory, expected_ties
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
 
-MOST_NUMBERS = 8_000_000
-"""Numbers in the tables of all held contacts of a system that are kept, at most: 64 MB."""
+MOST_NUMBERS = 4_000_000
+"""Numbers in the tables of all held contacts of a system that are kept, at most: 32 MB."""
 
 LEAST_NEIGHBOURS = 24
 """Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes LAPACK's inverse is as fast."""
