@@ -225,9 +225,9 @@ def slip_tally_between(before: Configuration, after: Configuration) -> np.ndarra
 
 def elastic_energy(system: System, configuration: Configuration) -> float:
     """Elastic energy of a configuration, up to a function of the load alone (dimensionless)."""
-    tractions = np.r_[configuration.pressure, configuration.shear]
+    tractions = np.concatenate([configuration.pressure, configuration.shear])
     elastic = 0.5 * system.elastic(tractions) + system.held_displacement(configuration.load)
-    weights = np.r_[system.weights, system.weights]
+    weights = np.concatenate([system.weights, system.weights])
     energy = float(np.sum(weights * tractions * elastic))
     return energy if system.drive is None else energy + system.drive.energy(weights, tractions, configuration.motion)
 
@@ -248,7 +248,7 @@ def contact_residuals(system: System, configuration: Configuration) -> dict[str,
     """
     n, mu = system.grid.size, system.friction
     pressure, shear, status = configuration.pressure, configuration.shear, configuration.status
-    tractions = np.r_[pressure, shear]
+    tractions = np.concatenate([pressure, shear])
     elastic = system.elastic(tractions)
     true = system.total_displacement(elastic, configuration.motion, configuration.load, configuration.rest_gap)
     closed, stick = status != OPEN, status == STICK

@@ -337,11 +337,11 @@ class PathStep:
         """Largest relative error of gap and slip at a sample of the nodes, from the matrices."""
         system, now = self.system, self.now
         rows, load = self._sample, self.before + self.fraction * self.rate
-        elastic = self._sampled @ np.r_[now.pressure, now.shear]
+        elastic = self._sampled @ np.concatenate([now.pressure, now.shear])
         true = elastic + system.motion[rows] @ now.motion + system.load_displacement(load, rows)
         true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
         length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
-        return float(np.abs(true - np.r_[now.gap, now.slip][rows]).max()) / max(length, 1e-300)
+        return float(np.abs(true - np.concatenate([now.gap, now.slip])[rows]).max()) / max(length, 1e-300)
 
     def _remember(self) -> None:
         """Remember the present configuration, which was checked."""

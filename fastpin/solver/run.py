@@ -269,7 +269,10 @@ class Run:
         """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
         if self.recorder is None or force_on_pin(self.system, self.now) <= NEXT_TO_NOTHING:
             return
-        most = max((patch.size for patch in runs(self.system.grid, self.now.closed)), default=LEAST_CLOSED)
+        closed = self.now.closed
+        if np.any(closed[:-2] & closed[1:-1] & closed[2:]):  # three neighbours
+            return
+        most = max((patch.size for patch in runs(self.system.grid, closed)), default=LEAST_CLOSED)
         if most < LEAST_CLOSED:
             raise ResolutionError(f"the contact is narrower than the nodes can resolve: it has {most}; use more nodes")
 
@@ -461,7 +464,8 @@ class Run:
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
         """The present configuration as a state, SI. Its arrays can't be written to: steps that repeat share them."""
         system, now, scales = self.system, self.now, self.system.scales
-        moved, load = np.nan_to_num(now.rest - now.origin) + now.motion[:2], now.load
+        way, load = now.rest - now.origin, now.load
+        moved = np.where(np.isnan(way), 0.0, way) + now.motion[:2]
         if system.drive is not None:
             moved = system.drive.position(np.r_[now.pressure, now.shear], now.motion, load, now.rest)
             load = system.drive.with_reactions(now.motion, load)
