@@ -10,11 +10,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy
 
 from fastpin.elasticity.bodies import BodyTerms
 from fastpin.elasticity.drive import Drive
 from fastpin.kernels import influence, toeplitz
+from fastpin.kernels.extensions import fft
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 
@@ -123,7 +123,7 @@ class ToeplitzOperator(Operator):
         self._by_distance = np.array([first, second, cross])
         self._half_hat = np.zeros((4, 0)) if closed else np.ascontiguousarray(blocks[..., 0].reshape(4, n))
         # On a circle the convolution is periodic. On an arc its period has room for all distances of either sign.
-        self._period = n if closed else scipy.fft.next_fast_len(2 * n - 1, real=True)
+        self._period = n if closed else fft.next_fast_len(2 * n - 1, real=True)
         self._even, self._odd = self._spectra(first, second, cross)
 
     def _spectra(self, first: np.ndarray, second: np.ndarray, cross: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -133,7 +133,7 @@ class ToeplitzOperator(Operator):
         kernels[:, :n] = first, second, cross
         if not self._closed:
             kernels[:, period - n + 1 :] = np.array([[1.0], [1.0], [-1.0]]) * kernels[:, n - 1 : 0 : -1]
-        spectra = scipy.fft.rfft(kernels, workers=1)
+        spectra = fft.rfft(kernels, workers=1)
         return np.ascontiguousarray(spectra[:2].real), 1j * spectra[2].imag
 
     def __matmul__(self, tractions: np.ndarray) -> np.ndarray:
@@ -143,11 +143,11 @@ class ToeplitzOperator(Operator):
         if not self._closed:
             whole = given.copy()
             whole[..., [0, -1]] = 0.0  # the ends have half hats
-        pressure, shear = np.moveaxis(scipy.fft.rfft(whole, period, workers=1), -2, 0)
+        pressure, shear = np.moveaxis(fft.rfft(whole, period, workers=1), -2, 0)
         turned = np.empty((*given.shape[:-1], pressure.shape[-1]), dtype=complex)
         turned[..., 0, :] = self._even[0] * pressure + self._odd * shear
         turned[..., 1, :] = self._even[1] * shear - self._odd * pressure
-        found = scipy.fft.irfft(turned, period, workers=1, overwrite_x=True)[..., :n].reshape(tractions.T.shape).T
+        found = fft.irfft(turned, period, workers=1, overwrite_x=True)[..., :n].reshape(tractions.T.shape).T
         if not self._closed and given[..., [0, -1]].any():
             ends = np.array([0, n - 1, n, 2 * n - 1])
             hats = np.empty((2 * n, 4), order="F")

@@ -54,6 +54,9 @@ def library(name: str) -> ModuleType:
     return module
 
 
+fft = Later("scipy.fft")
+"""Fourier transforms, which grids of many nodes need."""
+
 optimize = Later("scipy.optimize")
 """Minima and roots, which few problems need."""
 

@@ -123,6 +123,9 @@ Each has the number of nodes left out at the end of the zone, the number of node
 and whether the part like x^(a - 2) is fitted too.
 """
 
+ROUNDING = 1e-9
+"""Relative error of an angle that is rounding."""
+
 LAW_REACH = 9.0
 """Part of a zone that a power law describes, in node distances; at most the fitted window."""
 
@@ -405,8 +408,8 @@ class Law:
 
     def applies(self, theta: np.ndarray) -> np.ndarray:
         """Whether each angle, shape (m,), lies in the part of the zone that the law describes."""
-        x = self.inwards * (theta - self.place)
-        return np.asarray((x >= 0.0) & (x <= self.reach))
+        x = self.inwards * (theta - self.place) / self.reach
+        return np.asarray((x >= 0.0) & (x <= 1.0 + ROUNDING))  # the end itself, whatever its rounding
 
     def values(self, theta: np.ndarray) -> np.ndarray:
         """The law at angles in the zone, shape (m,); 0 at its end and beyond."""
