@@ -19,9 +19,10 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import exchange, toeplitz
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
-from fastpin.kernels.extensions import blas, lapack
-from fastpin.kernels.status import OPEN
+from fastpin.kernels.extensions import blas
+from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.tableau import TableauMemory, expected_ties
+from fastpin.solver.unknowns import DenseUnknowns
 
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
@@ -30,7 +31,10 @@ MOST_NUMBERS = 4_000_000
 """Numbers in the tables of all held contacts of a system that are kept, at most: 32 MB."""
 
 LEAST_NEIGHBOURS = 24
-"""Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes LAPACK's inverse is as fast."""
+"""Smallest number of neighbouring nodes for the Toeplitz inverse. With fewer nodes a factorisation is as fast."""
+
+MOST_FACTORISED = 400
+"""Most rows of a table by a factorisation. With more rows, columns on demand take less time."""
 
 LEAST_RECURRENCES = 192
 """Smallest number of neighbouring nodes for the recurrences of their responses. With fewer, products are as fast."""
@@ -97,35 +101,59 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     """The table of a contact with all `closed` nodes (n,) sticking; None if they can't hold the pin."""
     n, both = closed.size, np.concatenate([closed, closed])
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
-    nodes = np.flatnonzero(closed)
-    entries = _distances(system, nodes)
-    core = (
-        _inverse(np.asarray(system.operator), rows) if entries is None else toeplitz.inverse(*entries[:, : nodes.size])
-    )
-    if core is None:
-        return None
+    matrix = np.empty((2 * n + 3, 2 * n + 3), order="F")
+    entries = _distances(system, np.flatnonzero(closed))
+    if not (entries is not None and _fill_by_distances(system, rows, others, entries, matrix)):
+        unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
+        if unknowns.singular or rows.size > MOST_FACTORISED:
+            return None
+        _fill_by_factorisation(unknowns, matrix)
+    stack = np.concatenate([rows, others, np.arange(2 * n, 2 * n + 3)])
+    order = np.empty(2 * n + 3, dtype=np.int64)
+    order[stack] = np.arange(2 * n + 3)
+    return HeldTable(matrix, stack, order)
+
+
+def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
+    """Fill the matrix of a table from factorised equations."""
+    count, others = unknowns.count, unknowns.others
+    acting, balance = unknowns.unit_responses(others, np.zeros(others.size))
+    right = np.eye(*matrix[: count + 3].shape)
+    right[-3:, :count], right[-3:, count:-3], right[-3:, -3:] = 0.0, -balance, np.eye(3)
+    right[:count, count:-3] = -acting[unknowns.rows]
+    found = unknowns.solve(right)
+    matrix[:count], matrix[-3:] = found[:count], found[-3:]
+    matrix[count:-3] = unknowns.at_others(found, np.zeros((others.size, matrix.shape[1])))
+    matrix[count:-3, count:-3] += acting[others]
+
+
+def _fill_by_distances(
+    system: System, rows: np.ndarray, others: np.ndarray, entries: np.ndarray, matrix: np.ndarray
+) -> bool:
+    """Fill the matrix of a table from the inverse of a block Toeplitz matrix, and the motion of the pin.
+
+    Returns whether the nodes hold the pin so well that few digits are lost.
+    """
+    count = rows.size
+    core = toeplitz.inverse(*entries[:, : count // 2])
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
     small = _motion_by_forces(system, equilibrium, moved)
     if small is None:
-        return None
+        return False
     free, tied, acting = _responses(system, rows, others, core, entries)
-    count, matrix = rows.size, np.empty((2 * n + 3, 2 * n + 3), order="F")
-    moving = np.empty((3, 2 * n + 3))
+    moving = np.empty((3, matrix.shape[1]))
     moving[:, :count] = -small @ (equilibrium @ core)
     moving[:, count:-3] = -small @ (system.equilibrium[:, others] + equilibrium @ free)
     moving[:, -3:] = small
-    matrix[:count, :count] = core if entries is None else core.T  # symmetric
+    matrix[:count, :count] = core.T  # it is symmetric
     matrix[:count, count:-3] = free
     matrix[count:-3, :count] = tied
     matrix[count:-3, count:-3] = acting
     matrix[-3:], matrix[:, -3:] = 0.0, 0.0
     turned = np.concatenate([-moved, system.motion[others] - tied @ motion, np.eye(3)])
     blas.dgemm(1.0, turned, moving, beta=1.0, c=matrix, overwrite_c=1)
-    stack = np.concatenate([rows, others, np.arange(2 * n, 2 * n + 3)])
-    order = np.empty(2 * n + 3, dtype=np.int64)
-    order[stack] = np.arange(2 * n + 3)
-    return HeldTable(matrix, stack, order)
+    return True
 
 
 def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray) -> np.ndarray | None:
@@ -155,22 +183,14 @@ def _distances(system: System, nodes: np.ndarray) -> np.ndarray | None:
     return entries
 
 
-def _inverse(operator: np.ndarray, rows: np.ndarray) -> np.ndarray | None:
-    """The inverse of the operator on some rows; None if it is singular."""
-    lu, pivots, info = lapack.dgetrf(np.asfortranarray(operator[np.ix_(rows, rows)]), overwrite_a=1)
-    if info == 0:
-        lu, info = lapack.dgetri(lu, pivots, overwrite_lu=1)
-    return lu if info == 0 else None
-
-
 def _responses(
-    system: System, rows: np.ndarray, others: np.ndarray, core: np.ndarray, entries: np.ndarray | None
+    system: System, rows: np.ndarray, others: np.ndarray, core: np.ndarray, entries: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Responses without motion of the pin: of `rows` to `others`, of `others` to `rows`, and of `others` to themselves.
 
     `entries` are those of :func:`_distances`; with many nodes recurrences take their place for products.
     """
-    if entries is not None and rows.size >= 2 * LEAST_RECURRENCES:
+    if rows.size >= 2 * LEAST_RECURRENCES:
         neighbours = toeplitz.NeighbourResponses(entries, core, int(rows[0]))
         responses = neighbours.responses()
         return -responses, responses.T, neighbours.complement()
@@ -178,8 +198,7 @@ def _responses(
     beside = operator[others]
     from_held = beside[:, rows]
     tied = from_held @ core
-    free = -(core @ operator[rows][:, others]) if entries is None else -tied.T
-    return free, tied, beside[:, others] + from_held @ free
+    return -tied.T, tied, beside[:, others] - from_held @ tied.T
 
 
 def _holds(system: System, closed: np.ndarray, table: HeldTable) -> bool:
