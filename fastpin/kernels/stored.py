@@ -40,7 +40,7 @@ class Place:
         self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
         shared = [Path(__file__).with_name(name) for name in SHARED]
-        texts = tuple(Path(file).read_bytes() for file in (self.source, *shared))
+        texts = tuple(file.read_bytes() for file in (Path(self.source), *shared))
         rest = (signature, repr(SETTINGS), *_environment())
         self.key = (texts, rest)
         self.name, self.module = function.__qualname__, function.__module__
