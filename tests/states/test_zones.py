@@ -102,6 +102,7 @@ def test_the_parts_of_a_solved_contact_fit_together(similar):
             middle = int(np.argmin(np.abs(state.theta - 0.5 * (start + stop))))
             assert state.status[middle] in (sign, STICK)
             assert sign * state.shear[middle] <= 0.0
-        assert abs(state.peak_shear) >= np.abs(state.shear).max()
+        largest = float(np.abs(state.shear).max())  # under P alone both sides are equal up to rounding
+        assert abs(state.peak_shear) >= largest * (1.0 - 1e-10)
         assert abs(state.peak_shear) < 1.02 * np.abs(state.shear).max()
         assert contact[0] <= state.peak_shear_angle <= contact[1]
