@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, MutableSequence, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from typing import Any, Literal
@@ -288,11 +288,7 @@ class Session:
         """
         if whole_number("times", times, 1) > len(self._undo):
             raise InputError("times", f"only {len(self._undo)} places before this one are remembered, not {times}")
-        for _ in range(times):
-            self._redo.append(self._here)
-            self._here = self._undo.pop()
-        self._go_back()
-        return self._here.state
+        return self._move(self._undo, self._redo, times)
 
     def redo(self, times: int = 1) -> State | None:
         """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
@@ -304,9 +300,13 @@ class Session:
         """
         if whole_number("times", times, 1) > len(self._redo):
             raise InputError("times", f"only {len(self._redo)} steps were undone, not {times}")
+        return self._move(self._redo, self._undo, times)
+
+    def _move(self, places: MutableSequence[Place], left: MutableSequence[Place], times: int) -> State | None:
+        """Go to the last of some places, `times` times, and add each place that is left to `left`."""
         for _ in range(times):
-            self._undo.append(self._here)
-            self._here = self._redo.pop()
+            left.append(self._here)
+            self._here = places.pop()
         self._go_back()
         return self._here.state
 
