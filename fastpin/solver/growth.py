@@ -197,7 +197,7 @@ class OutsideGap:
         self._theta = np.linspace(*ends, max(count, 1) + 2)[1:-1]
         around = System.build(system.problem, Grid(np.r_[grid.theta, self._theta], closed=True), system.scales.force)
         rows, nodes = np.arange(n, around.grid.size), np.arange(n)
-        self._operator = np.asarray(around.operator)[np.ix_(rows, np.r_[nodes, around.grid.size + nodes])]
+        self._operator = around.operator.entries(rows, np.r_[nodes, around.grid.size + nodes])
         self._moved, self._loads = around.motion[rows], around.loads[rows]
 
     def is_closed(self, system: System, now: Configuration) -> bool:
