@@ -22,7 +22,7 @@ from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.extensions import blas
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.solver.tableau import TableauMemory, expected_ties
-from fastpin.solver.unknowns import DenseUnknowns
+from fastpin.solver.unknowns import DenseUnknowns, entries_by_distance, have_toeplitz_matrix
 
 FEW_NODES = 512
 """Most nodes of a grid whose steps begin with a held contact. Above, columns on demand take less time."""
@@ -102,10 +102,12 @@ def held_table(system: System, closed: np.ndarray) -> HeldTable | None:
     n, both = closed.size, np.concatenate([closed, closed])
     rows, others = np.flatnonzero(both), np.flatnonzero(~both)
     matrix = np.empty((2 * n + 3, 2 * n + 3), order="F")
-    entries = _distances(system, np.flatnonzero(closed))
-    if not (entries is not None and _fill_by_distances(system, rows, others, entries, matrix)):
+    by_distance = have_toeplitz_matrix(system, np.flatnonzero(closed), LEAST_NEIGHBOURS)
+    if not (by_distance and _fill_by_distances(system, rows, others, matrix)):
+        if rows.size > MOST_FACTORISED:
+            return None
         unknowns = DenseUnknowns(system, np.where(closed, STICK, OPEN).astype(np.int8))
-        if unknowns.singular or rows.size > MOST_FACTORISED:
+        if unknowns.singular:
             return None
         _fill_by_factorisation(unknowns, matrix)
     stack = np.concatenate([rows, others, np.arange(2 * n, 2 * n + 3)])
@@ -127,14 +129,12 @@ def _fill_by_factorisation(unknowns: DenseUnknowns, matrix: np.ndarray) -> None:
     matrix[count:-3, count:-3] += acting[others]
 
 
-def _fill_by_distances(
-    system: System, rows: np.ndarray, others: np.ndarray, entries: np.ndarray, matrix: np.ndarray
-) -> bool:
+def _fill_by_distances(system: System, rows: np.ndarray, others: np.ndarray, matrix: np.ndarray) -> bool:
     """Fill the matrix of a table from the inverse of a block Toeplitz matrix, and the motion of the pin.
 
     Returns whether the nodes hold the pin so well that few digits are lost.
     """
-    count = rows.size
+    count, entries = rows.size, entries_by_distance(system)
     core = toeplitz.inverse(*entries[:, : count // 2])
     motion, equilibrium = system.motion[rows], system.equilibrium[:, rows]
     moved = core @ motion
@@ -167,28 +167,12 @@ def _motion_by_forces(system: System, equilibrium: np.ndarray, moved: np.ndarray
     return small if sound else None
 
 
-def _distances(system: System, nodes: np.ndarray) -> np.ndarray | None:
-    """Entries of the operator by distance, shape (3, n), if the inverse of a block Toeplitz matrix serves for `nodes`.
-
-    It serves for equally spaced neighbours that keep clear of the ends of an arc, where hats are halves. The largest
-    distance of an arc is left out.
-    """
-    n, operator, end = system.grid.size, np.asarray(system.operator), 0 if system.grid.closed else 1
-    if not system.is_toeplitz or nodes.size < LEAST_NEIGHBOURS or nodes[-1] - nodes[0] + 1 != nodes.size:
-        return None
-    if nodes[0] < end or nodes[-1] >= n - end or nodes.size == n:
-        return None
-    entries = np.zeros((3, n))
-    entries[:, : n - end] = operator[end:n, end], operator[n + end :, n + end], operator[end:n, n + end]
-    return entries
-
-
 def _responses(
     system: System, rows: np.ndarray, others: np.ndarray, core: np.ndarray, entries: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Responses without motion of the pin: of `rows` to `others`, of `others` to `rows`, and of `others` to themselves.
 
-    `entries` are those of :func:`_distances`; with many nodes recurrences take their place for products.
+    `entries` are those of :func:`entries_by_distance`; with many nodes recurrences take their place for products.
     """
     if rows.size >= 2 * LEAST_RECURRENCES:
         neighbours = toeplitz.NeighbourResponses(entries, core, int(rows[0]))

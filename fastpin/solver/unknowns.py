@@ -180,13 +180,8 @@ class StickingRun(Unknowns):
 
     def __init__(self, system: System, status: np.ndarray) -> None:
         super().__init__(system, status)
-        n, m = system.grid.size, self.normal.size
-        operator, end = system.operator, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
-        nodes, first = np.arange(end, n), np.array([end])
-        self._entries = np.zeros((3, n))  # by distance; the largest one of an arc is not needed
-        for place, (rows, column) in enumerate([(nodes, first), (n + nodes, n + first), (nodes, n + first)]):
-            self._entries[place, : n - end] = operator.entries(rows, column)[:, 0]
-        self._core = toeplitz.inverse(*self._entries[:, :m])
+        self._entries = entries_by_distance(system)
+        self._core = toeplitz.inverse(*self._entries[:, : self.normal.size])
         motion, self._equilibrium = system.motion[self.rows], system.equilibrium[:, self.rows]
         self._moved = self._core @ motion
         complement = system.motion_rows - self._equilibrium @ self._moved
@@ -205,13 +200,10 @@ class StickingRun(Unknowns):
         side, all stick, and keep clear of the ends of an arc. On a circle at least one node must be open. Under a
         prescribed displacement, or with a compliance of any plate, the operator is no Toeplitz matrix.
         """
-        closed, n = np.flatnonzero(status != OPEN), system.grid.size
-        if not LEAST_NEIGHBOURS <= closed.size < n or np.any(status[closed] != STICK):
+        closed = np.flatnonzero(status != OPEN)
+        if system.friction == 0.0 or np.any(status[closed] != STICK):
             return False
-        if not system.is_toeplitz or system.friction == 0.0:
-            return False
-        low, last = closed[0], closed[-1]
-        return bool(last - low + 1 == closed.size and (system.grid.closed or (low > 0 and last < n - 1)))
+        return have_toeplitz_matrix(system, closed, LEAST_NEIGHBOURS)
 
     @classmethod
     def of(cls, system: System, status: np.ndarray) -> StickingRun | None:
@@ -282,6 +274,30 @@ class StickingRun(Unknowns):
         unknowns = self.solve(right)
         balance = system.equilibrium @ self.expand(unknowns) + system.motion_rows @ unknowns[-3:]
         return float(np.abs(np.r_[self.displacement(unknowns)[self.rows], balance] - right).max())
+
+
+def have_toeplitz_matrix(system: System, nodes: np.ndarray, least: int) -> bool:
+    """Whether `nodes`, in increasing order and at least so many, have a block Toeplitz matrix.
+
+    They must be equally spaced neighbours that keep clear of the ends of an arc, where hats are halves. On a circle at
+    least one node must be left out.
+    """
+    n = system.grid.size
+    if not system.is_toeplitz or not least <= nodes.size < n or nodes[-1] - nodes[0] + 1 != nodes.size:
+        return False
+    return bool(system.grid.closed or (nodes[0] > 0 and nodes[-1] < n - 1))
+
+
+def entries_by_distance(system: System) -> np.ndarray:
+    """Entries of the operator of equally spaced nodes by their distance, shape (3, n).
+
+    The rows are gap of N, slip of T and gap of T. The largest distance of an arc is not needed, and 0.
+    """
+    n, end = system.grid.size, 0 if system.grid.closed else 1  # the hats at the ends of an arc are halves
+    nodes, first, entries = np.arange(end, n), np.array([end]), np.zeros((3, n))
+    for place, (rows, column) in enumerate([(nodes, first), (n + nodes, n + first), (nodes, n + first)]):
+        entries[place, : n - end] = system.operator.entries(rows, column)[:, 0]
+    return entries
 
 
 class LatestUnknowns:
