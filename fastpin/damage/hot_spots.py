@@ -20,6 +20,7 @@ from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
+from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
 from fastpin.states.stress import check_body
@@ -218,13 +219,12 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     InputError
         If the states at some corners of the cycle were not kept, or if the cycle begins without load.
     """
-    end = instance("cycle", cycle, Cycle, "a cycle of a result").corner
-    begin = end - cycle.length
-    if begin < 0:
-        raise InputError("cycle", f"the cycle to corner {end + 1} begins without load: choose a later one")
-    found = [state for state in states if begin <= state.step + state.fraction - 1.0 <= end]
-    if not {state.step for state in found if state.fraction == 1.0}.issuperset(range(begin, end + 1)):
-        raise InputError("states", f"must hold all corners of the cycle, {begin + 1} to {end + 1}")
+    first, last = span_of(instance("cycle", cycle, Cycle, "a cycle of a result"))
+    if first < 1:
+        raise InputError("cycle", f"the cycle to corner {last} begins without load: choose a later one")
+    found = states_between(states, first, last)
+    if missing_corners(found, first, last):
+        raise InputError("states", f"must hold all corners of the cycle, {first} to {last}")
     return found
 
 

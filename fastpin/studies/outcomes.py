@@ -24,7 +24,8 @@ import numpy as np
 from fastpin.errors import FastpinError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
-from fastpin.states.quantities import QUANTITIES, load_point, size
+from fastpin.states.choice import missing_corners, span_of, states_between
+from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
@@ -284,10 +285,9 @@ def _check_cycles(result: Result) -> None:
 def _states_of_cycle(result: Result) -> list[State]:
     """The kept states of the last cycle, from its beginning to its end."""
     _check_cycles(result)
-    cycle = result.cycles[-1]
-    first, last = cycle.corner + 1 - cycle.length, cycle.corner + 1
-    states = [state for state in result if first <= load_point(state) <= last]
-    if sum(state.fraction == 1.0 and load_point(state) > first for state in states) < cycle.length:
+    first, last = span_of(result.cycles[-1])
+    states = states_between(result, first, last)
+    if missing_corners(states, first + 1, last):
         raise FastpinError('not all corners of the last cycle are kept; keep = "corners" keeps them')
     return states
 

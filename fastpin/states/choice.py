@@ -1,0 +1,134 @@
+"""The choice of states of a history: the last one, a cycle, or load points.
+
+Load points count as tables do: 1 is the first corner of the history, 1.5 lies halfway to the second one. The same words
+choose states in Python (``states=``) and on the command line (``--states``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, number
+from fastpin.model.history import LoadHistory
+from fastpin.states.cycles import Cycle
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+StateChoice = str | float | Sequence[float] | slice | None
+"""A choice of states: "last", "cycle", "all", load points (numbers, or a text such as "1,5,9"), or a slice of places.
+
+None leaves the choice to the figure.
+"""
+
+SAME_POINT = 1e-9
+"""Largest difference of equal load points. Texts such as 2.333333333 name thirds of a step."""
+
+WORDS = ("last", "cycle", "all")
+"""Choices with a name."""
+
+_NUMBERS = (int, float, np.number)
+
+NO_CYCLE = "the history has no cycle that has ended; a load block with repeat = 2 has two"
+"""Refusal of a cycle where there is none."""
+
+
+def span_of(cycle: Cycle) -> tuple[int, int]:
+    """The corners, counted from 1, at which a cycle begins and ends. It begins at 0 if it begins without load."""
+    return cycle.corner + 1 - cycle.length, cycle.corner + 1
+
+
+def states_between(states: Sequence[State], first: float, last: float) -> list[State]:
+    """The states from one load point to another, both included, in the order of the history."""
+    return sorted((state for state in states if first <= load_point(state) <= last), key=load_point)
+
+
+def missing_corners(states: Sequence[State], first: int, last: int) -> list[int]:
+    """The corners from `first` to `last`, counted from 1, whose states are not among `states`."""
+    kept = {state.step + 1 for state in states if state.fraction == 1.0}
+    return [corner for corner in range(first, last + 1) if corner not in kept]
+
+
+def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoice) -> list[int]:
+    """The places of the chosen states, in the order of the choice.
+
+    Parameters
+    ----------
+    points : ndarray, shape (k,)
+        Load points of the states.
+    cycles : sequence of Cycle
+        The cycles of the history that have ended.
+    chosen : StateChoice
+        None chooses all states.
+
+    Raises
+    ------
+    InputError
+        If there is no state, no such state or no cycle, or the choice is of another kind. The field is "states".
+    """
+    if not len(points):
+        raise InputError("states", "there is no state to plot")
+    if isinstance(chosen, slice):
+        places = list(range(*chosen.indices(len(points))))
+        if not places:
+            raise InputError("states", f"the slice holds no state; there are {len(points):,}")
+        return places
+    word = chosen if isinstance(chosen, str) else ""
+    if chosen is None or word == "all":
+        return list(range(len(points)))
+    if word == "last":
+        return [len(points) - 1]
+    if word == "cycle":
+        return _places_of_last_cycle(points, cycles)
+    return [_place(points, point) for point in _points_of(chosen)]
+
+
+def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
+    """Check a choice of states before a history is solved.
+
+    Raises
+    ------
+    InputError
+        If the history can't have such a state, or the choice is of another kind. The field is "states".
+    """
+    if isinstance(chosen, str) and chosen == "cycle" and not history.longest_cycle:
+        raise InputError("states", NO_CYCLE)
+    if chosen is None or isinstance(chosen, slice) or (isinstance(chosen, str) and chosen in WORDS):
+        return
+    for point in _points_of(chosen):
+        if not 0.0 < point <= len(history):
+            raise InputError("states", f"there is no state at load point {point:g}; the last is {len(history)}")
+
+
+def _places_of_last_cycle(points: np.ndarray, cycles: Sequence[Cycle]) -> list[int]:
+    if not cycles:
+        raise InputError("states", NO_CYCLE)
+    first, last = span_of(cycles[-1])
+    places: list[int] = np.flatnonzero((points >= first) & (points <= last)).tolist()
+    if not places:
+        raise InputError("states", "the states of the last cycle were not kept")
+    return places
+
+
+def _points_of(chosen: Any) -> list[float]:
+    """The load points that a choice names."""
+    parts = chosen.split(",") if isinstance(chosen, str) else [chosen] if isinstance(chosen, _NUMBERS) else chosen
+    try:
+        points = [number("states", float(part) if isinstance(chosen, str) else part) for part in parts]
+    except (InputError, TypeError, ValueError):
+        points = []
+    if not points:
+        shown = repr(chosen) if isinstance(chosen, str) else as_toml(chosen)
+        raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, not {shown}")
+    return points
+
+
+def _place(points: np.ndarray, point: float) -> int:
+    """The place of the state at a load point."""
+    found = np.flatnonzero(np.abs(points - point) < SAME_POINT)
+    if not found.size:
+        raise InputError("states", f"there is no state at load point {point:g}; the last is {points[-1]:g}")
+    return int(found[0])

@@ -1,0 +1,83 @@
+"""The choice of states: words, load points, slices, and one sentence for each fault."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin import InputError, LoadHistory
+from fastpin.states.choice import check_choice, chosen_places, missing_corners, span_of, states_between
+from fastpin.states.cycles import Cycle
+from tests.support.samples import sample_result
+
+POINTS = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0])
+CYCLES = (Cycle(1, 2, 1, 0.0, 0.0, 0.0, 0.0, True), Cycle(3, 2, 2, 0.0, 0.0, 0.0, 0.0, True))
+
+
+@pytest.mark.parametrize(
+    ("chosen", "places"),
+    [
+        (None, [0, 1, 2, 3, 4, 5, 6]),
+        ("all", [0, 1, 2, 3, 4, 5, 6]),
+        ("last", [6]),
+        ("cycle", [3, 4, 5, 6]),
+        ("1, 2.5", [1, 4]),
+        ([4, 0.5], [6, 0]),
+        (np.array([1.0, 3.0]), [1, 5]),
+        (2, [3]),
+        (slice(-2, None), [5, 6]),
+    ],
+)
+def test_choices(chosen, places):
+    assert chosen_places(POINTS, CYCLES, chosen) == places
+
+
+KINDS = "states: must be last, cycle, all or load points such as 2,3.5, not "
+
+
+@pytest.mark.parametrize(
+    ("chosen", "message"),
+    [
+        ("now", f"{KINDS}'now'"),
+        ("1,,2", f"{KINDS}'1,,2'"),
+        ("nan", f"{KINDS}'nan'"),
+        ([], f"{KINDS}[]"),
+        ([True], f"{KINDS}[true]"),
+        ({}, f"{KINDS}"),
+        ([[1.0]], f"{KINDS}[[1.0]]"),
+        (7, "states: there is no state at load point 7; the last is 4"),
+        ([-1], "states: there is no state at load point -1; the last is 4"),
+        (slice(9, 12), "states: the slice holds no state; there are 7"),
+    ],
+)
+def test_faults(chosen, message):
+    with pytest.raises(InputError) as fault:
+        chosen_places(POINTS, CYCLES, chosen)
+    assert str(fault.value).startswith(message)
+
+
+def test_there_must_be_states_and_cycles():
+    with pytest.raises(InputError, match="there is no state to plot"):
+        chosen_places(np.zeros(0), (), None)
+    with pytest.raises(InputError, match="the history has no cycle that has ended"):
+        chosen_places(POINTS, (), "cycle")
+    with pytest.raises(InputError, match="the states of the last cycle were not kept"):
+        chosen_places(POINTS[:2], CYCLES, "cycle")
+
+
+def test_a_choice_is_checked_before_the_history_is_solved():
+    history = LoadHistory([{"P": 1.0}, {"P": 2.0}])
+    for good in (None, "last", "all", "1.5", 2, slice(0)):
+        check_choice(good, history)
+    for bad in ("cycle", "3", 0, "first"):
+        with pytest.raises(InputError, match="states"):
+            check_choice(bad, history)
+    check_choice("cycle", history.repeated(2))
+
+
+def test_states_of_a_cycle():
+    result = sample_result([{"P": 1.0 + k} for k in range(5)])
+    assert span_of(CYCLES[-1]) == (2, 4)
+    assert [state.step for state in states_between(result, 2, 4)] == [1, 2, 3]
+    assert missing_corners(result, 2, 4) == []
+    assert missing_corners(result[2:4], 2, 5) == [2, 5]
