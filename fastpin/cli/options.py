@@ -22,6 +22,9 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 """The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
 
+STATES_HELP = "last, cycle (the last one), all, or load points such as 2,3.5"
+"""Help on the choice of states."""
+
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
     "tractions": ("states",),
     "hoop": ("states", "body"),
@@ -145,7 +148,7 @@ def add_plot(commands: Any) -> None:
         "-o", "--output", metavar="FIGURE", type=Path, help="the figure (png, pdf or svg; default KIND.png)"
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
-    plot.add_argument("--states", metavar="WHICH", help="last, cycle (the last one), all, or load points such as 2,3.5")
+    plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
     plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
     plot.add_argument("--component", help="of a map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
     plot.add_argument("--extent", metavar="RADII", type=literal, help="outer radius of a map (default 2)")
@@ -278,6 +281,7 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
         type=Path,
         help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
     )
+    command.add_argument("--states", metavar="WHICH", help=f"of --plot: {STATES_HELP}")
     command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
     command.add_argument(
         "--cycle-csv", metavar="FILE", type=Path, help="write slip, tractions and friction energy in the last cycle"

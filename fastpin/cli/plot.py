@@ -15,7 +15,6 @@ from fastpin.cli.terminal import check_outputs, write_files
 from fastpin.errors import InputError
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.cycles import Cycle
-from fastpin.states.state import State
 
 Made = tuple[Callable[[Path], object], Callable[[Path], object]]
 """Two functions that write a file: the figure, and its numbers."""
@@ -59,68 +58,51 @@ def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(options, name)) is not None}
 
 
-def _states(options: argparse.Namespace, usual: str) -> list[State]:
-    """The states of ``--states``, or the `usual` ones."""
-    path, chosen = options.result, usual if options.states is None else options.states
-    points = storage.load_points(path)
-    if not points.size:
-        raise InputError("result", f"{path} holds no state")
-    places: slice | Sequence[int] = slice(-1, None)
-    if chosen == "cycle":
-        cycles = storage.load(path, states=[]).cycles
-        if cycles:
-            places = _places_of(cycles[-1], path)
-        elif options.states is not None:
-            raise InputError("states", NO_CYCLE)
-        else:
-            places = slice(None)
-    elif chosen == "all":
-        places = figures.drawn_places(points.size)
-    elif chosen != "last":
-        places = [_place(points, part) for part in chosen.split(",")]
-    states = storage.load(path, states=places).states
-    if not states:
-        raise InputError("states", "the states of the last cycle were not kept")
+def _states(options: argparse.Namespace, usual: str | None = None) -> figures.DrawnStates:
+    """The states of ``--states``, or the `usual` ones. Only these are read from the file."""
+    states = figures.stored_states(options.result, usual if options.states is None else options.states)
+    if states.note:
+        print(f"the figure shows {states.note}")
     return states
-
-
-def _place(points: np.ndarray, text: str) -> int:
-    """The place of the state at a load point."""
-    try:
-        found = np.flatnonzero(np.abs(points - float(text)) < 1e-9)
-    except ValueError:
-        raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, not {text!r}") from None
-    if not found.size:
-        raise InputError("states", f"there is no state at load point {text.strip()}; the last is {points[-1]:g}")
-    return int(found[0])
 
 
 def _curves(curves: Sequence[Curve]) -> Callable[[Path], object]:
     return lambda path: write_csv(curves, path)
 
 
+def _drawn(draw: Callable[[figures.Look], figures.Sheet], title: str, **options: Any) -> Callable[[Path], object]:
+    """A function that writes the figure of a sheet. The curves of the sheet are computed once, for figure and CSV."""
+
+    def write(path: Path) -> None:
+        look = figures.Look(path, title, **options)
+        look.drawn(lambda: draw(look))
+
+    return write
+
+
 def _tractions(options: argparse.Namespace, title: str) -> Made:
-    states = _states(options, "cycle")
+    states = _states(options)
     curves = report.stress.traction_curves(states)
     return lambda path: figures.plot_tractions(states, path, title), _curves(curves)
 
 
 def _hoop(options: argparse.Namespace, title: str) -> Made:
-    states, given = _states(options, "cycle"), _given(options, "body")
+    states, given = _states(options), _given(options, "body")
     curves = report.stress.hoop_curves(states, **given)
-    return lambda path: figures.plot_hoop_stress(states, path, title=title, **given), _curves(curves)
+    return _drawn(lambda look: figures.draw_hoop(states, curves, look), title), _curves(curves)
 
 
 def _profile(options: argparse.Namespace, title: str) -> Made:
-    states, given = _states(options, "cycle"), _given(options, "body", "angle", "depth")
+    states, given = _states(options), _given(options, "body", "angle", "depth")
     curves = report.stress.depth_curves(states, **given)
-    return lambda path: figures.plot_stress_profile(states, path, title=title, **given), _curves(curves)
+    return _drawn(lambda look: figures.draw_profile(states, curves, look), title), _curves(curves)
 
 
 def _map(options: argparse.Namespace, title: str) -> Made:
     state, given = _states(options, "last")[-1], _given(options, "component", "body", "extent")
-    curves = report.stress.field_curves(state, **given)
-    return lambda path: figures.plot_stress_field(state, path, title=title, **given), _curves(curves)
+    curves, component = report.stress.field_curves(state, **given), given.get("component", "von_mises")
+    draw = _drawn(lambda look: figures.draw_field(state, curves, component, look), title, width=figures.FIELD_WIDTH)
+    return draw, _curves(curves)
 
 
 def _with_cycles(path: Path) -> solver.Result:

@@ -27,6 +27,7 @@ from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, state_table
 from fastpin.report.table import visible_rows
+from fastpin.states.choice import check_choice
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -83,6 +84,7 @@ def resume(options: argparse.Namespace) -> int:
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
+    _check_states(case, options)
     with Bar(len(case.history), PROGRESS) as progress_bar:
         ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
     return _write_stored(case, options, ended)
@@ -93,6 +95,7 @@ def show(options: argparse.Namespace) -> int:
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
+    _check_states(case, options)
     code = _write_stored(case, options, None)
     if options.json != "-":
         _note_unfinished(case, options.output)
@@ -162,12 +165,24 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
         if options.start is not None and getattr(options, name) is not None:
             raise InputError(f"--{name}", "is fixed by the result to continue from (--start)")
     _check_cycles(case, options)
+    _check_states(case, options)
 
 
 def _check_cycles(case: Case, options: argparse.Namespace) -> None:
     for name in ("cycles", "cycle_csv"):
         if getattr(options, name) is not None and not case.history.longest_cycle:
             raise InputError(_flag(name), "the history has no cycles: none of its blocks is repeated")
+
+
+def _check_states(case: Case, options: argparse.Namespace) -> None:
+    if options.states is None:
+        return
+    if options.plot is None:
+        raise InputError("--states", "chooses the states of a figure: it needs --plot FILE")
+    try:
+        check_choice(options.states, case.history)
+    except InputError as error:
+        raise InputError("--states", error.reason) from None
 
 
 def _flag(name: str) -> str:
@@ -219,10 +234,8 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     count = storage.state_count(options.output)
     if options.json is not None:
         return _write_result(case, options, storage.load(options.output), ended)
-    picked = set(visible_rows(count))
-    if options.plot is not None:
-        picked |= set(figures.drawn_places(count))
-    result = storage.load(options.output, states=sorted(picked))
+    picked = visible_rows(count)
+    result = storage.load(options.output, states=picked)
     return _write_result(case, options, result, ended, hidden=count - len(picked))
 
 
@@ -246,7 +259,7 @@ def _write_result(
             writers.append((options.json, lambda path: write_text(path, text)))
     if result is not None and len(result):
         states = result
-        writers.append((options.plot, lambda path: figures.plot_tractions(states, path, title=case.title)))
+        writers.append((options.plot, lambda path: _plot(case, options, states, hidden, path)))
     if result is not None and result.cycles:
         with_cycles = result
         writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
@@ -259,6 +272,20 @@ def _write_result(
     else:
         _print_states(case, result, cycle, hidden)
     return code
+
+
+def _plot(case: Case, options: argparse.Namespace, result: solver.Result, hidden: int, path: Path) -> None:
+    """Draw the tractions. States that were left out of `result` are read from its file."""
+    try:
+        if hidden:
+            drawn = figures.stored_states(options.output, options.states)
+        else:
+            drawn = figures.drawn_states(result, options.states)
+    except InputError as error:
+        raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
+    figures.plot_tractions(drawn, path, title=case.title)
+    if drawn.note:
+        print(f"{path} shows {drawn.note}", file=sys.stderr if options.json == "-" else sys.stdout)
 
 
 def _report_end(

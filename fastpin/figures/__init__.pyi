@@ -6,7 +6,15 @@ from .load_cycle import plot_slip as plot_slip
 from .lug import plot_lug as plot_lug
 from .notebook import result_html as result_html
 from .notebook import state_html as state_html
-from .states import drawn_places as drawn_places
+from .sheet import Look as Look
+from .sheet import Sheet as Sheet
+from .states import DrawnStates as DrawnStates
+from .states import drawn_states as drawn_states
+from .states import stored_states as stored_states
+from .stress import FIELD_WIDTH as FIELD_WIDTH
+from .stress import draw_field as draw_field
+from .stress import draw_hoop as draw_hoop
+from .stress import draw_profile as draw_profile
 from .stress import plot_hoop_stress as plot_hoop_stress
 from .stress import plot_stress_field as plot_stress_field
 from .stress import plot_stress_profile as plot_stress_profile

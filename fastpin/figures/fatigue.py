@@ -12,19 +12,12 @@ from matplotlib.lines import Line2D
 
 from fastpin.damage import Fatigue
 from fastpin.errors import InputError
-from fastpin.figures.style import (
-    COLOURS,
-    add_heading,
-    angle_axis,
-    check_figure_text,
-    draw_and_save,
-    fitted_legend,
-    line,
-    panels,
-)
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import COLOURS, angle_axis, line
+from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import instance
-from fastpin.model.units import scaled, units, with_unit
+from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
 
 PLANES = 40
@@ -35,7 +28,13 @@ LEAST = 0.02
 
 
 def plot_fatigue(
-    found: Fatigue, path: str | Path | None = None, title: str = "", width: float = 6.7, dpi: float = 200.0
+    found: Fatigue,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the parameter of a criterion along the edge, with its hot spot, and below it the life if it is known.
 
@@ -46,7 +45,7 @@ def plot_fatigue(
     ----------
     found : Fatigue
         Of points at one depth, such as from :meth:`fastpin.Result.fatigue`.
-    path, title, width, dpi
+    path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -57,14 +56,14 @@ def plot_fatigue(
     instance("found", found, Fatigue, "a fatigue result, such as result.fatigue(...)")
     if np.ptp(found.depth) > 0.0:
         raise InputError("found", "must be of points at one depth")
-    inches = check_figure_text(title, width)
-    return draw_and_save(lambda: _draw(found, title, inches), path, dpi)
+    look = Look(path, title, width, dpi, ax)
+    return look.drawn(lambda: _draw(found, look))
 
 
-def _draw(found: Fatigue, title: str, width: float) -> Figure:
-    rows = 1 if found.life is None else 2
-    figure, axes = panels(rows, 1, 2.2, width)
-    figure.set_figheight(2.2 * rows + 0.9)
+def _draw(found: Fatigue, look: Look) -> Sheet:
+    sheet = look.sheet([2.2] * (1 if found.life is None else 2), extra=1.2)
+    axes = sheet.axes
+    sheet.grid()
     theta, parameter = found.theta.ravel(), found.parameter.ravel()
     angle = np.array([from_bottom(place) for place in theta.tolist()])
     order, spot = np.argsort(angle), found.hot_spot
@@ -74,11 +73,11 @@ def _draw(found: Fatigue, title: str, width: float) -> Figure:
     parameter = factor * parameter
     top.plot(angle, parameter, **line(0))
     top.plot(from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=COLOURS[1])
-    top.set_ylabel(f"{found.criterion}  [{unit}]")
+    top.set_ylabel(quantity(f"parameter of\n{found.criterion}", unit))
     lowest, highest = float(parameter.min()), float(parameter.max())
     top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0) or 1.0)
     handles = [
-        Line2D([], [], label=f"hot spot at {from_bottom(spot.theta):.2f} deg", linestyle="none", marker="o",
+        Line2D([], [], label=f"hot spot at {from_bottom(spot.theta):.1f} deg", linestyle="none", marker="o",
                markersize=4.5, color=COLOURS[1]),
     ]  # fmt: skip
     if found.plane is not None:
@@ -90,20 +89,20 @@ def _draw(found: Fatigue, title: str, width: float) -> Figure:
     if found.life is not None:
         life = found.life.ravel()[order]
         axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan), **line(0))
-        axes[1, 0].set_ylabel("life  [cycles]")
+        axes[1, 0].set_ylabel("life (cycles)")
         shortest = float(np.nanmin(life))
         if math.isfinite(shortest):
             axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
     for panel in axes[:, 0]:
         panel.set_xlim(-180.0, 180.0)
         angle_axis(panel)
-    axes[-1, 0].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
-    fitted_legend(figure, list(handles), len(handles))
+    axes[-1, 0].set_xlabel(ANGLE)
+    sheet.figure.align_ylabels(axes)
+    sheet.legend(handles, len(handles))
     depth = float(found.depth.ravel()[0])
-    place = "on the edge" if depth == 0.0 else f"{with_unit(depth, units(found.problem)['length'], 4)} below the edge"
-    heading = f"{edge_body(found.problem, found.body)}, {place}"
-    add_heading(figure, title, heading)
-    return figure
+    place = "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
+    sheet.head(look.title, f"{edge_body(found.problem, found.body)}, {place}", caption=caption(found.problem))
+    return sheet
 
 
 def _draw_planes(panel: Axes, angle: np.ndarray, parameter: np.ndarray, turned: np.ndarray) -> None:

@@ -12,12 +12,24 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
+from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import Frame
-from fastpin.figures.style import add_heading, angle_axis, check_figure_text, draw_and_save, fitted_legend, line, panels
+from fastpin.figures.style import angle_axis, line
+from fastpin.figures.words import (
+    ANGLE,
+    ROUNDING,
+    caption,
+    load_text,
+    loads_by_change,
+    quantity,
+    short,
+    without_rounding,
+)
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import scaled, units, with_unit
+from fastpin.model.units import scaled, units
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
+from fastpin.states.quantities import sizes
 
 SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
 """Shades of the nodes that do not stick all the time, and their names."""
@@ -37,7 +49,13 @@ NO_AREA = "area unknown: no states between the corners"
 
 
 def plot_slip(
-    cycle: LoadCycle, path: str | Path | None = None, title: str = "", width: float = 6.7, dpi: float = 200.0
+    cycle: LoadCycle,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw slip and friction energy of a cycle on the arc of the contact.
 
@@ -48,7 +66,7 @@ def plot_slip(
     ----------
     cycle : LoadCycle
         From :meth:`fastpin.Result.cycle`.
-    path, title, width, dpi
+    path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -57,52 +75,78 @@ def plot_slip(
         If `cycle` is no load cycle. Also see :func:`fastpin.plot_tractions`.
     """
     instance("cycle", cycle, LoadCycle, "a load cycle, such as result.cycle()")
-    inches = check_figure_text(title, width)
-    return draw_and_save(lambda: _draw_slip(cycle, title, inches), path, dpi)
+    look = Look(path, title, width, dpi, ax)
+    return look.drawn(lambda: _draw_slip(cycle, look))
 
 
-def _draw_slip(cycle: LoadCycle, title: str, width: float) -> Figure:
+def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     known = cycle.friction_energy is not None
-    figure, axes = panels(2, 1, 2.0, width)
-    figure.set_figheight(5.2)
+    sheet = look.sheet([2.0, 2.0])
+    axes = sheet.axes
+    sheet.grid()
     unit = units(cycle.states[0].problem)
     frame = Frame(cycle.states)
     angle, order = frame.angle, frame.order
     upper, lower = axes[:, 0]
-    curves = [("slip range", cycle.slip_range), *([("slip distance", cycle.slip_distance)] if known else [])]
-    factor, label = scaled([float(np.max(values)) for _, values in curves if values is not None], unit["displacement"])
-    for k, (_, values) in enumerate(curves):
-        upper.plot(angle, factor * np.asarray(values)[order], **line(k, k))
-    upper.set_ylabel(f"slip  [{label}]")
+    sizes = _sizes(cycle)
+    named = {"slip range": cycle.slip_range, **({"slip distance": cycle.slip_distance} if known else {})}
+    curves = {name: without_rounding(np.asarray(each), sizes["displacement"]) for name, each in named.items()}
+    slips = any(each.any() for each in curves.values())
+    factor, label = scaled([float(each.max()) for each in curves.values()], unit["displacement"])
+    for k, each in enumerate(curves.values()):
+        upper.plot(angle, factor * each[order], **line(k, k))
+    upper.set_ylabel(quantity("slip", label))
+    words, kind, values = "range of shear traction", "traction", cycle.shear_range
     if cycle.friction_energy is not None:
-        factor, label = scaled([float(cycle.friction_energy.max())], unit["energy density"])
-        lower.plot(angle, factor * cycle.friction_energy[order], **line(2, 2))
-        lower.set_ylabel(f"friction energy  [{label}]")
-    else:
-        factor, label = scaled([float(cycle.shear_range.max())], unit["traction"])
-        lower.plot(angle, factor * cycle.shear_range[order], **line(2, 2))
-        lower.set_ylabel(f"range of shear traction  [{label}]")
-    _shade(lower, cycle, frame)
-    shades = _shade(upper, cycle, frame)
+        words, kind, values = "friction energy", "energy density", cycle.friction_energy
+    values = without_rounding(values, sizes[kind])
+    factor, label = scaled([float(values.max())], unit[kind])
+    lower.plot(angle, factor * values[order], **line(2, 2))
+    lower.set_ylabel(quantity(words, label))
+    _shade(lower, cycle, frame, slips)
+    shades = _shade(upper, cycle, frame, slips)
     for panel in (upper, lower):
-        panel.set_ylim(bottom=0.0)
+        top = max(float(np.nanmax(drawn.get_ydata())) for drawn in panel.lines)
+        panel.set_ylim(0.0, 1.08 * top or 1.0)
+        if top == 0.0:
+            panel.text(0.5, 0.5, "0: no node slips", ha="center", transform=panel.transAxes)
         angle_axis(panel)
         panel.set_xlim(*frame.limits)
-    lower.set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
-    handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, (name, _) in enumerate(curves)]
-    fitted_legend(figure, [*handles, *shades], len(handles) + len(shades))
-    heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}"
-    add_heading(figure, title, heading)
-    return figure
+    lower.set_xlabel(ANGLE)
+    handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(curves)]
+    handles.append(Line2D([], [], label=words, **line(2, 2)))
+    sheet.figure.align_ylabels(axes)
+    sheet.legend([*handles, *shades], len(handles) + len(shades))
+    _head(sheet, cycle, look.title)
+    return sheet
 
 
-def _shade(panel: Axes, cycle: LoadCycle, frame: Frame) -> list[Artist]:
-    """Shade the nodes that slip or open at some time, and return the entries of the legend."""
+def _sizes(cycle: LoadCycle) -> dict[str, float]:
+    """Natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
+    found = [sizes(state) for state in cycle.states]
+    largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
+    return largest | {"energy density": largest["displacement"] * largest["traction"]}
+
+
+def _head(sheet: Sheet, cycle: LoadCycle, title: str) -> None:
+    """Write title, corners, loads that are constant, and the parameters."""
+    common = ",  ".join(load_text(cycle.states, 0, name) for name in loads_by_change(cycle.states)[0])
+    heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}{f',  {common}' if common else ''}"
+    sheet.head(title, heading, caption=caption(cycle.states[0].problem, cycle.states))
+
+
+def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Artist]:
+    """Shade the nodes that slip or open at some time, and return the entries of the legend.
+
+    If the cycle has no slip beyond rounding (`slips` is False), no node counts as slipping.
+    """
     middles = 0.5 * (frame.angle[1:] + frame.angle[:-1])
     ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
     entries: list[Artist] = []
     for behaviour, (shade, label) in SHADES.items():
         shaded = np.flatnonzero(cycle.behaviour[frame.order] == behaviour)
+        if behaviour == NodeBehaviour.SLIPS and not slips:
+            continue
         for k in shaded:
             panel.axvspan(ends[k], ends[k + 1], color=shade, linewidth=0, zorder=-1)
         if shaded.size:
@@ -111,7 +155,13 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame) -> list[Artist]:
 
 
 def plot_loops(
-    cycle: LoadCycle, path: str | Path | None = None, title: str = "", width: float = 6.7, dpi: float = 200.0
+    cycle: LoadCycle,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the hysteresis loops of a cycle: each load against the displacement on which it does work.
 
@@ -123,7 +173,7 @@ def plot_loops(
     ----------
     cycle : LoadCycle
         From :meth:`fastpin.Result.cycle`.
-    path, title, width, dpi
+    path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -132,10 +182,10 @@ def plot_loops(
         If `cycle` is no load cycle, or no load changes in it. Also see :func:`fastpin.plot_tractions`.
     """
     instance("cycle", cycle, LoadCycle, "a load cycle, such as result.cycle()")
-    inches = check_figure_text(title, width)
+    look = Look(path, title, width, dpi, ax)
     if not _changing(cycle):
         raise InputError("cycle", "has no loop: no load changes in it")
-    return draw_and_save(lambda: _draw_loops(cycle, title, inches), path, dpi)
+    return look.drawn(lambda: _draw_loops(cycle, look))
 
 
 def _changing(cycle: LoadCycle) -> list[str]:
@@ -150,10 +200,12 @@ def _changing(cycle: LoadCycle) -> list[str]:
     ]
 
 
-def _draw_loops(cycle: LoadCycle, title: str, width: float) -> Figure:
+def _draw_loops(cycle: LoadCycle, look: Look) -> Sheet:
     names = _changing(cycle)
     across = min(len(names), 3)
-    figure, axes = panels(-(-len(names) // across), across, 2.6, width)
+    sheet = look.sheet([2.6] * -(-len(names) // across), columns=across, extra=0.9)
+    axes = sheet.axes
+    sheet.grid()
     unit = units(cycle.states[0].problem)
     for panel in axes.flat[len(names) :]:
         panel.set_visible(False)
@@ -166,10 +218,17 @@ def _draw_loops(cycle: LoadCycle, title: str, width: float) -> Figure:
             moved = 1.0 / max(float(np.abs(loop.displacement).max()), 1e-300)
             moved_unit = "largest: 1"
         panel.plot(moved * loop.displacement, load * loop.load, marker="o", markersize=2.2, **line(0))
-        panel.set_xlabel(f"{words}  [{moved_unit}]")
-        panel.set_ylabel(f"{name}  [{load_unit}]")
-        area = f"area {with_unit(loop.work, unit['energy'], 4)}" if len(loop.load) > STRAIGHT else NO_AREA
-        panel.set_title(area, fontsize=8.5)
-    heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}"
-    add_heading(figure, title, heading)
-    return figure
+        panel.set_xlabel(quantity(words, moved_unit))
+        panel.set_ylabel(quantity(name, load_unit))
+        area = _area(cycle, name, float(loop.work)) if len(loop.load) > STRAIGHT else NO_AREA
+        panel.text(0.03, 0.97, area, fontsize=8.0, ha="left", va="top", transform=panel.transAxes)
+    _head(sheet, cycle, look.title)
+    return sheet
+
+
+def _area(cycle: LoadCycle, name: str, work: float) -> str:
+    """The area of a loop as text: 0 where it is rounding beside load times displacement."""
+    loop = cycle.loops[name]
+    size = float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
+    unit = units(cycle.states[0].problem)["energy"]
+    return f"area {short(work, unit)}" if abs(work) > ROUNDING * size else "area 0"

@@ -7,7 +7,8 @@ import html
 import io
 from collections.abc import Sequence
 
-from fastpin.figures.style import MAX_NAMED, spread
+from fastpin.figures.states import drawn_states
+from fastpin.figures.style import SCREEN_DPI
 from fastpin.figures.tractions import plot_tractions
 from fastpin.model.checks import instance
 from fastpin.report.states import state_table
@@ -16,9 +17,6 @@ from fastpin.states.state import State
 
 WIDTH = 5.6
 """Width of the figure, inches."""
-
-DPI = 110.0
-"""Dots per inch of the figure."""
 
 
 def state_html(state: State) -> str:
@@ -31,22 +29,20 @@ def state_html(state: State) -> str:
 
 
 def result_html(result: Result) -> str:
-    """Return the HTML of a result: a table and the tractions of at most six states, with the first and the last one.
+    """Return the HTML of a result: a table and a figure of the states of :func:`drawn_states`.
 
     Another class than :class:`Result` raises :class:`InputError`.
     """
     instance("result", result, Result, "a Result")
     if not len(result):
         return f"<pre>{html.escape(repr(result))}</pre>"
-    states = [result[k] for k in spread(len(result), MAX_NAMED)]
-    left_out = len(result) - len(states)
-    note = f"{len(result):,} states, {left_out:,} of them not shown here" if left_out else ""
-    return _html(states, note)
+    states = drawn_states(result)
+    return _html(states, f"shown: {states.note}" if states.note else "")
 
 
 def _html(states: Sequence[State], note: str) -> str:
     picture = io.BytesIO()
-    plot_tractions(states, width=WIDTH).savefig(picture, format="png", dpi=DPI)
+    plot_tractions(states, width=WIDTH).savefig(picture, format="png", dpi=SCREEN_DPI)
     image = base64.b64encode(picture.getvalue()).decode("ascii")
     table = html.escape(state_table(states[0].problem, states))
     caption = f"<p>{html.escape(note)}</p>" if note else ""

@@ -1,56 +1,128 @@
-"""Names, colours and dashes of the states in a figure."""
+"""The states in a figure: which are drawn, where on the axis of angles, and with which names, colours and dashes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from scipy.interpolate import PchipInterpolator
 
 from fastpin.errors import InputError
-from fastpin.figures.style import MAX_NAMED, Line, fitted_legend, line, spread
+from fastpin.figures.sheet import Sheet
+from fastpin.figures.style import MAX_NAMED, Line, line, spread
+from fastpin.figures.words import caption, load_text, loads_by_change, point_text, without_rounding
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOAD_KIND, LOADS
-from fastpin.model.units import acting_loads, scaled, units
+from fastpin.solver.result import Result
+from fastpin.states.choice import StateChoice, chosen_places
+from fastpin.states.cycles import Cycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.zones import ALL_ROUND
+from fastpin.storage.store import load, load_points
 
-MAX_LINES = 60
-"""Most states in a figure. Of more, it shows an even choice."""
+FINEST = 0.5
+"""Largest distance of the points of a drawn curve, degrees."""
 
 
-def drawn_states(states: Sequence[State] | State) -> list[State]:
-    """Return the states that a figure draws, at most :data:`MAX_LINES`.
+class DrawnStates(list[State]):
+    """The states that a figure draws.
+
+    Attributes
+    ----------
+    total : int
+        Number of states from which they were chosen.
+    """
+
+    def __init__(self, states: Iterable[State], total: int) -> None:
+        super().__init__(states)
+        self.total = total
+
+    @property
+    def note(self) -> str:
+        """Which states are drawn of how many, as text; empty if all are."""
+        if len(self) == self.total:
+            return ""
+        return f"{len(self)} of {self.total:,} states: load points {', '.join(map(point_text, self))}"
+
+
+def drawn_states(result: Sequence[State] | State, states: StateChoice = None, most: int = MAX_NAMED) -> DrawnStates:
+    """Return the states that a figure draws, at most `most`.
+
+    Parameters
+    ----------
+    result : State, Result or sequence of State
+        Of one problem and on one grid.
+    states : str, number, sequence of numbers or slice, optional
+        See :func:`drawn_places`.
 
     Raises
     ------
     InputError
-        If there is no state, or the states are not on one grid.
+        If there is no such state, or the states are not on one grid.
     """
-    drawn = [states] if isinstance(states, State) else states
-    if not isinstance(drawn, Sequence) or not all(isinstance(state, State) for state in drawn):
-        raise InputError("states", f"must be states or a result, not {as_toml(states)}")
-    if any(not np.array_equal(state.theta, drawn[0].theta) for state in drawn):
-        raise InputError("states", "must all be on one grid")
-    if not len(drawn):
-        raise InputError("states", "there is no state to plot")
-    return [drawn[k] for k in drawn_places(len(drawn))]
+    every = [result] if isinstance(result, State) else result
+    if not isinstance(every, Sequence) or not all(isinstance(state, State) for state in every):
+        raise InputError("result", f"must be states or a result, not {as_toml(result)}")
+    if any(not np.array_equal(state.theta, every[0].theta) for state in every):
+        raise InputError("result", "its states must all be on one grid")
+    cycles = every.cycles if isinstance(every, Result) else ()
+    points = np.array([load_point(state) for state in every])
+    places = drawn_places(points, cycles, states, most)
+    total = every.total if isinstance(every, DrawnStates) else len(every)
+    return DrawnStates([every[place] for place in places], total)
 
 
-def drawn_places(count: int) -> list[int]:
-    """Return the indices of the states that a figure draws of `count`: all, or :data:`MAX_LINES` spread evenly."""
-    return spread(count, MAX_LINES)
+def drawn_places(
+    points: np.ndarray, cycles: Sequence[Cycle], states: StateChoice = None, most: int = MAX_NAMED
+) -> list[int]:
+    """Return the places of the states that a figure draws.
+
+    Parameters
+    ----------
+    points : ndarray, shape (k,)
+        Load points of the states.
+    cycles : sequence of Cycle
+    states : str, number, sequence of numbers or slice, optional
+        See :func:`fastpin.states.choice.chosen_places`. Unless given, all states of a short history, and the last cycle
+        of a history with more than `most` states.
+    most : int
+        Of more states, an even choice is drawn, with the first and the last one.
+
+    Raises
+    ------
+    InputError
+        If there is no such state. The field is "states".
+    """
+    chosen = states
+    if states is None and len(points) > most and cycles:
+        chosen = "cycle"
+    try:
+        places = chosen_places(points, cycles, chosen)
+    except InputError:
+        if states is not None or not len(points):
+            raise
+        places = chosen_places(points, cycles, "all")  # the states of the last cycle were not kept
+    return [places[k] for k in spread(len(places), most)]
+
+
+def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED) -> DrawnStates:
+    """Return the states that a figure of a result file draws. No others are read.
+
+    Raises
+    ------
+    InputError
+        If there is no such state, or the file can't be read.
+    """
+    points = load_points(path)
+    cycles = load(path, states=[]).cycles
+    places = drawn_places(points, cycles, states, most)
+    return DrawnStates(load(path, states=places).states, len(points))
 
 
 class Frame:
@@ -87,17 +159,34 @@ class Frame:
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
 
     def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return angle, pressure and shear in the order of drawing; NaN at open nodes without a closed neighbour."""
-        closed = state.status != OPEN
-        drawn = closed.copy()
-        drawn[1:] |= closed[:-1]
-        drawn[:-1] |= closed[1:]
-        if state.grid.closed:
-            drawn[0] |= closed[-1]
-            drawn[-1] |= closed[0]
-        pressure = np.where(drawn, state.pressure, np.nan)
-        shear = np.where(drawn, state.shear, np.nan)
-        return self.angle, pressure[self.order], shear[self.order]
+        """Return angle, pressure and shear of a drawn state; NaN between its contact zones.
+
+        They follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. Their
+        points gather there. Between the nodes elsewhere they are smooth.
+        """
+        parts = [np.zeros((0, 3))]
+        gap = np.full((1, 3), np.nan)
+        for patch in state.refined.tractions.patches:
+            points = _smoothed(np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]]))
+            if points[-1, 0] - points[0, 0] > 360.0 - 1e-6:
+                points = self._rolled(points)
+            else:
+                middle = 0.5 * (points[0, 0] + points[-1, 0])
+                points[:, 0] += 360.0 * round((0.5 * sum(self.limits) - middle) / 360.0)
+            parts += [points, gap]
+        angle, pressure, shear = np.concatenate(parts[:-1] if len(parts) > 1 else parts).T
+        most = state.problem.friction * pressure  # fits and cubics may pass the bound by some 0.5 % of the peak
+        shear = np.clip(shear, -most, most)
+        return angle, pressure, without_rounding(shear, float(np.nanmax(pressure, initial=0.0)))
+
+    def _rolled(self, points: np.ndarray) -> np.ndarray:
+        """A curve all round that begins and ends where the axis does."""
+        start = self.limits[0]
+        turned = points[:-1].copy()
+        turned[:, 0] = start + np.mod(turned[:, 0] - start, 360.0)
+        turned = turned[np.argsort(turned[:, 0])]
+        turn = np.array([[360.0, 0.0, 0.0]])
+        return np.concatenate([turned[-1:] - turn, turned, turned[:1] + turn])
 
     def place(self, start: float, stop: float) -> list[tuple[float, float]]:
         """Return the parts of an interval, given in rad, that lie on the axis: (first angle, width) in degrees."""
@@ -113,6 +202,18 @@ class Frame:
         return parts
 
 
+def _smoothed(points: np.ndarray) -> np.ndarray:
+    """A curve with more points where its own are far apart: on monotone cubics, which keep its corners and peaks."""
+    steps = np.diff(points[:, 0])
+    wide = np.flatnonzero(steps > FINEST)
+    if len(points) < 3 or not wide.size:
+        return points
+    shares = [np.arange(1, math.ceil(steps[k] / FINEST)) / math.ceil(steps[k] / FINEST) for k in wide]
+    between = np.concatenate([points[k, 0] + steps[k] * share for k, share in zip(wide, shares, strict=True)])
+    every = np.unique(np.r_[points[:, 0], between])
+    return np.column_stack([every, PchipInterpolator(points[:, 0], points[:, 1:])(every)])
+
+
 def _middle_of_longest_gap(touched: np.ndarray) -> int:
     size = touched.size
     best, middle, run = 0, 0, 0
@@ -123,34 +224,25 @@ def _middle_of_longest_gap(touched: np.ndarray) -> int:
     return middle % size
 
 
-def name_states(
-    figure: Figure, axes: Sequence[Axes], states: Sequence[State], title: str, styles: list[Artist]
-) -> None:
-    """Add the legend or the colour scale. Loads that are equal in all states stand in the title.
+def name_states(sheet: Sheet, states: DrawnStates, heading: Sequence[str], styles: list[Artist]) -> None:
+    """Add heading, caption and legend. Loads that are equal in all states stand in the heading.
 
     `styles` are entries of the legend that hold for all states. A single state has no entry of its own.
     """
-    loads = [state.load for state in states]
-    acting = acting_loads(loads)
-    varying = [name for name in acting if any(load[name] != loads[0][name] for load in loads)]
-    common = [_load_text(states, 0, name) for name in acting if name not in varying]
-    heading = "\n".join(line for line in (title, ",  ".join(common)) if line)
-    if heading:
-        figure.suptitle(heading, fontsize=9.5, x=0.5, parse_math=False)
-    if len(states) > MAX_NAMED:
-        bar = figure.colorbar(state_scale(states), ax=list(axes), aspect=40, pad=0.02)
-        bar.set_label("load point (1: first corner of the history)")
-        bar.ax.yaxis.set_major_locator(MaxNLocator(nbins=8, integer=True))
-        bar.outline.set_linewidth(0.5)
-        return
+    common, differing = loads_by_change(states)
+    loads = [load_text(states, 0, name) for name in (common if len(states) > 1 else [*common, *differing])]
+    if len(states) == 1:
+        loads.insert(0, f"load point {point_text(states[0])}")
+    note = f"{len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
+    text = caption(states[0].problem, states)
+    sheet.head(*heading, ",  ".join(loads), caption=f"{text}; {note}" if note else text)
     handles: list[Artist] = []
     for index, (state, style) in enumerate(zip(states, state_lines(states), strict=True)):
-        parts = ",  ".join(_load_text(states, index, name) for name in varying)
-        text = f"{load_point(state):.4g}:  {parts}" if parts else f"{load_point(state):.4g}"
-        handles.append(Line2D([], [], label=text, **style))
+        parts = ",  ".join(load_text(states, index, name) for name in differing)
+        handles.append(Line2D([], [], label=f"{point_text(state)}:  {parts}" if parts else point_text(state), **style))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
-    if handles:
-        fitted_legend(figure, handles, columns)
+    title = ("load point:  loads there" if differing else "load point") if len(states) > 1 else ""
+    sheet.legend(handles, columns, title)
 
 
 def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist], int]:
@@ -167,28 +259,6 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
     return filled, len(columns)
 
 
-def _load_text(states: Sequence[State], index: int, name: str) -> str:
-    """Return a load with its unit as text. All loads of one kind have the same unit."""
-    same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
-    value = f"{states[index].load[name] * factor:+.4g}".replace("-", "−")
-    if states[index].load[name] == 0.0:
-        return f"{name} = 0"
-    value = value.lstrip("+") if name == "P" else value
-    return f"{name} = {value} {unit.replace('beta*', 'β*')}"
-
-
 def state_lines(states: Sequence[State]) -> list[Line]:
-    """Return the style of each state's line: colours and dashes of few states, a scale of colours for many."""
-    if len(states) <= MAX_NAMED:
-        return [line(k, k) for k in range(len(states))]
-    shades = state_scale(states).to_rgba(np.array([load_point(state) for state in states]))
-    return [{**line(width=0.9), "color": shade} for shade in shades]
-
-
-def state_scale(states: Sequence[State]) -> ScalarMappable:
-    """Return the scale of colours of many states, by their load points."""
-    points = [load_point(state) for state in states]
-    # The lightest tenth of the scale can't be seen on white.
-    shades = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.9, 0.0, 256)))
-    return ScalarMappable(Normalize(min(points), max(points)), shades)
+    """Return the style of each state's line: a colour and dashes of its own."""
+    return [line(k, k, 1.3) for k in range(len(states))]

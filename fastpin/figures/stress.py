@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.figures.states import drawn_states, name_states, state_lines
-from fastpin.figures.style import add_heading, angle_axis, check_figure_text, draw_and_save, line, panels
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.states import DrawnStates, drawn_states, name_states, state_lines
+from fastpin.figures.style import angle_axis, line
+from fastpin.figures.words import ANGLE, caption, point_text, quantity
 from fastpin.model.bodies import Disk
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
@@ -23,8 +24,11 @@ from fastpin.model.units import named_loads, scaled, units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
-from fastpin.states.quantities import load_point
+from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
+
+FIELD_WIDTH = 5.2
+"""Width of a map, inches."""
 
 LEVELS = 15
 """Colours of a map, about."""
@@ -37,12 +41,15 @@ SINGULAR = 0.3
 
 
 def plot_hoop_stress(
-    states: Sequence[State] | State,
+    result: Sequence[State] | State,
     path: str | Path | None = None,
     body: str = "both",
     title: str = "",
     width: float = 6.7,
-    dpi: float = 200.0,
+    dpi: float = 300.0,
+    *,
+    states: StateChoice = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the hoop stress round the hole (upper panel) and round the pin (lower panel).
 
@@ -51,11 +58,11 @@ def plot_hoop_stress(
 
     Parameters
     ----------
-    states : State, Result or sequence of State
+    result : State, Result or sequence of State
         Of one problem and on one grid.
     body : {"both", "plate", "pin"}
         "both" leaves out a rigid body.
-    path, title, width, dpi
+    path, title, width, dpi, states, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -63,15 +70,17 @@ def plot_hoop_stress(
     InputError
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    inches, drawn = check_figure_text(title, width), drawn_states(states)
+    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states)
     curves = hoop_curves(drawn, body)
-    return draw_and_save(lambda: _draw_hoop(drawn, curves, title, inches), path, dpi)
+    return look.drawn(lambda: draw_hoop(drawn, curves, look))
 
 
-def _draw_hoop(states: list[State], curves: list[Curve], title: str, width: float) -> Figure:
+def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
+    """Draw the curves of :func:`fastpin.report.stress.hoop_curves` of these states."""
     bodies = list(dict.fromkeys(curve.parameters["body"] for curve in curves))
-    figure, axes = panels(len(bodies), 1, 2.1, width)
-    figure.set_figheight(2.1 * len(bodies) + 1.0)
+    sheet = look.sheet([2.1] * len(bodies), extra=1.5)
+    axes = sheet.axes
+    sheet.grid()
     unit, lines = units(states[0].problem)["traction"], state_lines(states)
     column = f"hoop stress [{unit}]"
     factor, label = scaled([float(np.abs(curve[column]).max()) for curve in curves], unit)
@@ -86,15 +95,16 @@ def _draw_hoop(states: list[State], curves: list[Curve], title: str, width: floa
             angle = math.degrees(peak.angle) + 90.0
             panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(f"hoop stress, {edge_body(states[0].problem, body)}  [{label}]")
+        panel.set_ylabel(quantity(f"hoop stress of the {edge_body(states[0].problem, body)}", label))
         panel.set_xlim(-180.0, 180.0)
         angle_axis(panel)
-    axes[-1, 0].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
+    axes[-1, 0].set_xlabel(ANGLE)
+    sheet.figure.align_ylabels(axes)
     styles: list[Artist] = [_dot("largest", "0.4")]
     if open_dots:
         styles.append(_dot("largest, not resolved by the nodes", "white"))
-    name_states(figure, list(axes[:, 0]), states, title, styles)
-    return figure
+    name_states(sheet, states, [look.title], styles)
+    return sheet
 
 
 def _dot(label: str, face: str) -> Line2D:
@@ -102,26 +112,29 @@ def _dot(label: str, face: str) -> Line2D:
 
 
 def plot_stress_profile(
-    states: Sequence[State] | State,
+    result: Sequence[State] | State,
     path: str | Path | None = None,
     body: Body = "plate",
     angle: float | None = None,
     depth: float = 0.5,
     title: str = "",
     width: float = 6.7,
+    *,
+    states: StateChoice = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw radial, hoop, shear and von Mises stress below a place of the edge.
 
     Parameters
     ----------
-    states : State, Result or sequence of State
+    result : State, Result or sequence of State
         Of one problem and on one grid.
     body : {"plate", "pin"}
     angle : float, optional
         The place in degrees from the bottom; that of each state's largest hoop stress unless given.
     depth : float
         Largest depth, in units of the hole's radius.
-    path, title, width
+    path, title, width, states, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -129,14 +142,16 @@ def plot_stress_profile(
     InputError
         If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    inches, drawn = check_figure_text(title, width), drawn_states(states)
+    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states)
     curves = depth_curves(drawn, body, angle, depth)
-    return draw_and_save(lambda: _draw_profile(drawn, curves, title, inches), path, 200.0)
+    return look.drawn(lambda: draw_profile(drawn, curves, look))
 
 
-def _draw_profile(states: list[State], curves: list[Curve], title: str, width: float) -> Figure:
-    figure, axes = panels(2, 2, 2.0, width)
-    figure.set_figheight(5.2)
+def draw_profile(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
+    """Draw the curves of :func:`fastpin.report.stress.depth_curves` of these states."""
+    sheet = look.sheet([2.0, 2.0], columns=2, extra=1.5)
+    axes = sheet.axes
+    sheet.grid()
     radius = states[0].problem.hole_radius
     depth, *columns = curves[0].columns
     unit = units(states[0].problem)["traction"]
@@ -145,17 +160,16 @@ def _draw_profile(states: list[State], curves: list[Curve], title: str, width: f
         for curve, style in zip(curves, state_lines(states), strict=True):
             panel.plot(curve[depth] / radius, factor * curve[name], **style)
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(f"{name.partition(' [')[0]}  [{label}]")
+        panel.set_ylabel(quantity(name.partition(" [")[0], label))
         panel.set_xlim(left=0.0)
     for panel in axes[-1]:
         panel.set_xlabel("depth / radius of the hole")
-    figure.align_ylabels(axes)
+    sheet.figure.align_ylabels(axes)
     places = sorted({round(curve.parameters["angle [deg]"], 2) for curve in curves})
     where = f"at {places[0]:.2f} deg" if len(places) == 1 else "at the largest hoop stress of each state"
     edge = edge_body(states[0].problem, curves[0].parameters["body"])
-    heading = "\n".join(part for part in (title, f"below the edge of the {edge}, {where}") if part)
-    name_states(figure, list(axes.flat), states, heading, [])
-    return figure
+    name_states(sheet, states, [look.title, f"below the edge of the {edge}, {where}"], [])
+    return sheet
 
 
 def plot_stress_field(
@@ -165,7 +179,9 @@ def plot_stress_field(
     body: str = "both",
     extent: float = 2.0,
     title: str = "",
-    width: float = 5.2,
+    width: float = FIELD_WIDTH,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw a map of one component of the stress in pin and plate.
 
@@ -181,7 +197,7 @@ def plot_stress_field(
         "both" leaves out a rigid body.
     extent : float
         Outer radius of the map, in units of the hole's radius.
-    path, title, width
+    path, title, width, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
@@ -190,14 +206,14 @@ def plot_stress_field(
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
     instance("state", state, State, "a State")
-    inches, curves = check_figure_text(title, width), field_curves(state, component, body, extent)
-    return draw_and_save(lambda: _draw_field(state, curves, component, title, inches), path, 200.0)
+    look, curves = Look(path, title, width, ax=ax), field_curves(state, component, body, extent)
+    return look.drawn(lambda: draw_field(state, curves, component, look))
 
 
-def _draw_field(state: State, curves: list[Curve], component: str, title: str, width: float) -> Figure:
-    figure = Figure(figsize=(width, 0.9 * width), layout="constrained")
-    FigureCanvasAgg(figure)
-    panel = figure.subplots()
+def draw_field(state: State, curves: list[Curve], component: str, look: Look) -> Sheet:
+    """Draw the curves of :func:`fastpin.report.stress.field_curves` of this state."""
+    sheet = look.sheet([0.9 * look.width], extra=0.0)
+    panel = sheet.axes[0, 0]
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius
     distance, angle, value = curves[0].columns
     nearest = SINGULAR * radius if state.problem.pin_body == Disk() and state.problem.pin_load == "centre" else 0.0
@@ -216,14 +232,14 @@ def _draw_field(state: State, curves: list[Curve], component: str, title: str, w
         )
         panel.contour(x, y, factor * z, levels=levels[:: max(1, LEVELS // 5)], colors="0.25", linewidths=0.3)
     _draw_contact(panel, state)
-    bar = figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
-    bar.set_label(f"{COMPONENTS[component]}  [{label}]")
+    bar = sheet.figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
+    bar.set_label(quantity(COMPONENTS[component], label))
     panel.set_aspect("equal")
     panel.set_xlabel("x / R")
     panel.set_ylabel("y / R")
-    heading = f"load point {load_point(state):.4g}: {named_loads(state.problem, state.load)}"
-    add_heading(figure, title, heading)
-    return figure
+    heading = f"load point {point_text(state)}: {named_loads(state.problem, state.load)}"
+    sheet.head(look.title, heading, caption=caption(state.problem, [state]))
+    return sheet
 
 
 def _levels(low: float, high: float) -> np.ndarray:

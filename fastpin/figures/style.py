@@ -1,10 +1,11 @@
-"""The style of all figures: colours, dashes, legends, and how figures are saved.
+"""The style of all figures: colours, dashes, sheets with panels, legends, and how figures are saved.
 
 Matplotlib is used without global state and needs no display.
 """
 
 from __future__ import annotations
 
+import io
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -23,8 +24,11 @@ from fastpin.errors import InputError
 from fastpin.model.checks import file_path, number, string
 from fastpin.storage.files import check_writable, replacing
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
-"""Okabe and Ito's colours, distinct for all kinds of colour vision. Their yellow is left out: too light for a line."""
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
+"""Colours that are distinct for all kinds of colour vision.
+
+They are Okabe and Ito's without yellow, which is too light for a line, then Tol's wine red, and grey.
+"""
 
 DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
     (0, ()),
@@ -33,17 +37,22 @@ DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
     (0, (5.0, 1.4, 1.2, 1.4)),
     (0, (8.0, 2.0)),
     (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2)),
+    (0, (2.4, 2.4)),
+    (0, (9.0, 1.4, 3.0, 1.4)),
 )
 """Line styles of Matplotlib, as many as colours; the first one is solid."""
 
 MAX_NAMED = len(COLOURS)
-"""Most states that a figure names in its legend; more states get a colour scale."""
+"""Most curves that can be told apart in a panel."""
 
 LEAST_WIDTH, MOST_WIDTH = 1.0, 12.0
 """Limits of a figure's width, inches."""
 
 LEAST_DPI, MOST_DPI = 10.0, 1200.0
 """Limits of a bitmap's dots per inch. The largest bitmap takes less than 1 GB of memory."""
+
+SCREEN_DPI = 110.0
+"""Dots per inch of a picture in a notebook."""
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -57,7 +66,9 @@ STYLE: Any = {
     "lines.solid_capstyle": "round",
     "legend.frameon": False,
     "mathtext.default": "regular",
-    "svg.fonttype": "none",
+    "svg.fonttype": "path",  # a reader may not have the font
+    "pdf.fonttype": 42,  # TrueType, which journals ask for
+    "ps.fonttype": 42,
 }
 """Settings of Matplotlib (``rcParams``)."""
 
@@ -80,15 +91,26 @@ def draw_and_save(draw: Callable[[], Figure], path: str | Path | None, dpi: floa
         If `dpi` is out of range, the format is unknown, or the file can't be written. It comes before the figure is
         drawn where possible.
     """
-    resolution = number("dpi", dpi, LEAST_DPI, MOST_DPI)
+    resolution = number_of_dots(dpi)
     if path is not None:
-        _check_format(file_path("path", path))
+        check_format(file_path("path", path))
     with mpl.rc_context(STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # A title may have letters that no font has.
         figure = draw()
         if path is not None:
             _save(figure, Path(path), resolution)
     return figure
+
+
+def number_of_dots(dpi: float) -> float:
+    """Check the dots per inch of a bitmap, and return them.
+
+    Raises
+    ------
+    InputError
+        If `dpi` is out of range.
+    """
+    return number("dpi", dpi, LEAST_DPI, MOST_DPI)
 
 
 def check_figure_text(title: str, width: float) -> float:
@@ -108,6 +130,22 @@ def spread(count: int, most: int) -> list[int]:
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist() if count else []
 
 
+class Drawing(Figure):
+    """A figure that notebooks show as a picture, whether pyplot is loaded or not."""
+
+    def _repr_png_(self) -> bytes:
+        picture = io.BytesIO()
+        self.savefig(picture, format="png", dpi=SCREEN_DPI)
+        return picture.getvalue()
+
+
+def new_figure(width: float, height: float) -> Drawing:
+    """Return an empty figure, inches, whose panels make room for their words."""
+    figure = Drawing(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
 Line = dict[str, Any]
 """Keywords of ``Axes.plot``: colour, dashes, width."""
 
@@ -124,8 +162,7 @@ def save_drawing(draw: Callable[[Any], Figure], curves: Any, path: str | Path, d
 
 def panels(rows: int, columns: int, height: float = 2.3, width: float = 7.2) -> tuple[Figure, np.ndarray]:
     """Return a new figure, `width` inches wide, and its panels, shape (rows, columns), each `height` inches high."""
-    figure = Figure(figsize=(width, rows * height + 0.6), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, rows * height + 0.6)
     axes = figure.subplots(rows, columns, squeeze=False)
     for panel in axes.flat:
         panel.grid(True, color="0.92", linewidth=0.6)
@@ -152,7 +189,8 @@ def add_heading(figure: Figure, *lines: str) -> None:
     figure.suptitle("\n".join(line for line in lines if line), fontsize=9.5, parse_math=False)
 
 
-def _check_format(path: Path) -> None:
+def check_format(path: Path) -> None:
+    """Raise :class:`InputError` if a figure can't be written to a file of this name."""
     formats = FigureCanvasAgg.get_supported_filetypes()
     if path.suffix[1:].lower() not in formats:
         known = ", ".join(sorted(formats))
@@ -166,7 +204,7 @@ def _save(figure: Figure, path: Path, dpi: float) -> None:
         figure.savefig(temporary, dpi=dpi, metadata={dated: None} if dated else None)
 
 
-def fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
+def fitted_legend(figure: Figure, handles: list[Artist], columns: int, title: str = "") -> None:
     """Add a legend below the panels, in a font that fits the figure's width (4 to 8 points)."""
     size = 8.0
     while True:
@@ -177,6 +215,9 @@ def fitted_legend(figure: Figure, handles: list[Artist], columns: int) -> None:
             fontsize=size,
             handlelength=2.8,
             columnspacing=2.0,
+            title=title or None,
+            title_fontsize=size,
+            alignment="left",
         )
         share = legend.get_window_extent().width / figure.bbox.width
         if share <= 0.98 or size <= 4.0:

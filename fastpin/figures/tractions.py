@@ -4,46 +4,62 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.figures.states import Frame, drawn_states, name_states, state_lines
-from fastpin.figures.style import MAX_NAMED, Line, check_figure_text, draw_and_save
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
+from fastpin.figures.style import Line
+from fastpin.figures.words import ANGLE, point_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.units import scaled, units
-from fastpin.states.quantities import load_point
+from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 
-_SHADE = "0.93"
+ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
+"""The direction in which the pin slips over the plate."""
+
+_SHADE = "0.9"
+
+_PANEL, _ROW = 1.9, 0.19
+"""Heights of a panel of curves and of a row of zones, inches."""
+
+_STROKE: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
+
+NARROW = 0.03
+"""Width of a zone, in parts of the axis, below which the arrow stands above the zone and points at it."""
 
 
 def plot_tractions(
-    states: Sequence[State] | State,
+    result: Sequence[State] | State,
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
-    dpi: float = 200.0,
+    dpi: float = 300.0,
+    *,
+    states: StateChoice = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw pressure and shear traction round the hole.
 
     The upper panel shows the pressure N. The middle panel shows the shear traction T on the pin, counter-clockwise
-    positive, and its bounds +-mu N as thin lines. The lower panel shows where each state slips (shaded) or sticks
-    (solid). A single state has no lower panel; its slip zones are shaded in the panels above. Without friction there is
-    only the upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
+    positive, and its bounds +-mu N as thin lines. The lower panel shows where each state slips (light) or sticks
+    (solid). Arrows show how the pin slips. An arrow above a row marks a slip zone that is too narrow to be seen. A
+    single state has no lower panel; its slip zones are shaded in the panels above. Without friction there is only the
+    upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
 
-    Up to :data:`~fastpin.figures.style.MAX_NAMED` states are named in the legend. More states are coloured by their
-    place in the history, without a lower panel. Of more than :data:`~fastpin.figures.states.MAX_LINES` states an even
-    choice is drawn.
+    The curves follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. At most
+    :data:`~fastpin.figures.style.MAX_NAMED` states are drawn.
 
     Parameters
     ----------
-    states : State, Result or sequence of State
+    result : State, Result or sequence of State
         Of one problem and on one grid.
     path : path, optional
         Also save the figure; the suffix chooses the format.
@@ -52,102 +68,119 @@ def plot_tractions(
         Width in inches.
     dpi : float
         Dots per inch of a saved bitmap.
+    states : str, number, sequence of numbers or slice, optional
+        "last", "cycle" (the last one), "all", or load points, which count from 1 as in tables: 2, [2, 3.5] or "2,3.5".
+        A slice chooses places in the result. Unless given, all states of a short history, or the last cycle of a long
+        one.
+    ax : matplotlib axes, optional
+        Axes to draw in, instead of a new figure. Several panels divide them.
 
     Returns
     -------
     Figure
+        The new figure, or the figure of `ax`.
 
     Raises
     ------
     InputError
-        If there is no state, an argument is out of range, the figure's format is unknown, or the file can't be written.
+        If there is no such state, an argument is out of range, the figure's format is unknown, or the file can't be
+        written.
     """
-    inches = check_figure_text(title, width)
-    drawn = drawn_states(states)
-    return draw_and_save(lambda: _draw(drawn, title, inches), path, dpi)
+    look = Look(path, title, width, dpi, ax)
+    drawn = drawn_states(result, states)
+    return look.drawn(lambda: _draw(drawn, look))
 
 
-def _draw(states: list[State], title: str, width: float) -> Figure:
-    problem = states[0].problem
-    named = len(states) <= MAX_NAMED
+def _draw(states: DrawnStates, look: Look) -> Sheet:
+    frictionless = states[0].problem.frictionless
     lines = state_lines(states)
-    zones = named and not problem.frictionless and len(states) > 1
-    strip = 0.16 * len(states) + 0.15  # inches
-    panels = [1.9] if problem.frictionless else [1.9, 1.9]
-    heights = [*panels, strip] if zones else panels
-
-    figure = Figure(figsize=(width, sum(heights) + 1.35), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-
-    frame = Frame(states)
-    unit = units(problem)["traction"]
-    factor, label = scaled([float(state.pressure.max()) for state in states], unit)
-    label = label.replace("beta*", "β*")
-    for index, state in enumerate(states):
-        angle, pressure, shear = frame.curves(state)
-        axes[0].plot(angle, factor * pressure, **lines[index])
-        if not problem.frictionless:
-            for sign in (1.0, -1.0) if named else ():
-                bound = factor * sign * problem.friction * pressure
-                axes[1].plot(angle, bound, color=lines[index]["color"], linewidth=0.5, alpha=0.55, zorder=1)
-            axes[1].plot(angle, factor * shear, **lines[index])
-    axes[0].set_ylabel(f"pressure  N  [{label}]")
-    axes[0].set_ylim(bottom=0.0)
-    if not problem.frictionless:
-        axes[1].set_ylabel(f"shear  T  [{label}]")
-        axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    zones = not frictionless and len(states) > 1
+    panels = [_PANEL] if frictionless else [_PANEL, _PANEL]
+    sheet = look.sheet([*panels, _ROW * len(states) + 0.15] if zones else panels, extra=1.6, sharex=True)
+    axes, frame = sheet.axes[:, 0], Frame(states)
+    _draw_curves(list(axes), states, lines, frame)
     if len(states) == 1:
         _shade_slip(list(axes), states[0], frame)
     if zones:
         _draw_zones(axes[-1], states, lines, frame)
-    for panel in axes:
-        panel.grid(True, axis="x", color="0.92", linewidth=0.6)
-        panel.set_axisbelow(True)
+    sheet.grid("x")
     axes[-1].set_xlim(*frame.limits)
     axes[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 2, 3, 4.5, 5, 6, 9, 10]))
-    axes[-1].set_xlabel("angle from the bottom of the hole, counter-clockwise  [deg]")
-    figure.align_ylabels(axes)
-    name_states(figure, list(axes), states, title, _styles(states))
-    return figure
+    axes[-1].set_xlabel(ANGLE)
+    for panel in axes[:-1]:
+        panel.tick_params(labelbottom=False)
+    sheet.figure.align_ylabels(list(axes))
+    name_states(sheet, states, [look.title], _styles(states))
+    return sheet
 
 
-def _styles(states: list[State]) -> list[Artist]:
+def _draw_curves(axes: Sequence[Axes], states: DrawnStates, lines: Sequence[Line], frame: Frame) -> None:
+    """Draw the pressure and, with friction, the shear traction of all states."""
+    problem = states[0].problem
+    factor, unit = scaled([float(state.pressure.max()) for state in states], units(problem)["traction"])
+    for state, style in zip(states, lines, strict=True):
+        angle, pressure, shear = frame.curves(state)
+        axes[0].plot(angle, factor * pressure, **style)
+        if not problem.frictionless:
+            for sign in (1.0, -1.0):
+                bound = factor * sign * problem.friction * pressure
+                axes[1].plot(angle, bound, color=style["color"], linewidth=0.5, alpha=0.55, zorder=1)
+            axes[1].plot(angle, factor * shear, **style)
+    axes[0].set_ylabel(quantity("pressure N", unit))
+    axes[0].set_ylim(bottom=0.0)
+    if not problem.frictionless:
+        axes[1].set_ylabel(quantity("shear traction T", unit))
+        axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+
+
+def _styles(states: DrawnStates) -> list[Artist]:
     """Return the entries of the legend that hold for all states."""
     styles: list[Artist] = []
     if not states[0].problem.frictionless:
-        friction = states[0].problem.friction
-        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label=f"±μN,  μ = {friction:g}"))
+        styles.append(Line2D([], [], color="0.5", linewidth=0.5, label="thin: bounds ±μN of T"))
         if len(states) == 1:
             styles.append(Patch(color=_SHADE, linewidth=0, label="slip"))
         else:
-            styles.append(Patch(color="0.35", linewidth=0, label="stick"))
-            styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="slip, → counter-clockwise"))
+            styles.append(Patch(color="0.35", linewidth=0, label="dark: stick"))
+            styles.append(Patch(color="0.35", alpha=0.22, linewidth=0, label="light: slip"))
+        styles.append(Line2D([], [], linestyle="none", marker=r"$→$", markersize=8.0, color="0.25",
+                             label="pin slips counter-clockwise"))  # fmt: skip
     return styles
 
 
 def _shade_slip(axes: Sequence[Axes], state: State, frame: Frame) -> None:
-    for start, stop, _ in state.slip_zones:
+    """Shade the slip zones of a state. Arrows at the top show the pin's direction."""
+    for start, stop, sign in state.slip_zones:
         for left, width in frame.place(start, stop):
             for panel in axes:
                 panel.axvspan(left, left + width, color=_SHADE, linewidth=0, zorder=-1)
+            _write_arrow(axes[0], left + 0.5 * width, 1.0, sign, axes[0].get_xaxis_transform(), above=True)
 
 
-def _draw_zones(panel: Axes, states: list[State], lines: Sequence[Line], frame: Frame) -> None:
-    """Draw one row for each state: solid where it sticks, shaded where it slips. Arrows show the pin's direction."""
+def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: Frame) -> None:
+    """Draw one row for each state: solid where it sticks, light where it slips."""
     for row, state in enumerate(states):
         colour = lines[row]["color"]
-        for start, stop, sign in state.slip_zones:
-            for left, width in frame.place(start, stop):
-                panel.barh(row, width, left=left, height=0.66, color=colour, alpha=0.22, linewidth=0)
-                if width > 0.03 * (frame.limits[1] - frame.limits[0]):
-                    arrow = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}.get(int(sign), "")
-                    panel.text(left + 0.5 * width, row, arrow, ha="center", va="center", fontsize=7.0, color="0.25")
         for start, stop in state.stick:
             for left, width in frame.place(start, stop):
-                panel.barh(row, width, left=left, height=0.66, color=colour, linewidth=0)
-    panel.set_ylim(len(states) - 0.45, -0.55)
-    panel.set_yticks(range(len(states)), [f"{load_point(state):.4g}" for state in states])
-    panel.tick_params(axis="y", length=0)
-    panel.set_ylabel("stick, slip")
+                panel.barh(row, width, left=left, height=0.6, color=colour, linewidth=0)
+        for start, stop, sign in state.slip_zones:
+            for left, width in frame.place(start, stop):
+                panel.barh(row, width, left=left, height=0.6, color=colour, alpha=0.22, linewidth=0)
+                narrow = width < NARROW * (frame.limits[1] - frame.limits[0])
+                _write_arrow(panel, left + 0.5 * width, row - 0.28 * narrow, sign, panel.transData, above=narrow)
+    panel.set_ylim(len(states) - 0.45, -0.75)
+    panel.set_yticks(range(len(states)), [point_text(state) for state in states])
+    panel.tick_params(axis="y", length=0, labelsize=7.5)
+    panel.set_ylabel("load point")
     panel.spines["left"].set_visible(False)
+
+
+def _write_arrow(panel: Axes, x: float, y: float, sign: int, transform: Any, above: bool) -> None:
+    """Write an arrow in a zone. Above a narrow zone a stroke under the arrow points at the zone."""
+    panel.annotate(
+        ARROWS.get(int(sign), ""), (x, y), xycoords=transform, xytext=(0.0, 4.0 if above else 0.0),
+        textcoords="offset points", ha="center", va="bottom" if above else "center", fontsize=7.0, color="0.15",
+        arrowprops=_STROKE if above else None,
+        annotation_clip=False,
+    )  # fmt: skip

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import items, whole_number
+from fastpin.model.checks import whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
+from fastpin.states.choice import StateChoice, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import ErrorBars
 from fastpin.states.load_cycle import LoadCycle
@@ -146,7 +147,7 @@ class Result(Sequence[State]):
         if not self.cycles:
             raise InputError("cycle", "the history has no cycle that has ended; give the corners first and last")
         cycle = self.cycles[whole_number("place", place, -len(self.cycles), len(self.cycles) - 1)]
-        begin, end = cycle.corner + 1 - cycle.length, cycle.corner + 1
+        begin, end = span_of(cycle)
         if begin < 1:
             raise InputError("cycle", f"the cycle to corner {end} begins without load: choose a later one")
         found = LoadCycle(self._between(begin, end))
@@ -160,22 +161,24 @@ class Result(Sequence[State]):
 
     def _between(self, first: int, last: int) -> tuple[State, ...]:
         """The kept states from one corner to another, which count from 1."""
-        states = sorted((state for state in self.states if first <= load_point(state) <= last), key=load_point)
+        states = states_between(self.states, first, last)
         points = [load_point(state) for state in states]
         for corner, place in ((first, 0), (last, -1)):
             if not points or points[place] != corner:
                 raise InputError("cycle", f"the state at corner {corner} was not kept, or not loaded")
         return tuple(states)
 
-    def plot(self, path: str | Path | None = None, states: slice | Sequence[int] = slice(None), **options: Any) -> Any:
+    def plot(self, path: str | Path | None = None, states: StateChoice = None, **options: Any) -> Any:
         """Draw the tractions, and return the matplotlib figure.
 
         Parameters
         ----------
         path, **options
             See :func:`fastpin.plot_tractions`.
-        states : slice or sequence of int
-            The states to draw, by their places in the result; all unless given.
+        states : str, number, sequence of numbers or slice, optional
+            "last", "cycle" (the last one), "all", or load points, which count from 1 as in tables: 2, [2, 3.5] or
+            "2,3.5". A slice chooses places in the result. Unless given, all states of a short history, or the last
+            cycle of a long one.
 
         Raises
         ------
@@ -184,13 +187,7 @@ class Result(Sequence[State]):
         """
         import fastpin
 
-        if isinstance(states, slice):
-            chosen = self.states[states]
-        else:
-            places = items("states", states, "a slice or whole numbers")
-            last = len(self) - 1
-            chosen = [self.states[whole_number("states", place, -len(self), last)] for place in places]
-        return fastpin.plot_tractions(chosen, path, **options)
+        return fastpin.plot_tractions(self, path, states=states, **options)
 
     def fatigue(self, criterion: Any, body: Body = "plate", **options: Any) -> Any:
         """Fatigue of plate or pin over the last cycle of the history, or over all states if it has no cycles.

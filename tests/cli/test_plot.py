@@ -34,7 +34,14 @@ def test_a_figure_and_its_numbers(stored, kind, tmp_path, capsys):
     assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
     assert figure.read_text(encoding="utf-8").startswith("<?xml")
     assert len(read_rows(numbers)) >= 2
-    assert capsys.readouterr().out == f"wrote {figure} and {numbers}\n"
+    assert capsys.readouterr().out.splitlines()[-1] == f"wrote {figure} and {numbers}"
+
+
+def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
+    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png")]) == 0
+    assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: load points 3, 3.5, 4, 4.5, 5\n")
+    assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "2,5"]) == 0
+    assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
 
 
 def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.figures.states import MAX_LINES
-from fastpin.figures.style import MAX_NAMED
+from fastpin.figures.states import drawn_states
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED
 from fastpin.figures.tractions import plot_tractions
 from fastpin.model.problem import Problem
 from tests.support.samples import PAIR, sample_result
@@ -29,13 +29,27 @@ def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> N
     pressure, shear, zones = plot_tractions(result).axes
     assert len(curves(pressure)) == len(curves(shear)) == len(result)
     for state, line in zip(result, curves(pressure), strict=True):
-        drawn = np.isfinite(line[:, 1])
-        assert np.allclose(line[drawn, 1], state.pressure[drawn] / 1e6)
-        assert np.allclose(line[:, 0], np.degrees(state.theta) + 90.0)
-        assert np.isnan(line[~drawn, 1]).all()
-        assert np.nanmax(line[:, 1]) == pytest.approx(100.0, rel=1e-3)
-    assert "MPa" in pressure.get_ylabel()
-    assert "bottom" in zones.get_xlabel()
+        at_nodes = np.interp(np.degrees(state.theta) + 90.0, line[:, 0], line[:, 1], left=0.0, right=0.0)
+        assert np.allclose(at_nodes, state.pressure / 1e6, atol=0.5)  # the power laws are fitted: 0.5 % of the peak
+        assert np.max(line[:, 1]) == pytest.approx(100.0, rel=1e-3)
+    assert pressure.get_ylabel() == "pressure N (MPa)"
+    assert shear.get_ylabel() == "shear traction T (MPa)"
+    assert zones.get_xlabel() == "angle from the bottom of the hole, counter-clockwise (deg)"
+
+
+def test_curves_end_at_the_edges_like_a_square_root() -> None:
+    state = sample_result()[0]
+    (line,) = curves(plot_tractions(state).axes[0])
+    first, last = np.degrees(state.contact[0]) + 90.0
+    assert line[0] == pytest.approx((first, 0.0), abs=1e-9)
+    assert line[-1] == pytest.approx((last, 0.0), abs=1e-9)
+    spacing = np.degrees(state.theta[1] - state.theta[0])
+    near = line[(line[:, 0] > first) & (line[:, 0] < first + spacing)]
+    assert len(near) > 20  # the points gather between the edge and the first node
+    rise = near[:, 1] / np.sqrt(near[:, 0] - first)
+    assert np.ptp(rise) < 0.15 * rise.mean()  # 0.12; the exponent is 0.48. A straight line has more than 2.
+    wide = np.diff(line[:, 0])
+    assert wide.max() <= 0.5 + 1e-9
 
 
 def test_shear_lies_within_its_drawn_bounds() -> None:
@@ -51,7 +65,23 @@ def test_shear_lies_within_its_drawn_bounds() -> None:
 def test_legend_names_what_differs_and_the_title_what_does_not() -> None:
     figure = plot_tractions(sample_result(), title="A case")
     assert labels(figure)[:3] == ["1:  Q = 0", "2:  Q = +0.484 MN/m", "3:  Q = −0.484 MN/m"]
+    assert figure.legends[0].get_title().get_text() == "load point:  loads there"
     assert figure.get_suptitle() == "A case\nP = 2.42 MN/m"
+    caption = figure.axes[0].get_title().replace("\n", " ").replace("\N{NO-BREAK SPACE}", " ")
+    for part in (
+        "pin: Ti-6Al-4V",
+        "plate: aluminium",
+        "friction coefficient 0.4",
+        "clearance 20 µm",
+        "load parameter ",
+    ):
+        assert part in caption
+
+
+def test_numbers_in_captions_are_rounded_and_rounding_is_zero() -> None:
+    figure = plot_tractions(sample_result([{"P": 1e6, "Q": 1e-7}, {"P": 2e6, "Q": 2e-7}], friction=0.2444444))
+    assert "friction coefficient 0.244," in figure.axes[0].get_title().replace("\n", " ")
+    assert labels(figure)[:2] == ["1:  P = 1 MN/m,  Q = 0", "2:  P = 2 MN/m,  Q = 0"]
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6])
@@ -73,6 +103,22 @@ def test_zones_of_each_state() -> None:
     assert len(bars) == expected
     start, stop = result[0].stick[0]
     assert any(np.allclose(bar[1:], (np.degrees(start) + 90, np.degrees(stop - start)), atol=1e-6) for bar in bars)
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["1", "2", "3"]
+
+
+def test_an_arrow_points_at_a_slip_zone_that_is_too_narrow_to_be_seen() -> None:
+    result = sample_result(nodes=401)
+    state = result[0]
+    inside = np.flatnonzero(state.status != 2)
+    state.status[inside] = 0
+    state.shear[inside] = 0.0
+    state.status[inside[:2]], state.shear[inside[:2]] = 1, 0.4 * state.pressure[inside[:2]]
+    (narrow,) = state.slip_zones
+    assert np.degrees(narrow[1] - narrow[0]) < 3.0
+    panel = plot_tractions(result).axes[-1]
+    arrows = [text for text in panel.texts if text.get_text() and text.xy[1] < 0.0 and text.arrow_patch is not None]
+    assert [text.get_text() for text in arrows] == ["→"]
+    assert narrow[0] < np.radians(arrows[0].xy[0] - 90.0) < narrow[1]
 
 
 def test_one_state_is_shaded_where_it_slips() -> None:
@@ -92,14 +138,36 @@ def test_dimensionless_units() -> None:
     assert "F/R" in figure.axes[0].get_ylabel()
 
 
-def test_many_states_get_a_colour_scale() -> None:
-    count = 5 * MAX_LINES
-    result = sample_result([{"P": 1e6 * (k + 1)} for k in range(count)])
-    few = plot_tractions(list(result)[: MAX_NAMED + 1])
-    assert not few.legends
-    assert len(few.axes) == 3  # pressure, shear, colour scale
-    many = plot_tractions(result)
-    assert len(curves(many.axes[0])) == MAX_LINES
+def test_many_states_are_thinned_to_curves_that_can_be_told_apart() -> None:
+    result = sample_result([{"P": 1e6 * (k + 1)} for k in range(50)])
+    figure = plot_tractions(result)
+    assert len(curves(figure.axes[0])) == MAX_NAMED == 8
+    assert "8 of 50 states drawn" in figure.axes[0].get_title()
+    assert drawn_states(result).note == "8 of 50 states: load points 1, 8, 15, 22, 29, 36, 43, 50"
+    assert len({line.get_color() for line in figure.axes[0].lines}) == MAX_NAMED
+    assert len(set(COLOURS)) == len(set(DASHES)) == MAX_NAMED
+    chosen = plot_tractions(result, states=[2, 50])
+    assert labels(chosen)[:2] == ["2:  P = 2 MN/m", "50:  P = 50 MN/m"]
+    assert labels(plot_tractions(result, states="last")) == labels(plot_tractions(result[-1]))
+
+
+def test_axes_of_the_caller() -> None:
+    figure = mpl.figure.Figure(figsize=(8.0, 6.0))
+    left, right = figure.subplots(1, 2)
+    assert plot_tractions(sample_result(), ax=left) is figure
+    assert len(left.child_axes) == 3
+    assert not right.lines
+    assert "pressure" in left.child_axes[0].get_ylabel()
+    plot_tractions(sample_result(friction=0.0), ax=right)
+    assert len(curves(right)) == 3
+    assert right.get_ylabel() == "pressure N (MPa)"
+    assert right.get_legend() is not None
+    with pytest.raises(InputError, match="ax: must be axes of Matplotlib"):
+        plot_tractions(sample_result(), ax=figure)
+
+
+def test_notebooks_show_a_figure_without_pyplot() -> None:
+    assert plot_tractions(sample_result())._repr_png_().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("centre", [-0.5 * np.pi, 0.0, 0.5 * np.pi, 0.75 * np.pi])

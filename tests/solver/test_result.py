@@ -51,11 +51,11 @@ def test_states_without_contact_and_empty_results_have_short_forms():
 
 
 def test_notebooks_get_a_table_and_a_picture(result):
-    for thing, rows in ((result, 6), (result[1], 1)):
+    for thing, rows in ((result, 7), (result[1], 1)):
         html = thing._repr_html_()
         assert html.count("\n") == rows + 1
         assert 'src="data:image/png;base64,' in html
-    assert "7 states, 1 of them not shown here" in result._repr_html_()
+    assert "shown: " not in result._repr_html_()
 
 
 def test_a_result_draws_and_stores_itself(result, tmp_path):
@@ -68,9 +68,9 @@ def test_a_result_draws_and_stores_itself(result, tmp_path):
 
 
 def test_chosen_states_are_drawn(result):
-    figure = result.plot(states=[0, -1])
-    assert len(figure.axes) == 3
-    assert len(result.plot(states=slice(1, 3)).axes) == 3
+    for chosen, points in (([1, 7], "17"), (slice(1, 3), "23"), ("cycle", "567"), (None, "1234567")):
+        zones = result.plot(states=chosen).axes[-1]
+        assert "".join(label.get_text() for label in zones.get_yticklabels()) == points
 
 
 def test_a_result_and_its_file_give_the_same_dataset(result, tmp_path):

@@ -72,6 +72,7 @@ MANY_PARAMETERS: dict[str, str] = {
     "solver/solving.py solve": "the options are spelt out for help and completion",
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
+    "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }
 """Functions of more parameters, and why."""

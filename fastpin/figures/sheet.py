@@ -1,0 +1,159 @@
+"""Sheets: a new figure with panels, or the axes that a caller gives; heading, caption and legend on either."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fastpin.errors import InputError
+from fastpin.figures.style import (
+    check_figure_text,
+    check_format,
+    draw_and_save,
+    fitted_legend,
+    new_figure,
+    number_of_dots,
+)
+from fastpin.figures.words import wrapped
+from fastpin.model.checks import file_path, instance
+
+HEADING = 9.5
+"""Size of a title, points."""
+
+CAPTION: dict[str, Any] = {"fontsize": 7.2, "color": "0.25", "parse_math": False}
+"""Text of a caption."""
+
+GAP = 0.14
+"""Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a figure looks, and where it goes.
+
+    Attributes
+    ----------
+    path : path or None
+        File of the figure; the suffix chooses the format.
+    title : str
+    width : float
+        Width of a new figure, inches.
+    dpi : float
+        Dots per inch of a bitmap.
+    ax : Axes or None
+        Axes to draw in, instead of a new figure. A figure with several panels divides them.
+
+    Raises
+    ------
+    InputError
+        If an attribute is out of range, the format is unknown, or the file can't be written.
+    """
+
+    path: str | Path | None = None
+    title: str = ""
+    width: float = 6.7
+    dpi: float = 300.0
+    ax: Axes | None = None
+
+    def __post_init__(self) -> None:
+        check_figure_text(self.title, self.width)
+        number_of_dots(self.dpi)
+        if self.path is not None:
+            check_format(file_path("path", self.path))
+        if self.ax is not None:
+            instance("ax", self.ax, Axes, "axes of Matplotlib")
+
+    def drawn(self, draw: Callable[[], Sheet]) -> Figure:
+        """Draw a sheet in the house style, save its figure if there is a path, and return the figure."""
+        return draw_and_save(lambda: draw().figure, self.path, self.dpi)
+
+    def sheet(self, heights: Sequence[float], columns: int = 1, extra: float = 1.35, **options: Any) -> Sheet:
+        """Return a sheet with a row of panels for each of `heights`, inches.
+
+        `extra` is the height for heading and legend. `options` go to ``Figure.subplots``.
+        """
+        if self.ax is None:
+            figure = new_figure(self.width, sum(heights) + extra)
+            axes = figure.subplots(len(heights), columns, squeeze=False, height_ratios=heights, **options)
+            return Sheet(figure, axes, None)
+        if self.ax.figure is None:
+            raise InputError("ax", "belongs to no figure")
+        host: Figure = self.ax.figure.figure  # the whole figure, also of axes in a part of it
+        if len(heights) * columns == 1 and not options.get("subplot_kw"):
+            return Sheet(host, np.array([[self.ax]]), self.ax)
+        return Sheet(host, _insets(self.ax, heights, columns, options), self.ax)
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A figure and its panels.
+
+    Attributes
+    ----------
+    figure : Figure
+    axes : ndarray of Axes, shape (rows, columns)
+    host : Axes or None
+        The axes that the caller gave, which hold the panels.
+    """
+
+    figure: Figure
+    axes: np.ndarray
+    host: Axes | None
+
+    def head(self, *lines: str, caption: str = "") -> None:
+        """Write lines above the panels, and a caption in smaller letters below the lines."""
+        text = "\n".join(line for line in lines if line)
+        width = self.figure.get_figwidth()
+        small = "\n".join(wrapped(caption, width - 0.9)) if caption else ""
+        if self.host is not None:
+            top = self.host if self.axes.size > 1 else self.axes[0, 0]
+            top.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION["fontsize"], parse_math=False)
+            return
+        if self.axes.shape[1] == 1:
+            if small:
+                self.axes[0, 0].set_title(small, pad=5.0, **CAPTION)
+        else:
+            text = "\n".join(filter(None, [text, small]))
+        if text:
+            size = HEADING if self.axes.shape[1] == 1 or not small else 0.85 * HEADING
+            self.figure.suptitle(text, fontsize=size, parse_math=False)
+
+    def legend(self, handles: Sequence[Artist], columns: int, title: str = "") -> None:
+        """Add a legend below the panels; inside the first panel in given axes."""
+        if not handles:
+            return
+        if self.host is None:
+            fitted_legend(self.figure, list(handles), columns, title)
+            return
+        self.axes[0, 0].legend(handles=handles, fontsize=6.5, title=title or None, title_fontsize=6.5, loc="best")
+
+    def grid(self, axis: Any = "both") -> None:
+        """Draw light lines behind the curves of all panels."""
+        for panel in self.axes.flat:
+            panel.grid(True, axis=axis, color="0.92", linewidth=0.6)
+            panel.set_axisbelow(True)
+
+
+def _insets(host: Axes, heights: Sequence[float], columns: int, options: dict[str, Any]) -> np.ndarray:
+    """Panels inside given axes, from the top down."""
+    host.set_axis_off()
+    rows = len(heights)
+    parts = np.asarray(heights) / sum(heights) * (1.0 - GAP * (rows - 1))
+    width = (1.0 - GAP * (columns - 1)) / columns
+    axes = np.empty((rows, columns), dtype=object)
+    keywords = options.get("subplot_kw") or {}
+    for row in range(rows):
+        bottom = 1.0 - float(parts[: row + 1].sum()) - GAP * row
+        for column in range(columns):
+            left = column * (width + GAP)
+            axes[row, column] = host.inset_axes((left, bottom, width, float(parts[row])), **keywords)
+            if options.get("sharex") and row:
+                axes[row, column].sharex(axes[0, column])
+    return axes

@@ -1,0 +1,141 @@
+"""The words on axes and in captions of figures."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+
+from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.model.compliance import Compliance
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.materials import Material
+from fastpin.model.problem import Problem
+from fastpin.model.units import acting_loads, scaled, units, with_unit
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+ANGLE = "angle from the bottom of the hole, counter-clockwise (deg)"
+"""Words of the axis of angles."""
+
+LOAD_POINT = "load point (1: first corner of the history)"
+"""Words of the axis of load points."""
+
+ROUNDING = 1e-9
+"""Values below this part of the largest are rounding, as in tables. They are drawn and written as 0."""
+
+DIGITS = 3
+"""Significant digits of a parameter in a caption."""
+
+CHARACTER = 0.052
+"""Mean width of a character of a caption, inches: 7 points high, and half as wide."""
+
+
+def shown_unit(unit: str) -> str:
+    """A unit as figures show it: with the letters for micro and beta."""
+    unit = unit.replace("beta*", "β*").replace("^2", "²")
+    return f"µ{unit[1:]}" if unit[:1] == "u" and len(unit) > 1 else unit
+
+
+def quantity(words: str, unit: str = "") -> str:
+    """The words of an axis: a quantity, with its unit in parentheses if it has one."""
+    return f"{words} ({shown_unit(unit)})" if unit else words
+
+
+def without_rounding(values: np.ndarray, largest: float | None = None) -> np.ndarray:
+    """Values with 0 in place of those below rounding. `largest` is their natural size; theirs unless given."""
+    size = float(np.nanmax(np.abs(values), initial=0.0)) if largest is None else largest
+    return np.where(np.abs(values) <= ROUNDING * size, 0.0, values)
+
+
+def point_text(state: State) -> str:
+    """The load point of a state as text: with thousands apart, and at most three decimals."""
+    return f"{load_point(state):,.3f}".rstrip("0").rstrip(".")
+
+
+def load_text(states: Sequence[State], index: int, name: str) -> str:
+    """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
+    same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
+    factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
+    load = states[index].load[name]
+    if abs(load) <= ROUNDING * max(map(abs, same_kind)):
+        return f"{name} = 0"
+    value = f"{load * factor:+.4g}".replace("-", "−")
+    return f"{name} = {value.lstrip('+') if name == 'P' else value} {shown_unit(unit)}"
+
+
+def loads_by_change(states: Sequence[State]) -> tuple[list[str], list[str]]:
+    """The names of acting loads that are equal in all states, and of those that differ beyond rounding."""
+    acting = acting_loads([state.load for state in states])
+    values = {name: np.array([state.load[name] for state in states]) for name in acting}
+    differing = [name for name in acting if np.ptp(values[name]) > ROUNDING * np.abs(values[name]).max()]
+    return [name for name in acting if name not in differing], differing
+
+
+def caption(problem: Problem, states: Sequence[State] = ()) -> str:
+    """The parameters of a problem as text: materials, bodies, friction, sizes, and the load parameter of the states."""
+    unit = units(problem)
+    pair = problem.pair
+    parts = [f"pin: {_material(pair.pin, problem)}{_pin_body(problem)}; plate: {_material(pair.plate, problem)}"]
+    parts[0] += f"{_plate_body(problem)}; plane {pair.plane}"
+    parts.append(f"friction coefficient {problem.friction:.{DIGITS}g}")
+    if not problem.dimensionless:
+        parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
+        parts.append(_clearance(problem))
+    forces = [float(np.hypot(state.load["P"], state.load["Q"])) for state in states]
+    parameters = sorted({f"{problem.load_parameter(force):.{DIGITS}g}": force for force in forces if force}, key=float)
+    if parameters:
+        ends = list(dict.fromkeys([parameters[0], parameters[-1]]))
+        parts.append(f"load parameter {' to '.join(ends)}".replace("-", "−"))
+    return ", ".join(parts)
+
+
+def wrapped(text: str, width: float) -> list[str]:
+    """The lines of a caption that is `width` inches wide."""
+    return textwrap.wrap(text, max(20, int(width / CHARACTER)))
+
+
+def short(value: float, unit: str) -> str:
+    """A value with its unit as a caption shows it: rounded to :data:`DIGITS`."""
+    number, _, label = with_unit(value, unit, DIGITS).partition(" ")
+    return f"{number.replace('-', '−')}\N{NO-BREAK SPACE}{shown_unit(label)}".strip()
+
+
+def _clearance(problem: Problem) -> str:
+    unit, clearance = units(problem)["length"], problem.clearance
+    if clearance == 0.0:
+        return "neat fit"
+    return f"{'clearance' if clearance > 0.0 else 'interference'} {short(abs(clearance), unit)}"
+
+
+def _material(material: Material, problem: Problem) -> str:
+    if material.is_rigid:
+        return "rigid"
+    if material.name:
+        return material.name
+    modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, "Pa")
+    return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"
+
+
+def _pin_body(problem: Problem) -> str:
+    unit = units(problem)["length"]
+    if isinstance(problem.pin_body, Tube):
+        return f", bore radius {short(problem.pin_body.bore_radius, unit)}"
+    words = {"body": ", body force", "centre": ", force at the centre"}
+    return words[problem.pin_load] if isinstance(problem.pin_body, Disk) else ""
+
+
+def _plate_body(problem: Problem) -> str:
+    body, unit = problem.plate_body, units(problem)["length"]
+    words = ""
+    if isinstance(body, Bushing):
+        words = f" with bush of {_material(body.material, problem)} to radius {short(body.outer_radius, unit)}"
+        body = body.inside
+    if isinstance(body, Ring):
+        words += f", ring to radius {short(body.outer_radius, unit)}"
+    elif isinstance(body, Compliance):
+        words += ", finite"
+    elif isinstance(body, Plate) and body.reaction is not None:
+        words += f", forces balanced at ({short(body.reaction[0], unit)}, {short(body.reaction[1], unit)})"
+    return words
