@@ -1,40 +1,62 @@
-"""Figures of load cycles."""
+"""Figures of load cycles: how the contact changes from cycle to cycle."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullLocator
 
 from fastpin.errors import InputError
-from fastpin.figures.style import MAX_NAMED, check_figure_text, draw_and_save, fitted_legend, line
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import MAX_NAMED, line
+from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
 from fastpin.model.checks import instance
 from fastpin.model.units import scaled, units
 from fastpin.solver.result import Result
-from fastpin.states.cycles import consecutive_cycles
+from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
+
+FEW = 60
+"""Most cycles of a block that have a dot each."""
+
+LONG = 50
+"""Ratio of the last and the first corner from which the axis of corners is logarithmic: transients are short."""
+
+PERIODIC: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "linestyle": (0, (1.0, 2.0))}
+"""Line of the first periodic cycle of a block."""
+
+CHANGES = {"pressure_change": "pressure", "shear_change": "shear"}
+"""Changes of a cycle, and their words."""
 
 
 def plot_cycles(
-    result: Result, path: str | Path | None = None, width: float = 6.7, title: str = "", dpi: float = 200.0
+    result: Result,
+    path: str | Path | None = None,
+    width: float = 6.7,
+    title: str = "",
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the changes that each cycle of a load history makes, from the beginning to the end of the cycle.
 
-    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure. Its scale
-    is logarithmic, so it omits the cycles of a periodic contact, whose change is zero to rounding. The middle panel
-    shows the energy dissipated in each cycle. The lower panel shows how far the cycles of a block have turned the pin
-    in all (ratcheting), counter-clockwise positive.
+    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure. The
+    middle panel shows the energy dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end.
+    Values below rounding are 0. A vertical line marks the end of the first cycle from which on the contact is periodic.
+    The lower panel shows how far all cycles so far have turned the pin (ratcheting), counter-clockwise positive.
 
     Parameters
     ----------
     result : Result
         Result of a history with repeated blocks.
-    path, title, width, dpi
+    path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Returns
@@ -46,54 +68,146 @@ def plot_cycles(
     InputError
         If there are no cycles, an argument is out of range, or the figure's format is unknown.
     """
-    inches = check_figure_text(title, width)
+    look = Look(path, title, width, dpi, ax)
     instance("result", result, Result, "a Result")
     if not result.cycles:
         raise InputError("cycles", "the history has no repeated blocks")
-    return draw_and_save(lambda: _draw_cycles(result, title, inches), path, dpi)
+    return look.drawn(lambda: _draw_cycles(result, look))
 
 
-def _draw_cycles(result: Result, title: str, width: float) -> Figure:
-    figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(3, 1, sharex=True)
-    kind = units(result.problem)
-    lengths = sorted({cycle.length for cycle in result.cycles})[:MAX_NAMED]
-    blocks = [cycles for cycles in consecutive_cycles(result.cycles) if cycles[0].length in lengths]
-    energy, unit = scaled([cycle.dissipation for cycle in result.cycles], kind["energy"])
-    turns = [np.nancumsum([0.0, *(cycle.rotation_change for cycle in cycles)]) for cycles in blocks]
-    angle, unit_of_angle = scaled(np.concatenate(turns).tolist(), kind["rotation"])
-    for cycles, turn in zip(blocks, turns, strict=True):
-        colour = lengths.index(cycles[0].length)
-        corner = [cycle.corner + 1 for cycle in cycles]
-        marker: dict[str, Any] = {"marker": "o", "markersize": 2.2} if len(cycles) <= 60 else {}
-        for dashes, field in enumerate(("pressure_change", "shear_change")):
-            change = np.array([getattr(cycle, field) for cycle in cycles])
-            change[change == 0.0] = np.nan
-            panels[0].plot(corner, change, **line(colour, dashes), **marker)
-        dissipated = np.array([energy * cycle.dissipation for cycle in cycles])
-        dissipated[~(dissipated > 0.0)] = np.nan
-        panels[1].plot(corner, dissipated, **line(colour), **marker)
-        panels[2].plot([corner[0] - cycles[0].length, *corner], angle * turn, **line(colour), **marker)
-    for panel in panels[:2]:
-        panel.set_yscale("log")
-    largest = np.nanmax([0.0, *(energy * cycle.dissipation for cycle in result.cycles)])
-    if largest > 0.0:
-        panels[1].set_ylim(bottom=max(panels[1].get_ylim()[0], 1e-9 * largest))  # less is rounding
-    panels[0].set_ylabel("largest change / peak N")
-    panels[1].set_ylabel(f"dissipated in a cycle  [{unit}]")
-    panels[2].set_ylabel(f"turned, in all  [{unit_of_angle}]")
-    panels[2].set_xlabel("corner of the load history at which the cycle ends")
+def _draw_cycles(result: Result, look: Look) -> Sheet:
+    sheet = look.sheet([1.7, 1.7, 1.7], extra=1.2, sharex=True)
+    panels = list(sheet.axes[:, 0])
+    sheet.grid()
+    kind, cycles = units(result.problem), result.cycles
+    lengths = sorted({cycle.length for cycle in cycles})[:MAX_NAMED]
+    energy, unit = scaled([cycle.dissipation for cycle in cycles], kind["energy"])
+    turns = {length: _turned([cycle for cycle in cycles if cycle.length == length]) for length in lengths}
+    angle, unit_of_angle = scaled(np.concatenate(list(turns.values())).tolist(), kind["rotation"])
+    changes = [np.array([getattr(cycle, name) for cycle in cycles]) for name in CHANGES]
+    floors = [_floor(np.concatenate(changes)), _floor(energy * np.array([cycle.dissipation for cycle in cycles]))]
+    for colour, length in enumerate(lengths):
+        mine = [cycle for cycle in cycles if cycle.length == length]
+        done = 0
+        for part in _parts(mine):  # the blocks of one length stand apart where other blocks lie between them
+            where = [cycle.corner + 1 for cycle in part]
+            turn = angle * turns[length][done : done + len(part) + 1]
+            done += len(part)
+            panels[2].plot([where[0] - length, *where], turn, **_style(colour, 0, len(mine)))
+            for dashes, name in enumerate(CHANGES):
+                drawn = _above(np.array([getattr(cycle, name) for cycle in part]), floors[0])
+                panels[0].plot(where, drawn, **_style(colour, dashes, len(mine)))
+            lost = energy * np.array([cycle.dissipation for cycle in part])
+            panels[1].plot(where, _above(lost, floors[1]), **_style(colour, 0, len(mine)))
+    for panel, floor in zip(panels, floors, strict=False):
+        _log_axis_with_zero(panel, floor)
+    marked = _mark_periodic(panels, cycles)
+    panels[0].set_ylabel("largest change of\ntractions / peak N")
+    panels[1].set_ylabel(quantity("dissipated\nin the cycle", unit))
+    panels[2].set_ylabel(quantity("turned by all\ncycles so far", unit_of_angle))
+    _corner_axis(panels, cycles)
+    sheet.figure.align_ylabels(panels)
+    sheet.head(look.title, _counts(cycles), caption=caption(result.problem))
+    handles = _handles(lengths, marked)
+    sheet.legend(handles, min(len(handles), 4))
+    return sheet
+
+
+def _turned(cycles: Sequence[Cycle]) -> np.ndarray:
+    """The sum of the rotations of cycles so far, rad, from 0 on. Sums below rounding are 0."""
+    turned = np.nancumsum([0.0, *(cycle.rotation_change for cycle in cycles)])
+    return without_rounding(turned)
+
+
+def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
+    """Runs of cycles of one length in which each begins where the one before ends, in any block."""
+    parts: list[list[Cycle]] = []
+    for cycle in cycles:
+        if parts and parts[-1][-1].corner + cycle.length == cycle.corner:
+            parts[-1].append(cycle)
+        else:
+            parts.append([cycle])
+    return parts
+
+
+def _style(colour: int, dashes: int, count: int) -> dict[str, Any]:
+    """A line, with a dot for each cycle if they are few. Dots of shear are open."""
+    marker: dict[str, Any] = {"marker": "o", "markersize": 3.6, "clip_on": False} if count <= FEW else {}
+    if marker and dashes:
+        marker["markerfacecolor"] = "white"
+    return {**line(colour, dashes), **marker, "zorder": 3}
+
+
+def _floor(values: np.ndarray) -> float:
+    """The place of 0 on a logarithmic axis: a power of ten below the smallest value that is no rounding."""
+    known = values[np.isfinite(values)]
+    positive = known[known > ROUNDING * np.max(known, initial=0.0)]
+    return 10.0 ** (math.floor(math.log10(positive.min())) - 1) if positive.size else 0.1
+
+
+def _above(values: np.ndarray, floor: float) -> np.ndarray:
+    """Values as they are drawn over a floor that stands for 0; NaN stays."""
+    return np.where(np.isnan(values), np.nan, np.maximum(values, floor))
+
+
+def _log_axis_with_zero(panel: Axes, floor: float) -> None:
+    """Make the axis logarithmic from the floor on, which is named 0."""
+    panel.set_yscale("log")
+    top = max((float(np.nanmax(drawn.get_ydata())) for drawn in panel.lines if np.isfinite(drawn.get_ydata()).any()),
+              default=10.0 * floor)  # fmt: skip
+    panel.set_ylim(floor, max(2.0 * top, 10.0 * floor))
+    decades = math.ceil(math.log10(panel.get_ylim()[1] / floor))
+    step = max(1, math.ceil(decades / 5))
+    ticks = [floor * 10.0**k for k in range(0, decades + 1, step) if floor * 10.0**k <= panel.get_ylim()[1]]
+    written = LogFormatterSciNotation()
+    written.create_dummy_axis()
+    panel.yaxis.set_major_locator(FixedLocator(ticks))
+    panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: "0" if value < 1.5 * floor else written(value)))
+    panel.yaxis.set_minor_locator(NullLocator())
+
+
+def _mark_periodic(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> bool:
+    """Mark the first periodic cycle of each block, and return whether there is one."""
+    steady = [found for block in consecutive_cycles(cycles) if (found := periodic_from(block)) is not None]
+    for found in steady[:MAX_NAMED]:
+        for panel in panels:
+            panel.axvline(found.corner + 1, zorder=1, **PERIODIC)
+    return bool(steady)
+
+
+def _corner_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
+    """Set the axis of corners: logarithmic for long histories, else with whole numbers."""
+    corners = [cycle.corner + 1 for cycle in cycles]
+    panels[-1].set_xlabel("corner of the load history at which the cycle ends")
+    first, last = max(min(corners) - max(cycle.length for cycle in cycles), 1), max(corners)
+    if last > LONG * min(corners):
+        for panel in panels:
+            panel.set_xscale("log")
+            panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=15))
+            panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+            panel.xaxis.set_minor_locator(NullLocator())
+        panels[0].set_xlim(0.93 * first, 1.07 * last)
+        return
+    if last > first:
+        panels[0].set_xlim(first - 0.02 * (last - first), last + 0.02 * (last - first))
+    panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+
+
+def _counts(cycles: Sequence[Cycle]) -> str:
+    """How many cycles there are, and from which on they are periodic."""
+    steady = periodic_from(consecutive_cycles(cycles)[-1])
+    words = f"periodic from cycle {steady.number:,} of the last block on" if steady else "not yet periodic"
+    return f"{len(cycles):,} cycle{'s' if len(cycles) > 1 else ''}, {words}"
+
+
+def _handles(lengths: Sequence[int], marked: bool) -> list[Artist]:
     handles: list[Artist] = [
         Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **line(colour))
         for colour, length in enumerate(lengths)
     ]
-    for dashes, name in enumerate(("pressure", "shear")):
-        handles.append(Line2D([], [], label=name, **{**line(0, dashes), "color": "0.3"}))
-    fitted_legend(figure, handles, min(len(handles), 4))
-    if len({cycle.corner for cycle in result.cycles}) > 1:
-        panels[2].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
-    figure.align_ylabels(panels)
-    if title:
-        figure.suptitle(title, fontsize=9.5, parse_math=False)
-    return figure
+    for dashes, name in enumerate(CHANGES.values()):
+        style = {**_style(0, dashes, 1), "color": "0.3"}
+        handles.append(Line2D([], [], label=f"change of {name}", **style))
+    if marked:
+        handles.append(Line2D([], [], label="periodic from here", **PERIODIC))
+    return handles
