@@ -26,14 +26,17 @@ STATES_HELP = "last, cycle (the last one), all, or load points such as 2,3.5"
 """Help on the choice of states."""
 
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
-    "tractions": ("states",),
-    "hoop": ("states", "body"),
-    "profile": ("states", "body", "angle", "depth"),
-    "map": ("states", "body", "component", "extent"),
-    "cycles": (),
-    "slip": (),
-    "loops": (),
-    "fatigue": ("body", "criterion", "depth"),
+    "tractions": ("states", "csv"),
+    "polar": ("states", "csv"),
+    "stick-slip": ("states", "csv"),
+    "sketch": ("states",),
+    "hoop": ("states", "csv", "body"),
+    "profile": ("states", "csv", "body", "angle", "depth"),
+    "map": ("states", "csv", "body", "component", "extent"),
+    "cycles": ("csv",),
+    "slip": ("csv",),
+    "loops": ("csv",),
+    "fatigue": ("csv", "body", "criterion", "depth"),
 }
 """Kinds of figures of a stored result, and their options."""
 
@@ -136,13 +139,17 @@ def add_stored_commands(commands: Any) -> None:
 def add_plot(commands: Any) -> None:
     """Add ``plot``."""
     plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue")
-    plot.add_argument("result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE)")
+    plot.add_argument(
+        "result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE), or for a sketch a case file (TOML)"
+    )
     plot.add_argument(
         "kind",
         choices=tuple(PLOT_OPTIONS),
-        help="tractions; hoop: hoop stress round hole and pin; profile: stresses below the edge; map: one component of "
-        "the stress in both bodies; cycles: changes in each cycle; slip: slip and friction energy in the last cycle; "
-        "loops: hysteresis loops of the last cycle; fatigue: a criterion along the edge over the last cycle",
+        help="tractions; polar: tractions over the circle of the hole; stick-slip: map of stick and slip over load "
+        "points; sketch: pin, plate and loads; hoop: hoop stress round hole and pin; profile: stresses below the "
+        "edge; map: one component of the stress in both bodies; cycles: changes in each cycle; slip: slip and friction "
+        "energy in the last cycle; loops: hysteresis loops of the last cycle; fatigue: a criterion along the edge over "
+        "the last cycle",
     )
     plot.add_argument(
         "-o", "--output", metavar="FIGURE", type=Path, help="the figure (png, pdf or svg; default KIND.png)"

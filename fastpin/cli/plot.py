@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from fastpin import damage, figures, report, solver, storage
+from fastpin import casefile, damage, figures, report, solver, storage
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.terminal import check_outputs, write_files
 from fastpin.errors import InputError
+from fastpin.kernels.status import Status
 from fastpin.report.curves import Curve, write_csv
 from fastpin.states.cycles import Cycle
 
@@ -32,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
         if path is not None and path.resolve() == options.result.resolve():
             raise InputError(option, f"won't overwrite the result {path}")
     check_outputs(outputs, None, figures=("--output",))
-    title = storage.stored_case(options.result).title
+    title = "" if _is_case_file(options) else storage.stored_case(options.result).title
     try:
         draw, write = KINDS[options.kind](options, title)
     except InputError as error:
@@ -44,8 +45,19 @@ def run(options: argparse.Namespace) -> int:
     return code
 
 
+def _is_case_file(options: argparse.Namespace) -> bool:
+    """Whether the joint of a sketch stands in a case file, not in a result."""
+    return options.kind == "sketch" and options.result.suffix.lower() == ".toml"
+
+
 def _check(options: argparse.Namespace) -> None:
     """Refuse options that have no effect on this kind of figure."""
+    if options.result.suffix.lower() == ".toml" and options.kind != "sketch":
+        raise InputError(
+            str(options.result), f"is a case file; {options.kind} needs a result: fastpin run CASE -o FILE"
+        )
+    if _is_case_file(options) and options.states is not None:
+        raise InputError("--states", "chooses a state of a result; a case file has none")
     known = PLOT_OPTIONS[options.kind]
     for name in sorted({name for names in PLOT_OPTIONS.values() for name in names}):
         if getattr(options, name) is not None and name not in known:
@@ -58,9 +70,16 @@ def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(options, name)) is not None}
 
 
-def _states(options: argparse.Namespace, usual: str | None = None) -> figures.DrawnStates:
-    """The states of ``--states``, or the `usual` ones. Only these are read from the file."""
-    states = figures.stored_states(options.result, usual if options.states is None else options.states)
+def _states(options: argparse.Namespace, usual: str | None = None, most: int = 0) -> figures.DrawnStates:
+    """The states of ``--states``, or the `usual` ones. Only these are read from the file.
+
+    With `most` a figure draws up to so many states, in a row.
+    """
+    chosen = usual if options.states is None else options.states
+    if most:
+        states = figures.stored_states(options.result, chosen, most, in_a_row=True)
+    else:
+        states = figures.stored_states(options.result, chosen)
     if states.note:
         print(f"the figure shows {states.note}")
     return states
@@ -84,6 +103,35 @@ def _tractions(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
     curves = report.stress.traction_curves(states)
     return lambda path: figures.plot_tractions(states, path, title), _curves(curves)
+
+
+def _polar(options: argparse.Namespace, title: str) -> Made:
+    states = _states(options)
+    return _drawn(lambda look: figures.draw_polar(states, look), title), _curves(report.stress.traction_curves(states))
+
+
+def _stick_slip(options: argparse.Namespace, title: str) -> Made:
+    states = _states(options, most=figures.MOST_COLUMNS)
+    boxes = list(figures.zone_boxes(states))
+    columns: dict[str, Any] = {
+        "load point": np.array([box.point for box in boxes]),
+        "start [deg]": np.array([box.start for box in boxes]),
+        "stop [deg]": np.array([box.stop for box in boxes]),
+        "status": np.array([Status(box.status).name.lower().replace("_", " ") for box in boxes]),
+    }
+    return _drawn(lambda look: figures.draw_stick_slip(states, look), title), _curves([Curve({}, columns)])
+
+
+def _sketch(options: argparse.Namespace, title: str) -> Made:
+    joint: Any
+    if _is_case_file(options):
+        joint = casefile.read_case(options.result)
+        title = joint.title
+    elif options.states is None:
+        joint = storage.load(options.result, states=[])
+    else:
+        joint = _states(options)[-1]
+    return lambda path: figures.plot_sketch(joint, path, title), _curves([])
 
 
 def _hoop(options: argparse.Namespace, title: str) -> Made:
@@ -151,6 +199,9 @@ def _fatigue(options: argparse.Namespace, title: str) -> Made:
 
 KINDS: dict[str, Callable[[argparse.Namespace, str], Made]] = {
     "tractions": _tractions,
+    "polar": _polar,
+    "stick-slip": _stick_slip,
+    "sketch": _sketch,
     "hoop": _hoop,
     "profile": _profile,
     "map": _map,

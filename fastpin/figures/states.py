@@ -48,17 +48,21 @@ class DrawnStates(list[State]):
         """Which states are drawn of how many, as text; empty if all are."""
         if len(self) == self.total:
             return ""
-        return f"{len(self)} of {self.total:,} states: load points {', '.join(map(point_text, self))}"
+        points = list(map(point_text, self))
+        named = ", ".join(points) if len(points) <= MAX_NAMED else f"{points[0]} to {points[-1]}"
+        return f"{len(self)} of {self.total:,} states: load points {named}"
 
 
-def drawn_states(result: Sequence[State] | State, states: StateChoice = None, most: int = MAX_NAMED) -> DrawnStates:
+def drawn_states(
+    result: Sequence[State] | State, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False
+) -> DrawnStates:
     """Return the states that a figure draws, at most `most`.
 
     Parameters
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    states : str, number, sequence of numbers or slice, optional
+    states, most, in_a_row
         See :func:`drawn_places`.
 
     Raises
@@ -73,13 +77,17 @@ def drawn_states(result: Sequence[State] | State, states: StateChoice = None, mo
         raise InputError("result", "its states must all be on one grid")
     cycles = every.cycles if isinstance(every, Result) else ()
     points = np.array([load_point(state) for state in every])
-    places = drawn_places(points, cycles, states, most)
+    places = drawn_places(points, cycles, states, most, in_a_row)
     total = every.total if isinstance(every, DrawnStates) else len(every)
     return DrawnStates([every[place] for place in places], total)
 
 
 def drawn_places(
-    points: np.ndarray, cycles: Sequence[Cycle], states: StateChoice = None, most: int = MAX_NAMED
+    points: np.ndarray,
+    cycles: Sequence[Cycle],
+    states: StateChoice = None,
+    most: int = MAX_NAMED,
+    in_a_row: bool = False,
 ) -> list[int]:
     """Return the places of the states that a figure draws.
 
@@ -93,6 +101,9 @@ def drawn_places(
         of a history with more than `most` states.
     most : int
         Of more states, an even choice is drawn, with the first and the last one.
+    in_a_row : bool
+        Whether the first states are drawn instead of an even choice, if the history has cycles. An even choice from
+        many cycles would look like a slow cycle.
 
     Raises
     ------
@@ -108,10 +119,12 @@ def drawn_places(
         if states is not None or not len(points):
             raise
         places = chosen_places(points, cycles, "all")  # the states of the last cycle were not kept
+    if in_a_row and cycles:
+        return places[:most]
     return [places[k] for k in spread(len(places), most)]
 
 
-def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED) -> DrawnStates:
+def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False) -> DrawnStates:
     """Return the states that a figure of a result file draws. No others are read.
 
     Raises
@@ -121,7 +134,7 @@ def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED)
     """
     points = load_points(path)
     cycles = load(path, states=[]).cycles
-    places = drawn_places(points, cycles, states, most)
+    places = drawn_places(points, cycles, states, most, in_a_row)
     return DrawnStates(load(path, states=places).states, len(points))
 
 

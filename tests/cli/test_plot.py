@@ -28,7 +28,7 @@ def test_every_kind_has_its_options():
     assert list(KINDS) == list(PLOT_OPTIONS)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind, names in PLOT_OPTIONS.items() if "csv" in names])
 def test_a_figure_and_its_numbers(stored, kind, tmp_path, capsys):
     figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
     assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
@@ -42,6 +42,19 @@ def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
     assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: load points 3, 3.5, 4, 4.5, 5\n")
     assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "2,5"]) == 0
     assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
+
+
+def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["example"]) == 0
+    (tmp_path / "case.toml").write_text(capsys.readouterr().out)
+    for source in (str(stored), "case.toml"):
+        assert main(["plot", source, "sketch"]) == 0
+        assert (tmp_path / "sketch.png").stat().st_size > 10_000
+    assert main(["plot", "case.toml", "hoop"]) == 2
+    assert "case.toml: is a case file; hoop needs a result: fastpin run CASE -o FILE" in capsys.readouterr().err
+    assert main(["plot", "case.toml", "sketch", "--states", "1"]) == 2
+    assert "--states: chooses a state of a result; a case file has none" in capsys.readouterr().err
 
 
 def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
@@ -62,7 +75,11 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
     ("arguments", "message"),
     [
         (["hoop", "--component", "sxx"], "--component: has no effect on hoop; it is for map"),
-        (["slip", "--states", "last"], "--states: has no effect on slip; it is for tractions, hoop, profile, map"),
+        (
+            ["slip", "--states", "last"],
+            "--states: has no effect on slip; it is for tractions, polar, stick-slip, ",
+        ),
+        (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, hoop"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
         (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, not 'now'"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),

@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
+from fastpin.figures.cycles import plot_cycles
 from fastpin.figures.states import drawn_states
-from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, spread
 from fastpin.figures.tractions import plot_tractions
 from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result
 
 
@@ -228,32 +231,58 @@ def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_cycles(tmp_path: Path) -> None:
-    from fastpin.figures.cycles import plot_cycles
-    from fastpin.figures.style import spread
-    from fastpin.solver.result import Result
-    from fastpin.states.cycles import Cycle
-
+def with_cycles(*cycles: Cycle) -> Result:
     result = sample_result()
+    fields = [getattr(result, name) for name in ("problem", "history", "grid", "method")]
+    return Result(result.states, *fields, {}, True, None, cycles)
+
+
+UNKNOWN = float("nan")
+
+
+def test_cycles(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no repeated blocks"):
-        plot_cycles(result)
-    unknown = float("nan")
-    result.cycles = (
-        Cycle(1, 2, 1, unknown, unknown, unknown, unknown, True),
+        plot_cycles(sample_result())
+    result = with_cycles(
+        Cycle(1, 2, 1, UNKNOWN, UNKNOWN, UNKNOWN, UNKNOWN, True),
         Cycle(3, 2, 2, 1e-3, 1e-2, 1.0, 2e-6, True),
         Cycle(5, 2, 3, 1e-6, 0.0, 1e-15, 1e-6, True),
         Cycle(5, 6, 1, 0.5, 0.5, 2.0, 0.0, True),
     )
-    figure = plot_cycles(Result([], *[getattr(result, n) for n in ("problem", "history", "grid", "method")], {}, True,
-                                None, result.cycles), tmp_path / "a.png", title="Cycles")  # fmt: skip
+    figure = plot_cycles(result, tmp_path / "a.png", title="Cycles")
     change, lost, turned = figure.axes
     assert sorted(len(drawn.get_xdata()) for drawn in change.lines) == [1, 1, 3, 3]
-    assert change.get_yscale() == lost.get_yscale() == "log"
-    assert lost.get_ylim()[0] >= 1e-9
-    assert turned.lines[0].get_ydata()[-1] == pytest.approx(3.0)
-    assert turned.get_ylabel().endswith("[urad]")
+    pressure, shear = change.lines[:2]
+    assert pressure.get_xdata().tolist() == [2, 4, 6]
+    floor = change.get_ylim()[0]
+    assert pressure.get_ydata()[1:] == pytest.approx([1e-3, 1e-6])
+    assert shear.get_ydata()[1:] == pytest.approx([1e-2, floor])  # 0 stands at the lower end
+    figure.draw_without_rendering()
+    assert change.get_yticklabels()[0].get_text() == "0"
+    assert lost.lines[0].get_ydata()[1:] == pytest.approx([1.0, lost.get_ylim()[0]])  # 1e-15 J/m is rounding
+    assert turned.lines[0].get_ydata().tolist() == pytest.approx([0.0, 0.0, 2.0, 3.0])
+    assert turned.get_ylabel().endswith("(µrad)")
+    assert figure.get_suptitle() == "Cycles\n4 cycles, not yet periodic"
     assert (tmp_path / "a.png").exists()
     assert [spread(count, 3) for count in (0, 1, 2, 5)] == [[], [0], [0, 1], [0, 2, 4]]
+
+
+def test_later_blocks_of_cycles_go_on_turning_where_earlier_ones_ended() -> None:
+    first = [Cycle(k, 2, k // 2, 0.1, 0.1, 1.0, 1e-6, True) for k in (3, 5)]
+    second = [Cycle(k, 2, k // 2 - 5, 0.0, 0.0, 1.0, 1e-6, True) for k in (13, 15)]
+    figure = plot_cycles(with_cycles(*first, *second))
+    one, two = (line for line in figure.axes[2].lines if len(line.get_xdata()) == 3)
+    assert one.get_ydata().tolist() == pytest.approx([0.0, 1.0, 2.0])
+    assert two.get_ydata().tolist() == pytest.approx([2.0, 3.0, 4.0])
+    assert two.get_xdata().tolist() == [12, 14, 16]
+    assert "periodic from here" in labels(figure)
+
+
+def test_long_histories_have_a_logarithmic_axis_of_corners() -> None:
+    cycles = [Cycle(2 * k, 2, k, 10.0**-k, 10.0**-k, 1.0, 0.0, True) for k in range(1, 200)]
+    change = plot_cycles(with_cycles(*cycles)).axes[0]
+    assert change.get_xscale() == "log"
+    assert change.get_ylim()[0] == pytest.approx(1e-10)  # below 1e-9 of the largest all is rounding
 
 
 def test_a_remote_stress_has_one_name_in_title_and_legend() -> None:

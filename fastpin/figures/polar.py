@@ -1,0 +1,137 @@
+"""The tractions round the hole, as a picture of the hole: pressure and shear as heights over the circle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
+from fastpin.figures.words import quantity, shown_unit
+from fastpin.model.units import scaled, units
+from fastpin.states.choice import StateChoice
+from fastpin.states.state import State
+
+HEIGHT = 0.9
+"""Height of the largest traction over the circle, in radii of the hole."""
+
+RINGS = 2
+"""Circles of round values, about."""
+
+ANGLES = (-135, -90, -45, 0, 45, 90, 135, 180)
+"""Angles that are named, degrees from the bottom."""
+
+NAMED_AT = 157.5
+"""Angle at which the values of the circles stand, degrees from the bottom. Few joints touch there."""
+
+_TURN = np.linspace(0.0, 2.0 * math.pi, 361)
+
+
+def plot_polar(
+    result: Sequence[State] | State,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    states: StateChoice = None,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the tractions over the circle of the hole, as they lie in space.
+
+    The left panel shows the pressure, outwards from the hole. The right panel shows the shear traction on the pin:
+    outwards where it acts counter-clockwise, inwards where it acts clockwise. Without friction there is only the
+    pressure.
+
+    Parameters
+    ----------
+    result : State, Result or sequence of State
+        Of one problem and on one grid.
+    path, title, width, dpi, states, ax
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.plot_tractions`.
+    """
+    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states)
+    return look.drawn(lambda: draw_polar(drawn, look))
+
+
+def draw_polar(states: DrawnStates, look: Look) -> Sheet:
+    """Draw the tractions of these states over the circle, on a new sheet."""
+    problem, frame = states[0].problem, Frame(states)
+    columns = 1 if problem.frictionless else 2
+    sheet = look.sheet([0.5 * look.width], columns=columns, extra=1.3)
+    unit = units(problem)["traction"]
+    curves = [frame.curves(state) for state in states]
+    words = ("pressure N", "shear traction T on the pin")
+    for kind, panel in enumerate(sheet.axes[0]):
+        values = [curve[1 + kind] for curve in curves]
+        largest = max(float(np.nanmax(np.abs(each), initial=0.0)) for each in values)
+        factor, label = scaled([largest], unit)
+        height = HEIGHT / (factor * largest) if largest > 0.0 else 0.0
+        if kind == 1:
+            height *= 0.6  # the shear needs room inwards too
+        _draw_circle(panel, factor * largest, height, label, both=kind == 1)
+        for curve, each, style in zip(curves, values, state_lines(states), strict=True):
+            x, y = _over_circle(curve[0], height * factor * each)
+            panel.plot(x, y, **style)
+        panel.set_xlabel(quantity(words[kind], label))
+    styles: list[Artist] = [Line2D([], [], color="0.2", linewidth=1.0, label="edge of the hole")]
+    if columns == 2:
+        styles.append(Line2D([], [], linestyle="none", marker=r"$↑$", markersize=7.0, color="0.3",
+                             label="T outwards: counter-clockwise"))  # fmt: skip
+    name_states(sheet, states, [look.title], styles)
+    return sheet
+
+
+def _over_circle(angle: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates of points at some heights over the circle. Angles are in degrees from the bottom."""
+    theta = np.radians(angle - 90.0)
+    return (1.0 + height) * np.cos(theta), (1.0 + height) * np.sin(theta)
+
+
+def _draw_circle(panel: Axes, largest: float, height: float, label: str, both: bool) -> None:
+    """Draw the hole, circles of round values on one side or on both, and the angles."""
+    panel.set_aspect("equal")
+    panel.set_xticks([])
+    panel.set_yticks([])
+    for spine in panel.spines.values():
+        spine.set_visible(False)
+    outer = 1.0 + (0.6 if both else 1.0) * HEIGHT
+    for value in _round_values(largest):
+        for sign in (1.0, -1.0) if both else (1.0,):
+            radius = 1.0 + sign * value * height
+            panel.plot(radius * np.cos(_TURN), radius * np.sin(_TURN), color="0.85", linewidth=0.6, zorder=0)
+            text = f"{sign * value:g}".replace("-", "−")
+            x, y = _over_circle(np.array([NAMED_AT]), np.array([radius - 1.0]))
+            box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+            style: Any = {"fontsize": 6.5, "color": "0.35", "ha": "center", "va": "center", "bbox": box}
+            panel.text(x[0], y[0], f"{text} {shown_unit(label)}" if sign > 0.0 else text, **style)
+    panel.plot(np.cos(_TURN), np.sin(_TURN), color="0.2", linewidth=1.0, zorder=1)
+    for degrees in ANGLES:
+        x, y = _over_circle(np.array([degrees, degrees]), np.array([outer - 1.0, outer - 0.95]))
+        panel.plot(x, y, color="0.6", linewidth=0.7)
+        far = 1.14 * outer / math.hypot(x[1], y[1])
+        panel.text(far * x[1], far * y[1], f"{degrees}°".replace("-", "−"), ha="center", va="center", fontsize=7.0)
+    panel.set_xlim(-1.25 * outer, 1.25 * outer)
+    panel.set_ylim(-1.25 * outer, 1.25 * outer)
+
+
+def _round_values(largest: float) -> list[float]:
+    """Round values up to the largest one, about :data:`RINGS`; none if it is 0."""
+    if largest == 0.0:
+        return []
+    step = 10.0 ** math.floor(math.log10(largest / RINGS))
+    step *= max(part for part in (1.0, 2.0, 5.0) if part * step <= largest / RINGS)
+    return [k * step for k in range(1, int(largest / step) + 1)]

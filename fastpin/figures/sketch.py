@@ -1,0 +1,294 @@
+"""The sketch of a joint: pin, plate and bodies in their proportions, with the loads as arrows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Circle, FancyArrowPatch, Patch, Rectangle
+
+from fastpin.errors import InputError
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.stick_slip import LOOKS
+from fastpin.figures.words import ROUNDING, caption, point_text, short
+from fastpin.kernels.status import STICK
+from fastpin.model.bodies import Bushing, Ring, Tube
+from fastpin.model.case import Case
+from fastpin.model.checks import as_toml
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.problem import Problem
+from fastpin.model.units import scaled, units
+from fastpin.solver.result import Result
+from fastpin.states.state import State
+
+Range = tuple[float, float]
+"""Smallest and largest value of a load."""
+
+GAP = 0.07
+"""Drawn clearance, in radii of the hole. The true one could not be seen."""
+
+HALF = 2.5
+"""Half the side of the drawn part of a plate without an outer rim, in radii of the hole."""
+
+LONG, SHORT = 1.45, 0.55
+"""Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
+
+MARGIN = 1.25
+"""Room for the arrows of remote stresses, in radii of the hole."""
+
+STEEL, ALLOY, BRASS = "#C9CDD3", "#E8EAED", "#EAD9A8"
+"""Shades of pin, plate and bush."""
+
+ARROW: dict[str, Any] = {"mutation_scale": 11.0, "linewidth": 1.5, "shrinkA": 0.0, "shrinkB": 0.0, "zorder": 6}
+"""Style of all arrows."""
+
+LETTERS: dict[str, Any] = {"fontsize": 7.5, "ha": "center", "va": "center", "parse_math": False, "zorder": 7}
+"""Style of the words beside arrows."""
+
+BOX = {"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8}
+"""White behind words, which so can be read over the bodies."""
+
+FORCE, STRESS = "#B2182B", "#2166AC"
+"""Colours of forces and of remote stresses."""
+
+
+class Sides(NamedTuple):
+    """Half the size of the drawn plate, and whether arrows of shear lie along its sides."""
+
+    half: float
+    sheared: bool
+
+
+def plot_sketch(
+    joint: Problem | Case | Result | State,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 4.2,
+    dpi: float = 300.0,
+    *,
+    history: LoadHistory | None = None,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw pin, plate, ring or bush in their proportions, and the loads as arrows. The clearance is exaggerated.
+
+    A state has the arrows of its loads, and its contact as a thick arc. A case, a result or a problem with a history
+    has an arrow for each load of the history, with the range of its values; the arrow has two heads if the load changes
+    its sign.
+
+    Parameters
+    ----------
+    joint : Problem, Case, Result or State
+    path, title, width, dpi, ax
+        See :func:`fastpin.plot_tractions`.
+    history : LoadHistory, optional
+        The loads of a problem.
+
+    Raises
+    ------
+    InputError
+        If `joint` is something else. Also see :func:`fastpin.plot_tractions`.
+    """
+    look = Look(path, title, width, dpi, ax)
+    if isinstance(joint, State):
+        ranges = {name: (load, load) for name, load in joint.load.items() if load != 0.0}
+        return look.drawn(lambda: draw_sketch(joint.problem, ranges, look, joint))
+    if isinstance(joint, Problem):
+        ranges = {} if history is None else load_ranges(history)
+        return look.drawn(lambda: draw_sketch(joint, ranges, look))
+    if isinstance(joint, (Case, Result)):
+        return look.drawn(lambda: draw_sketch(joint.problem, load_ranges(joint.history), look))
+    raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
+
+
+def load_ranges(history: LoadHistory) -> dict[str, Range]:
+    """The smallest and the largest value of each load of a history at its corners; no loads that are always 0."""
+    found = {}
+    for k, name in enumerate(LOADS):
+        values = [block.given[:, k][~np.isnan(block.given[:, k])] for block in history.blocks]
+        given = np.concatenate(values)
+        if given.any():
+            found[name] = float(given.min()), float(given.max())
+    return found
+
+
+def draw_sketch(
+    problem: Problem, ranges: Mapping[str, Range], look: Look, state: State | None = None, words: bool = True
+) -> Sheet:
+    """Draw a joint on a new sheet. `words` False leaves out heading and caption."""
+    sheet = look.sheet([look.width], extra=0.5 if words else 0.0)
+    panel = sheet.axes[0, 0]
+    panel.set_aspect("equal")
+    panel.set_axis_off()
+    outside = _draw_plate(panel, problem)
+    _draw_pin(panel, problem, ranges)
+    if state is not None:
+        _draw_contact(panel, state)
+    _draw_loads(panel, problem, ranges, outside)
+    room = MARGIN if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
+    panel.set_xlim(-outside - room, outside + room)
+    panel.set_ylim(-outside - room, outside + room)
+    if state is not None and state.in_contact:
+        statuses = dict.fromkeys([*([STICK] if state.stick else []), *(sign for *_, sign in state.slip_zones)])
+        patches = [Patch(color=LOOKS[int(status)][0], linewidth=0, label=LOOKS[int(status)][2]) for status in statuses]
+        if words:
+            sheet.legend(patches, len(patches))
+    if words:
+        note = "clearance exaggerated" if problem.clearance > 0.0 else ""
+        heading = f"load point {point_text(state)}" if state is not None else ""
+        text = caption(problem, () if state is None else [state])
+        sheet.head(look.title, heading, caption="; ".join(part for part in (text, note) if part))
+    return sheet
+
+
+def _draw_plate(panel: Axes, problem: Problem) -> float:
+    """Draw the plate with its bodies, and return the half-size of what is drawn, in radii of the hole."""
+    radius, body = problem.hole_radius, problem.plate_body
+    bush = body.outer_radius / radius if isinstance(body, Bushing) else None
+    inside = body.inside if isinstance(body, Bushing) else body
+    outside = inside.outer_radius / radius if isinstance(inside, Ring) else max(HALF, 1.6 * (bush or 1.0))
+    if isinstance(inside, Ring):
+        panel.add_patch(Circle((0.0, 0.0), outside, facecolor=ALLOY, edgecolor="0.25", linewidth=1.2))
+        _draw_support(panel, outside, inside.support)
+    else:
+        # The plate goes on: its cut has no line.
+        panel.add_patch(Rectangle((-outside, -outside), 2.0 * outside, 2.0 * outside, facecolor=ALLOY, linewidth=0.0))
+    if bush is not None:
+        panel.add_patch(Circle((0.0, 0.0), bush, facecolor=BRASS, edgecolor="0.25", linewidth=1.0))
+    panel.add_patch(Circle((0.0, 0.0), 1.0, facecolor="white", edgecolor="0.15", linewidth=1.2))
+    return float(outside)
+
+
+def _draw_support(panel: Axes, outside: float, support: str) -> None:
+    """Draw short strokes round a clamped rim, and on the side of the support of other rings."""
+    if support == "body":
+        return
+    turn = np.linspace(0.0, 2.0 * math.pi, 73)[:-1]
+    # A clamped rim has leaning strokes, as walls have in drawings; a rim with tractions has fewer, upright ones.
+    held = support == "held"
+    for angle in turn if held else turn[::2]:
+        begin = outside * np.exp(1j * angle)
+        end = (1.06 if held else 1.03) * outside * np.exp(1j * (angle + (0.05 if held else 0.0)))
+        panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
+
+
+def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, Range]) -> None:
+    """Draw the pin where the force presses it against the hole, and the bore of a hollow pin."""
+    gap = GAP if problem.assembled_clearance > 0.0 else 0.0
+    push = complex(_middle(ranges.get("Q")), -_middle(ranges.get("P")))
+    away = gap * push / abs(push) if push else -1j * gap
+    panel.add_patch(
+        Circle((away.real, away.imag), 1.0 - gap, facecolor=STEEL, edgecolor="0.15", linewidth=1.0, zorder=3)
+    )
+    if problem.assembled_clearance < 0.0:  # the free pin is larger than the hole
+        panel.add_patch(
+            Circle((0.0, 0.0), 1.0 + GAP, facecolor="none", edgecolor="0.3", linewidth=0.8, linestyle="--", zorder=3)
+        )
+    if isinstance(problem.pin_body, Tube):
+        bore = problem.pin_body.bore_radius / problem.hole_radius
+        panel.add_patch(
+            Circle((away.real, away.imag), bore, facecolor="white", edgecolor="0.15", linewidth=0.9, zorder=4)
+        )
+
+
+def _middle(span: Range | None) -> float:
+    return 0.0 if span is None else 0.5 * (span[0] + span[1])
+
+
+def _draw_contact(panel: Axes, state: State) -> None:
+    """Draw the contact as arcs: the colours of the map of stick and slip."""
+    zones = [(start, stop, STICK) for start, stop in state.stick] + state.slip_zones
+    for start, stop, status in zones:
+        first, last = math.degrees(start), math.degrees(stop)
+        panel.add_patch(
+            Arc((0.0, 0.0), 2.0, 2.0, theta1=first, theta2=last, color=LOOKS[int(status)][0], linewidth=4.0, zorder=5)
+        )
+
+
+def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], outside: float) -> None:
+    """Draw an arrow for each load, with its value."""
+    largest = {kind: max((_size(ranges[name]) for name in ranges if LOAD_KIND[name] == kind), default=0.0)
+               for kind in set(LOAD_KIND.values())}  # fmt: skip
+    below = 0
+    for name, span in ranges.items():
+        if _size(span) <= ROUNDING * largest[LOAD_KIND[name]]:
+            continue
+        words = _words(problem, name, span)
+        if name in ("P", "Q"):
+            _draw_force(panel, name, span, words)
+        elif name == "M":
+            _draw_moment(panel, span, words)
+        elif LOAD_KIND[name] == "traction":
+            _draw_remote(panel, name, span, words, Sides(outside, "sxy" in ranges))
+        else:  # displacements and rotations of the hub
+            panel.text(0.0, -outside - 0.55 - 0.35 * below, words, color=FORCE, **LETTERS)
+            below += 1
+
+
+def _size(span: Range) -> float:
+    return max(abs(span[0]), abs(span[1]))
+
+
+def _words(problem: Problem, name: str, span: Range) -> str:
+    """The value of a load, or the range of its values, with the unit."""
+    unit = units(problem)[LOAD_KIND[name]]
+    if span[0] == span[1]:
+        return f"{name} = {short(span[0], unit)}"
+    factor, _ = scaled(list(span), unit)
+    low, high = (f"{factor * value:.3g}".replace("-", "−") for value in span)
+    return f"{name}: {low} to {high}{short(1.0 / factor, unit).lstrip('1')}"
+
+
+def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) -> None:
+    """Draw an arrow from `tail` to `head` for a positive load, turned round for a negative one, two heads for both."""
+    if span[1] <= 0.0:
+        tail, head = head, tail
+    style = "<|-|>" if span[0] < 0.0 < span[1] else "-|>"
+    panel.add_patch(
+        FancyArrowPatch((tail.real, tail.imag), (head.real, head.imag), arrowstyle=style, color=colour, **ARROW)
+    )
+
+
+def _draw_force(panel: Axes, name: str, span: Range, words: str) -> None:
+    """Draw a force on the pin: from its centre, through it if the force changes its sign."""
+    along = -1j if name == "P" else 1.0
+    both = span[0] < 0.0 < span[1]
+    if span[1] <= 0.0:
+        along, span = -along, (-span[1], -span[0])
+    _arrow(panel, -LONG * along if both else 0j, LONG * along, span, FORCE)
+    place = (LONG + 0.22) * along if name == "P" else LONG * along + 0.28j
+    panel.text(place.real, place.imag, words, color=FORCE, bbox=BOX, **LETTERS)
+
+
+def _draw_moment(panel: Axes, span: Range, words: str) -> None:
+    """Draw a moment as a turned arrow round the centre, counter-clockwise if positive."""
+    ends = 0.55 * np.exp(1j * np.radians([200.0, 100.0] if span[1] <= 0.0 else [100.0, 200.0]))
+    style = "<|-|>" if span[0] < 0.0 < span[1] else "-|>"
+    bend = f"arc3,rad={-0.45 if span[1] <= 0.0 else 0.45}"
+    (x0, x1), (y0, y1) = ends.real, ends.imag
+    panel.add_patch(FancyArrowPatch((x0, y0), (x1, y1), arrowstyle=style, connectionstyle=bend, color=FORCE, **ARROW))
+    panel.text(-0.1, 0.74, words, color=FORCE, bbox=BOX, **LETTERS)
+
+
+def _draw_remote(panel: Axes, name: str, span: Range, words: str, sides: Sides) -> None:
+    """Draw a remote stress as arrows on two sides: outwards for tension, along the sides for shear."""
+    half, out = sides.half, sides.half + 0.12 + (0.22 if sides.sheared else 0.0)
+    shift = (0.55 * half * np.array([-1.0, 0.0, 1.0])).tolist()
+    for side in (1.0, -1.0):
+        if name == "sxx":
+            for y in shift:
+                _arrow(panel, complex(side * out, y), complex(side * (out + SHORT), y), span, STRESS)
+        elif name == "syy":
+            for x in shift:
+                _arrow(panel, complex(x, side * out), complex(x, side * (out + SHORT)), span, STRESS)
+        else:  # it acts along +x on the upper side, and along +y on the right side
+            beside, ends = side * (half + 0.12), side * half * np.array([-0.7, 0.7])
+            _arrow(panel, complex(ends[0], beside), complex(ends[1], beside), span, STRESS)
+            _arrow(panel, complex(beside, ends[0]), complex(beside, ends[1]), span, STRESS)
+    place = {"sxx": (half + 0.2, 0.9 * half), "syy": (0.0, out + SHORT + 0.25), "sxy": (0.0, -out - SHORT - 0.25)}[name]
+    panel.text(*place, words, color=STRESS, bbox=BOX, **LETTERS)

@@ -1,0 +1,187 @@
+"""The map of stick and slip: which part of the hole sticks, slips or is open at each load point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.states import DrawnStates, Frame, drawn_states
+from fastpin.figures.style import line
+from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short
+from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.units import units
+from fastpin.states.choice import StateChoice
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+
+MOST_COLUMNS = 200
+"""Most states in a map. A column is then half a millimetre wide on paper."""
+
+LOOKS = {
+    STICK: ("#0B3C5D", "", "sticks"),
+    SLIP_POSITIVE: ("#F2A541", "////", "pin slips counter-clockwise"),
+    SLIP_NEGATIVE: ("#A8D8F0", "\\\\\\\\", "pin slips clockwise"),
+}
+"""By status: colour, hatch and words. The hatches tell the two directions apart without colour."""
+
+MARKS = {SLIP_POSITIVE: "^", SLIP_NEGATIVE: "v"}
+"""Marks of slip zones that are too narrow to be seen; they point along the slip of the pin."""
+
+NARROW = 0.015
+"""Width of a zone, in parts of the axis of angles, below which it gets a mark."""
+
+MOST_MARKS = 40
+"""Most states whose narrow zones get marks. The marks of more columns would hide the map."""
+
+
+class ZoneBox(NamedTuple):
+    """A zone of one state in the map: the sides of its rectangle, and the status of its nodes."""
+
+    point: float
+    left: float
+    right: float
+    start: float
+    stop: float
+    status: int
+
+
+def plot_stick_slip(
+    result: Sequence[State] | State,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 300.0,
+    *,
+    states: StateChoice = None,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw a map of stick and slip: angle round the hole against load point.
+
+    Colours show where the contact sticks and in which direction the pin slips; white is open. A triangle marks a slip
+    zone that is too narrow to be seen. Without friction all contact slips. The upper panel shows the loads that change.
+
+    Parameters
+    ----------
+    result : State, Result or sequence of State
+        Of one problem and on one grid. At most :data:`MOST_COLUMNS` states are drawn: the first ones of many cycles.
+    path, title, width, dpi, states, ax
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.plot_tractions`.
+    """
+    look = Look(path, title, width, dpi, ax)
+    drawn = drawn_states(result, states, MOST_COLUMNS, in_a_row=True)
+    return look.drawn(lambda: draw_stick_slip(drawn, look))
+
+
+def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[ZoneBox]:
+    """Yield the zones of the states, degrees from the bottom. A column reaches halfway to the load points beside it."""
+    axis = Frame(states) if frame is None else frame
+    points = np.array([load_point(state) for state in states])
+    middles = 0.5 * (points[1:] + points[:-1])
+    ends = np.r_[points[0] - _half(points, 0), middles, points[-1] + _half(points, -1)]
+    for state, point, left, right in zip(states, points.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=True):
+        zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
+        for start, stop, status in zones:
+            for first, length in axis.place(start, stop):
+                yield ZoneBox(point, left, right, first, first + length, int(status))
+
+
+def _half(points: np.ndarray, end: int) -> float:
+    """Half the width of the first or the last column."""
+    steps = np.diff(points)
+    return 0.5 * float(steps[end]) if steps.size else 0.5
+
+
+def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
+    """Draw the map of these states on a new sheet."""
+    common, differing = loads_by_change(states)
+    sheet = look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
+    panel, frame = sheet.axes[-1, 0], Frame(states)
+    boxes = list(zone_boxes(states, frame))
+    present = [status for status in LOOKS if any(box.status == status for box in boxes)]
+    for status in present:
+        colour, hatch, _ = LOOKS[status]
+        corners = [_corners(box) for box in boxes if box.status == status]
+        panel.add_collection(
+            PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
+        )
+        if hatch:
+            shape = PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch)
+            panel.add_collection(shape)
+    marked = _draw_marks(panel, boxes, len(states), frame.limits)
+    panel.set_xlim(min(box.left for box in boxes) if boxes else 0.5, max((box.right for box in boxes), default=1.5))
+    panel.set_ylim(*frame.limits)
+    panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
+    panel.set_xlabel(LOAD_POINT)
+    panel.yaxis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    if differing:
+        _draw_loads(sheet.axes[0, 0], states, differing)
+        sheet.axes[0, 0].tick_params(labelbottom=False)
+    sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
+    note = f"; {len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
+    text = caption(states[0].problem, states)
+    sheet.head(look.title, ",  ".join(load_text(states, 0, name) for name in common), caption=f"{text}{note}")
+    handles = [_patch(status) for status in present]
+    handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label="open"))
+    if marked:
+        handles.append(Line2D([], [], linestyle="none", marker="^", markersize=4.0, color="black", label="narrow slip"))
+    sheet.legend(handles, len(handles))
+    return sheet
+
+
+def _corners(box: ZoneBox) -> list[tuple[float, float]]:
+    return [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)]
+
+
+def _patch(status: int) -> Artist:
+    colour, hatch, words = LOOKS[status]
+    return Patch(facecolor=colour, edgecolor="0.25", linewidth=0.0, hatch=hatch, label=words)
+
+
+def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tuple[float, float]) -> bool:
+    """Mark narrow slip zones, and return whether there are any."""
+    least = NARROW * (limits[1] - limits[0])
+    narrow = [box for box in boxes if box.status in MARKS and box.stop - box.start < least]
+    if columns > MOST_MARKS:
+        return False
+    for status, mark in MARKS.items():
+        mine = [box for box in narrow if box.status == status]
+        if mine:
+            panel.plot(
+                [box.point for box in mine], [0.5 * (box.start + box.stop) for box in mine], linestyle="none",
+                marker=mark, markersize=4.0, color="black", markeredgecolor="white", markeredgewidth=0.4,
+            )  # fmt: skip
+    return bool(narrow)
+
+
+def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str]) -> None:
+    """Draw the loads that change, each over its largest value. The legend names these values."""
+    points = [load_point(state) for state in states]
+    unit = units(states[0].problem)
+    for k, name in enumerate(names):
+        values = np.array([state.load[name] for state in states])
+        largest = float(np.abs(values).max())
+        marker = "o" if len(states) <= MOST_MARKS else ""
+        label = f"{name}, largest {short(largest, unit[LOAD_KIND[name]])}"
+        panel.plot(points, values / largest, marker=marker, markersize=2.4, label=label, **line(k % 8, k % 8, 1.1))
+    panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    panel.set_ylabel("load / largest")
+    panel.margins(y=0.12)
+    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.0, handlelength=2.4)

@@ -1,0 +1,182 @@
+"""The map of stick and slip, the polar view and the sketch: what is drawn, and where."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
+
+from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
+from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
+from fastpin.figures.style import COLOURS
+from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.model import Bushing, Ring, Tube
+from fastpin.states.cycles import Cycle
+from tests.support.samples import PAIR, sample_result
+
+
+def legend_texts(figure):
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+# -- the map of stick and slip ------------------------------------------------------------------------------------
+
+
+def test_the_map_has_a_box_for_each_zone_of_each_state():
+    result = sample_result()
+    boxes = list(zone_boxes(result))
+    assert len(boxes) == 9
+    for state in result:
+        mine = [box for box in boxes if box.point == state.step + 1]
+        assert {(box.left, box.right) for box in mine} == {(state.step + 0.5, state.step + 1.5)}
+        (stick,) = (box for box in mine if box.status == STICK)
+        assert (stick.start, stick.stop) == pytest.approx(tuple(np.degrees(state.stick[0]) + 90.0))
+        slips = {box.status: box for box in mine if box.status != STICK}
+        assert slips[SLIP_POSITIVE].stop == pytest.approx(stick.start)
+        assert slips[SLIP_NEGATIVE].start == pytest.approx(stick.stop)
+
+
+def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
+    figure = figures.plot_stick_slip(sample_result(), tmp_path / "map.png", title="A map")
+    loads, panel = figure.axes
+    assert loads.get_legend().get_texts()[0].get_text() == "Q, largest 484\N{NO-BREAK SPACE}kN/m"
+    assert loads.lines[0].get_ydata() == pytest.approx([0.0, 1.0, -1.0])
+    filled = [shape for shape in panel.collections if isinstance(shape, PolyCollection) and len(shape.get_facecolor())]
+    assert [len(shape.get_paths()) for shape in filled] == [3, 3, 3]
+    assert panel.get_xlim() == (0.5, 3.5)
+    assert "load point" in panel.get_xlabel()
+    assert "(deg)" in panel.get_ylabel()
+    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise", "open"]
+    assert figure.get_suptitle() == "A map\nP = 2.42 MN/m"
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+def test_the_two_directions_of_slip_differ_without_colour():
+    _, first, _ = LOOKS[SLIP_POSITIVE]
+    _, second, _ = LOOKS[SLIP_NEGATIVE]
+    assert first[0] == "/"
+    assert second[0] == "\\"
+
+
+def test_a_triangle_marks_a_narrow_slip_zone():
+    result = sample_result(nodes=401)
+    state = result[0]
+    inside = np.flatnonzero(state.status != 2)
+    state.status[inside] = STICK
+    state.shear[inside] = 0.0
+    state.status[inside[:1]], state.shear[inside[:1]] = SLIP_POSITIVE, 0.4 * state.pressure[inside[:1]]
+    panel = figures.plot_stick_slip(result).axes[-1]
+    (marks,) = panel.lines
+    assert (marks.get_marker(), marks.get_xdata().tolist()) == ("^", [1.0])
+    assert "narrow slip" in legend_texts(panel.figure)
+
+
+def test_many_cycles_show_their_first_states_and_no_slow_cycle():
+    result = sample_result([{"P": 1e6 * (2 + k % 2)} for k in range(MOST_COLUMNS + 50)], nodes=21)
+    result.cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(3, len(result), 2))
+    drawn = figures.drawn_states(result, "all", MOST_COLUMNS, in_a_row=True)
+    assert [state.step for state in drawn] == list(range(MOST_COLUMNS))
+    assert drawn.note == f"{MOST_COLUMNS} of {MOST_COLUMNS + 50} states: load points 1 to {MOST_COLUMNS}"
+    assert [state.step for state in figures.drawn_states(result, None, MOST_COLUMNS)] == [247, 248, 249]
+
+
+# -- the polar view --------------------------------------------------------------------------------------------------
+
+
+def first_curve(panel):
+    (line,) = (line for line in panel.lines if line.get_color() == COLOURS[0])
+    return line.get_xdata(), line.get_ydata()
+
+
+def test_polar_curves_stand_over_the_circle():
+    result = sample_result()
+    pressure, shear = figures.plot_polar(result).axes
+    state = result[0]
+    line = max(
+        (line for line in pressure.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
+    )
+    x, y = line.get_xdata(), line.get_ydata()
+    height = np.hypot(x, y) - 1.0
+    top = int(np.argmax(height))
+    assert math.atan2(y[top], x[top]) == pytest.approx(state.peak_pressure_angle, abs=0.02)
+    assert height[[0, -1]] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert math.atan2(y[0], x[0]) == pytest.approx(state.contact[0][0], abs=1e-9)
+    turned = max(
+        (line for line in shear.lines if line.get_color() == "#0072B2"), key=lambda line: len(line.get_xdata())
+    )
+    inside = np.hypot(turned.get_xdata(), turned.get_ydata()) < 1.0 - 1e-6
+    assert np.all(turned.get_xdata()[inside] < 0.0)  # T is negative left of the bottom
+    assert pressure.get_xlabel() == "pressure N (MPa)"
+    assert pressure.get_aspect() == shear.get_aspect() == 1.0
+    assert {"0°", "90°", "−90°"} <= {text.get_text() for text in pressure.texts}
+
+
+def test_a_polar_view_without_friction_has_one_panel():
+    assert len(figures.plot_polar(sample_result(friction=0.0)).axes) == 1
+
+
+# -- the sketch ------------------------------------------------------------------------------------------------------
+
+
+def words(panel):
+    return [text.get_text().replace("\N{NO-BREAK SPACE}", " ") for text in panel.texts]
+
+
+def arrows(panel):
+    return [patch for patch in panel.patches if isinstance(patch, FancyArrowPatch)]
+
+
+def test_a_sketch_of_a_result_names_the_ranges_of_the_loads():
+    (panel,) = figures.plot_sketch(sample_result()).axes
+    assert words(panel) == ["P = 2.42 MN/m", "Q: −484 to 484 kN/m"]
+    down, sideways = arrows(panel)
+    (tail, head) = down._posA_posB
+    assert tail == (0.0, 0.0)
+    assert head[1] < 0.0 == head[0]
+    assert type(sideways.get_arrowstyle()).__name__ == "CurveFilledAB"  # a head at both ends
+    assert isinstance(panel.patches[0], Rectangle)
+    assert "clearance exaggerated" in panel.get_title().replace("\n", " ")
+
+
+def test_a_sketch_of_a_state_shows_its_loads_and_its_contact():
+    figure = figures.plot_sketch(sample_result()[2])
+    (panel,) = figure.axes
+    assert words(panel) == ["P = 2.42 MN/m", "Q = −484 kN/m"]
+    assert arrows(panel)[1]._posA_posB[1][0] < 0.0
+    arcs = [patch for patch in panel.patches if isinstance(patch, Arc)]
+    assert len(arcs) == 3
+    assert legend_texts(figure) == ["sticks", "pin slips counter-clockwise", "pin slips clockwise"] or legend_texts(
+        figure
+    )
+    assert figure.get_suptitle() == "load point 3"
+
+
+def test_bodies_have_their_true_proportions():
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    bush = Bushing(MATERIALS["2024-T3"], 12e-3, 10e-6, Ring(20e-3))
+    (panel,) = figures.plot_sketch(Problem(pair, 10e-3, 20e-6, 0.3, pin_body=Tube(5e-3), plate_body=bush)).axes
+    radii = sorted(round(patch.radius, 3) for patch in panel.patches if isinstance(patch, Circle))
+    assert radii == [0.5, 0.93, 1.0, 1.2, 2.0]
+
+
+def test_remote_stresses_stand_at_the_sides_of_the_plate():
+    history = LoadHistory([{"P": 1e6, "sxx": -3e7, "sxy": 1e7, "M": 100.0}])
+    case = Case(Problem(PAIR, 0.01, -1e-5, 0.3), history, title="fit")
+    figure = figures.plot_sketch(case)
+    (panel,) = figure.axes
+    assert words(panel) == ["P = 1 MN/m", "M = 100 N", "sxx = −30 MPa", "sxy = 10 MPa"]
+    pushed = [arrow._posA_posB for arrow in arrows(panel)[2:8]]
+    assert all(abs(tail[0]) > abs(head[0]) > 2.5 for tail, head in pushed)  # compression points inwards
+    assert len(arrows(panel)) == 2 + 6 + 4
+
+
+def test_a_sketch_needs_a_joint_and_may_stand_in_given_axes():
+    with pytest.raises(InputError, match="joint: must be a Problem, Case, Result or State"):
+        figures.plot_sketch("case.toml")
+    figure = figures.plot_polar(sample_result())
+    panel = figure.add_axes((0.8, 0.8, 0.2, 0.2))
+    assert figures.plot_sketch(sample_result()[0], ax=panel) is figure
+    assert panel.get_aspect() == 1.0
