@@ -144,13 +144,14 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
     ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
     entries: list[Artist] = []
     for behaviour, (shade, label) in SHADES.items():
-        shaded = np.flatnonzero(cycle.behaviour[frame.order] == behaviour)
-        if behaviour == NodeBehaviour.SLIPS and not slips:
+        shaded = cycle.behaviour[frame.order] == behaviour
+        if not shaded.any() or (behaviour == NodeBehaviour.SLIPS and not slips):
             continue
-        for k in shaded:
-            panel.axvspan(ends[k], ends[k + 1], color=shade, linewidth=0, zorder=-1)
-        if shaded.size:
-            entries.append(Patch(color=shade, linewidth=0, label=label))
+        # One span for each row of nodes: spans that meet would show hairlines.
+        changes = np.flatnonzero(np.diff(np.r_[False, shaded, False]))
+        for first, last in changes.reshape(-1, 2):
+            panel.axvspan(ends[first], ends[last], color=shade, linewidth=0, zorder=-1)
+        entries.append(Patch(color=shade, linewidth=0, label=label))
     return entries
 
 
