@@ -30,6 +30,7 @@ PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
     "polar": ("states", "csv"),
     "stick-slip": ("states", "csv"),
     "sketch": ("states",),
+    "animation": ("states", "rate"),
     "hoop": ("states", "csv", "body"),
     "profile": ("states", "csv", "body", "angle", "depth"),
     "map": ("states", "csv", "body", "component", "extent"),
@@ -146,16 +147,21 @@ def add_plot(commands: Any) -> None:
         "kind",
         choices=tuple(PLOT_OPTIONS),
         help="tractions; polar: tractions over the circle of the hole; stick-slip: map of stick and slip over load "
-        "points; sketch: pin, plate and loads; hoop: hoop stress round hole and pin; profile: stresses below the "
-        "edge; map: one component of the stress in both bodies; cycles: changes in each cycle; slip: slip and friction "
-        "energy in the last cycle; loops: hysteresis loops of the last cycle; fatigue: a criterion along the edge over "
-        "the last cycle",
+        "points; sketch: pin, plate and loads; animation: the states of the last cycle, one after the other; hoop: "
+        "hoop stress round hole and pin; profile: stresses below the edge; map: one component of the stress in both "
+        "bodies; cycles: changes in each cycle; slip: slip and friction energy in the last cycle; loops: hysteresis "
+        "loops of the last cycle; fatigue: a criterion along the edge over the last cycle",
     )
     plot.add_argument(
-        "-o", "--output", metavar="FIGURE", type=Path, help="the figure (png, pdf or svg; default KIND.png)"
+        "-o",
+        "--output",
+        metavar="FIGURE",
+        type=Path,
+        help="the figure (png, pdf or svg; default KIND.png), or the animation (gif, or mp4 by ffmpeg)",
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
     plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
+    plot.add_argument("--rate", metavar="N", type=literal, help="of an animation: states a second (default 4)")
     plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
     plot.add_argument("--component", help="of a map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
     plot.add_argument("--extent", metavar="RADII", type=literal, help="outer radius of a map (default 2)")

@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin import casefile, damage, figures, report, solver, storage
 from fastpin.cli.options import PLOT_OPTIONS
+from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import check_outputs, write_files
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
@@ -27,12 +28,15 @@ NO_CYCLE = "the history has no cycle that has ended; a load block with repeat = 
 def run(options: argparse.Namespace) -> int:
     """Draw one kind of figure of a stored result."""
     _check(options)
-    figure = Path(f"{options.kind}.png") if options.output is None else options.output
+    film = options.kind == "animation"
+    figure = Path(f"{options.kind}.{'gif' if film else 'png'}") if options.output is None else options.output
     outputs = {"--output": figure, "--csv": options.csv}
     for option, path in outputs.items():
         if path is not None and path.resolve() == options.result.resolve():
             raise InputError(option, f"won't overwrite the result {path}")
-    check_outputs(outputs, None, figures=("--output",))
+    if film:
+        figures.check_animation("--output", figure)
+    check_outputs(outputs, None, figures=() if film else ("--output",))
     title = "" if _is_case_file(options) else storage.stored_case(options.result).title
     try:
         draw, write = KINDS[options.kind](options, title)
@@ -134,6 +138,18 @@ def _sketch(options: argparse.Namespace, title: str) -> Made:
     return lambda path: figures.plot_sketch(joint, path, title), _curves([])
 
 
+def _animation(options: argparse.Namespace, title: str) -> Made:
+    usual = "cycle" if storage.load(options.result, states=[]).cycles else None
+    states, given = _states(options, usual, most=figures.MOST_FRAMES), _given(options, "rate")
+    figures.check_motion(states, given.get("rate", figures.RATE))
+
+    def write(path: Path) -> None:
+        with Bar(len(states), "state {n:.0f} of {total:.0f}") as progress_bar:
+            figures.animate(states, path, title, progress=progress_to(progress_bar), **given)
+
+    return write, _curves([])
+
+
 def _hoop(options: argparse.Namespace, title: str) -> Made:
     states, given = _states(options), _given(options, "body")
     curves = report.stress.hoop_curves(states, **given)
@@ -202,6 +218,7 @@ KINDS: dict[str, Callable[[argparse.Namespace, str], Made]] = {
     "polar": _polar,
     "stick-slip": _stick_slip,
     "sketch": _sketch,
+    "animation": _animation,
     "hoop": _hoop,
     "profile": _profile,
     "map": _map,

@@ -1,3 +1,8 @@
+from .animation import MOST_FRAMES as MOST_FRAMES
+from .animation import RATE as RATE
+from .animation import animate as animate
+from .animation import check_animation as check_animation
+from .animation import check_motion as check_motion
 from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue

@@ -21,13 +21,13 @@ from fastpin.figures.style import (
     new_figure,
     number_of_dots,
 )
-from fastpin.figures.words import wrapped
+from fastpin.figures.words import CAPTION_SIZE, wrapped
 from fastpin.model.checks import file_path, instance
 
 HEADING = 9.5
 """Size of a title, points."""
 
-CAPTION: dict[str, Any] = {"fontsize": 7.2, "color": "0.25", "parse_math": False}
+CAPTION: dict[str, Any] = {"fontsize": CAPTION_SIZE, "color": "0.25", "parse_math": False}
 """Text of a caption."""
 
 GAP = 0.14
@@ -114,7 +114,7 @@ class Sheet:
         small = "\n".join(wrapped(caption, width - 0.9)) if caption else ""
         if self.host is not None:
             top = self.host if self.axes.size > 1 else self.axes[0, 0]
-            top.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION["fontsize"], parse_math=False)
+            top.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)
             return
         if self.axes.shape[1] == 1:
             if small:

@@ -42,6 +42,9 @@ LONG, SHORT = 1.45, 0.55
 MARGIN = 1.25
 """Room for the arrows of remote stresses, in radii of the hole."""
 
+SHORTEST = 0.35
+"""Length of the arrow of a small force, in parts of the longest: a shorter one has no shaft."""
+
 STEEL, ALLOY, BRASS = "#C9CDD3", "#E8EAED", "#EAD9A8"
 """Shades of pin, plate and bush."""
 
@@ -58,11 +61,12 @@ FORCE, STRESS = "#B2182B", "#2166AC"
 """Colours of forces and of remote stresses."""
 
 
-class Sides(NamedTuple):
-    """Half the size of the drawn plate, and whether arrows of shear lie along its sides."""
+class Scale(NamedTuple):
+    """Half the size of the drawn plate, whether arrows of shear lie along its sides, and the force of a long arrow."""
 
     half: float
     sheared: bool
+    force: float
 
 
 def plot_sketch(
@@ -118,9 +122,17 @@ def load_ranges(history: LoadHistory) -> dict[str, Range]:
 
 
 def draw_sketch(
-    problem: Problem, ranges: Mapping[str, Range], look: Look, state: State | None = None, words: bool = True
+    problem: Problem,
+    ranges: Mapping[str, Range],
+    look: Look,
+    state: State | None = None,
+    words: bool = True,
+    largest: float = 0.0,
 ) -> Sheet:
-    """Draw a joint on a new sheet. `words` False leaves out heading and caption."""
+    """Draw a joint on a new sheet. `words` False leaves out heading, caption and legend.
+
+    The arrow of the `largest` force, that of the joint unless given, has the full length.
+    """
     sheet = look.sheet([look.width], extra=0.5 if words else 0.0)
     panel = sheet.axes[0, 0]
     panel.set_aspect("equal")
@@ -129,7 +141,7 @@ def draw_sketch(
     _draw_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
-    _draw_loads(panel, problem, ranges, outside)
+    _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, largest or _largest_force(ranges)))
     room = MARGIN if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
     panel.set_xlim(-outside - room, outside + room)
     panel.set_ylim(-outside - room, outside + room)
@@ -210,7 +222,11 @@ def _draw_contact(panel: Axes, state: State) -> None:
         )
 
 
-def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], outside: float) -> None:
+def _largest_force(ranges: Mapping[str, Range]) -> float:
+    return max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
+
+
+def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], scale: Scale) -> None:
     """Draw an arrow for each load, with its value."""
     largest = {kind: max((_size(ranges[name]) for name in ranges if LOAD_KIND[name] == kind), default=0.0)
                for kind in set(LOAD_KIND.values())}  # fmt: skip
@@ -220,13 +236,13 @@ def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], outs
             continue
         words = _words(problem, name, span)
         if name in ("P", "Q"):
-            _draw_force(panel, name, span, words)
+            _draw_force(panel, name, span, words, LONG * max(_size(span) / scale.force, SHORTEST))
         elif name == "M":
             _draw_moment(panel, span, words)
         elif LOAD_KIND[name] == "traction":
-            _draw_remote(panel, name, span, words, Sides(outside, "sxy" in ranges))
+            _draw_remote(panel, name, span, words, scale)
         else:  # displacements and rotations of the hub
-            panel.text(0.0, -outside - 0.55 - 0.35 * below, words, color=FORCE, **LETTERS)
+            panel.text(0.0, -scale.half - 0.55 - 0.35 * below, words, color=FORCE, **LETTERS)
             below += 1
 
 
@@ -254,14 +270,14 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) 
     )
 
 
-def _draw_force(panel: Axes, name: str, span: Range, words: str) -> None:
+def _draw_force(panel: Axes, name: str, span: Range, words: str, length: float) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
     along = -1j if name == "P" else 1.0
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:
         along, span = -along, (-span[1], -span[0])
-    _arrow(panel, -LONG * along if both else 0j, LONG * along, span, FORCE)
-    place = (LONG + 0.22) * along if name == "P" else LONG * along + 0.28j
+    _arrow(panel, -length * along if both else 0j, length * along, span, FORCE)
+    place = (length + 0.22) * along if name == "P" else max(length, 0.9) * along + 0.28j
     panel.text(place.real, place.imag, words, color=FORCE, bbox=BOX, **LETTERS)
 
 
@@ -275,9 +291,9 @@ def _draw_moment(panel: Axes, span: Range, words: str) -> None:
     panel.text(-0.1, 0.74, words, color=FORCE, bbox=BOX, **LETTERS)
 
 
-def _draw_remote(panel: Axes, name: str, span: Range, words: str, sides: Sides) -> None:
+def _draw_remote(panel: Axes, name: str, span: Range, words: str, scale: Scale) -> None:
     """Draw a remote stress as arrows on two sides: outwards for tension, along the sides for shear."""
-    half, out = sides.half, sides.half + 0.12 + (0.22 if sides.sheared else 0.0)
+    half, out = scale.half, scale.half + 0.12 + (0.22 if scale.sheared else 0.0)
     shift = (0.55 * half * np.array([-1.0, 0.0, 1.0])).tolist()
     for side in (1.0, -1.0):
         if name == "sxx":

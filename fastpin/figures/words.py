@@ -28,8 +28,11 @@ ROUNDING = 1e-9
 DIGITS = 3
 """Significant digits of a parameter in a caption."""
 
+CAPTION_SIZE = 7.2
+"""Size of a caption, points."""
+
 CHARACTER = 0.052
-"""Mean width of a character of a caption, inches: 7 points high, and half as wide."""
+"""Mean width of a character of a caption, inches."""
 
 
 def shown_unit(unit: str) -> str:

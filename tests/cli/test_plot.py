@@ -57,6 +57,12 @@ def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, 
     assert "--states: chooses a state of a result; a case file has none" in capsys.readouterr().err
 
 
+def test_an_animation_of_the_last_cycle(stored, tmp_path, capsys):
+    assert main(["plot", str(stored), "animation", "-o", str(tmp_path / "a.gif"), "--rate", "10"]) == 0
+    assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: ")
+    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
+
+
 def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["plot", str(stored), "map", "--component", "hoop", "--extent", "3", "--body", "plate"]) == 0
@@ -80,6 +86,8 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
             "--states: has no effect on slip; it is for tractions, polar, stick-slip, ",
         ),
         (["sketch", "--csv", "a.csv"], "--csv: has no effect on sketch; it is for tractions, polar, stick-slip, hoop"),
+        (["animation", "--states", "last"], "--states: an animation needs two states or more"),
+        (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
         (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, not 'now'"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),

@@ -1,0 +1,190 @@
+"""Animation of a load cycle: tractions and sketch of the joint, state by state, as GIF or MP4."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.patches import Patch
+
+from fastpin.errors import InputError
+from fastpin.figures.sheet import HEADING, Look
+from fastpin.figures.sketch import draw_sketch
+from fastpin.figures.states import DrawnStates, Frame, drawn_states
+from fastpin.figures.stick_slip import LOOKS
+from fastpin.figures.style import COLOURS, STYLE, line, new_figure
+from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped
+from fastpin.kernels.status import STICK
+from fastpin.model.checks import file_path, number
+from fastpin.model.units import acting_loads, scaled, units
+from fastpin.solver.result import Result
+from fastpin.states.choice import StateChoice
+from fastpin.states.state import State
+from fastpin.storage.files import check_writable, replacing
+
+MOST_FRAMES = 200
+"""Most states of an animation: some 20 seconds at ten states a second."""
+
+FORMATS = (".gif", ".mp4")
+"""Endings of an animation's name."""
+
+RATE = 4.0
+"""States a second, unless another rate is given."""
+
+SLOWEST, FASTEST = 0.1, 50.0
+"""Limits of the states a second. GIF has steps of a hundredth of a second."""
+
+SIZE = (8.0, 4.3)
+"""Width and height of a picture, inches."""
+
+
+def animate(
+    result: Sequence[State],
+    path: str | Path,
+    title: str = "",
+    dpi: float = 100.0,
+    *,
+    states: StateChoice = None,
+    rate: float = RATE,
+    progress: Callable[[float, float], None] | None = None,
+) -> None:
+    """Write an animation of a load cycle: the sketch of the joint with its contact, and the tractions.
+
+    Each picture shows one state; nothing is made up between states. States inside steps (``between`` of
+    :func:`fastpin.solve`) make the motion smooth.
+
+    Parameters
+    ----------
+    result : Result or sequence of State
+    path : path
+        Ends in .gif, or in .mp4 if the program ffmpeg is on the PATH.
+    title : str
+    dpi : float
+        Dots per inch; a picture is 8 inches wide.
+    states : str, number, sequence of numbers or slice, optional
+        See :func:`fastpin.plot_tractions`. Unless given, the last cycle, or all states of a history without cycles.
+        At most :data:`MOST_FRAMES` are shown.
+    rate : float
+        States a second.
+    progress : callable, optional
+        ``progress(done, total)`` is called after each state.
+
+    Raises
+    ------
+    InputError
+        If there are less than two states, an argument is out of range, or the file can't be written. Also if its name
+        has another ending, or ffmpeg is missing.
+    """
+    check_animation("path", file_path("path", path))
+    look = Look(title=title, dpi=dpi)
+    drawn = drawn_states(result, _usual(result, states), MOST_FRAMES, in_a_row=True)
+    check_motion(drawn, rate)
+    check_writable(Path(path))
+    with mpl.rc_context(STYLE):
+        _write(drawn, Path(path), look, float(rate), progress)
+
+
+def check_animation(field: str, path: Path) -> None:
+    """Raise :class:`InputError` if a name does not end as an animation's, or if the program for it is missing."""
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(field, f"the animation's name must end in {' or '.join(FORMATS)}, not {path.name!r}")
+    if path.suffix.lower() == ".mp4" and shutil.which("ffmpeg") is None:
+        raise InputError(field, "a film (.mp4) needs the program ffmpeg, which is not on the PATH; .gif needs none")
+
+
+def check_motion(states: Sequence[State], rate: float) -> None:
+    """Raise :class:`InputError` if there are less than two states, or the states a second are out of range."""
+    number("rate", rate, SLOWEST, FASTEST)
+    if len(states) < 2:
+        raise InputError("states", "an animation needs two states or more")
+
+
+def _usual(result: Sequence[State], states: StateChoice) -> StateChoice:
+    """The choice of states: the last cycle unless one is given."""
+    return "cycle" if states is None and isinstance(result, Result) and result.cycles else states
+
+
+def _write(
+    states: DrawnStates, path: Path, look: Look, rate: float, progress: Callable[[float, float], None] | None
+) -> None:
+    made_by: Any = PillowWriter if path.suffix.lower() == ".gif" else FFMpegWriter
+    writer: AbstractMovieWriter = made_by(fps=rate)
+    scene = _Scene(states, look)
+    try:
+        with replacing(path) as temporary, writer.saving(scene.figure, str(temporary), look.dpi):
+            for k, state in enumerate(states):
+                scene.show(k, state)
+                writer.grab_frame()
+                if progress is not None:
+                    progress(k + 1, len(states))
+    except subprocess.CalledProcessError as error:
+        raise InputError("path", f"ffmpeg could not write the film: it ended with code {error.returncode}") from None
+
+
+class _Scene:
+    """The picture of an animation. Its axes keep their limits from state to state."""
+
+    def __init__(self, states: DrawnStates, look: Look) -> None:
+        self.states, self.frame = states, Frame(states)
+        self.figure = new_figure(*SIZE)
+        self.figure.set_layout_engine("none")  # the panels must not move
+        grid: dict[str, Any] = {"left": 0.42, "right": 0.98, "top": 0.82, "bottom": 0.13, "hspace": 0.12}
+        rows = 1 if states[0].problem.frictionless else 2
+        self.panels: list[Axes] = list(
+            self.figure.subplots(rows, 1, sharex=True, squeeze=False, gridspec_kw=grid)[:, 0]
+        )
+        self.joint = self.figure.add_axes((0.01, 0.17, 0.33, 0.67))
+        self.heading = self.figure.text(0.02, 0.975, "", fontsize=HEADING, va="top", parse_math=False)
+        self.title = look.title
+        small = "\n".join(wrapped(caption(states[0].problem, states), SIZE[0] - 0.4))
+        self.figure.text(0.02, 0.905, small, fontsize=CAPTION_SIZE, color="0.25", va="top", parse_math=False)
+        self.names = acting_loads([state.load for state in states])
+        self.factor, unit = scaled([state.peak_pressure for state in states], units(states[0].problem)["traction"])
+        self.largest = self.factor * max(state.peak_pressure for state in states)
+        words = ("pressure N", "shear traction T")
+        self.force = max(abs(state.load[name]) for state in states for name in ("P", "Q"))
+        patches = [Patch(color=colour, linewidth=0, label=words) for colour, _, words in LOOKS.values()]
+        self.figure.legend(handles=patches, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=CAPTION_SIZE, ncols=1)
+        self.labels = [quantity(each, unit) for each in words[:rows]]
+
+    def show(self, place: int, state: State) -> None:
+        """Draw one state in place of the one before."""
+        loads = ",  ".join(load_text(self.states, place, name) for name in self.names)
+        head = f"load point {point_text(state)}:  {loads}"
+        self.heading.set_text(f"{self.title}:  {head}" if self.title else head)
+        angle, pressure, shear = self.frame.curves(state)
+        for panel, label in zip(self.panels, self.labels, strict=True):
+            panel.clear()
+            panel.set_ylabel(label)
+            panel.grid(True, color="0.92", linewidth=0.6)
+        self.panels[0].plot(angle, self.factor * pressure, **line(0))
+        self.panels[0].set_ylim(0.0, 1.08 * self.largest or 1.0)
+        friction = state.problem.friction
+        if len(self.panels) > 1:
+            for sign in (1.0, -1.0):
+                bound = sign * friction * self.factor * pressure
+                self.panels[1].plot(angle, bound, color=COLOURS[0], linewidth=0.5, alpha=0.6)
+            self.panels[1].plot(angle, self.factor * shear, **line(1))
+            most = 1.15 * friction * self.largest or 1.0
+            self.panels[1].set_ylim(-most, most)
+        self._shade(state)
+        self.panels[-1].set_xlim(*self.frame.limits)
+        self.panels[-1].set_xlabel(ANGLE)
+        self.joint.clear()
+        ranges = {name: (state.load[name],) * 2 for name in self.names if state.load[name] != 0.0}
+        draw_sketch(state.problem, ranges, Look(ax=self.joint), state, words=False, largest=self.force)
+
+    def _shade(self, state: State) -> None:
+        """Shade stick and slip in the colours of the sketch."""
+        zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
+        for start, stop, status in zones:
+            for left, width in self.frame.place(start, stop):
+                for panel in self.panels:
+                    colour = LOOKS[int(status)][0]
+                    panel.axvspan(left, left + width, color=colour, alpha=0.13, linewidth=0, zorder=-1)
