@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from fastpin.cli.main import main
+from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.paper import catalog
 from fastpin.studies import sweep
 from fastpin.studies.outcome_tables import KEYS
@@ -114,6 +115,18 @@ def test_the_example_of_fatigue_prints_its_numbers(capsys: pytest.CaptureFixture
     (code,), (printed,) = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("python", "text"))
     exec(compile(code, "fatigue.md", "exec"), {})
     assert capsys.readouterr().out == printed
+
+
+def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(compile(code, "figures.md", "exec"), names)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cycle.gif", "map.svg", "tractions.pdf"]
+    assert names["axes"].texts
+    for kind in PLOT_OPTIONS:
+        assert f"`{kind}`" in text, kind
 
 
 def test_the_examples_of_sessions_run() -> None:
