@@ -13,11 +13,12 @@ from typing import NamedTuple
 from fastpin.casefile.reader import read_text
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import as_toml, choice, closest, file_path, number, positive, string, whole_number
+from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
 from fastpin.model.lug import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
 from fastpin.model.materials import MATERIALS, PLANES
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
+from fastpin.model.synonyms import closest
 
 LUG_EXAMPLE = Path(__file__).with_name("lug.toml").read_text(encoding="utf-8")
 """A commented lug file: a lug with a round end."""

@@ -7,9 +7,10 @@ from dataclasses import fields, replace
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, closest, number, true_or_false
+from fastpin.model.checks import as_toml, choice, number, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.synonyms import closest
 
 MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue")
 """Keys of the material of a body."""

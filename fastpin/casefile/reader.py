@@ -20,12 +20,13 @@ from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import Case, check_arc, check_keep
-from fastpin.model.checks import closest, file_path, string
+from fastpin.model.checks import file_path, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
+from fastpin.model.synonyms import closest, meant
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
@@ -185,22 +186,40 @@ def _check_keys(source: CaseText) -> None:
             for section in source.blocks(name):
                 for key in section.table:
                     if key not in KEYS[name]:
-                        hint = closest(key, KEYS[name]) or _owners(key) or f"; the keys are {', '.join(KEYS[name])}"
-                        section.report(f'unknown key "{key}" in {_in_brackets(name)}{hint}', key)
+                        section.report(f'unknown key "{key}" in {_in_brackets(name)}{key_hint(name, key)}', key)
         elif isinstance(value, (dict, list)) and not _owners(name):
             hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
             if name == "outline":
                 hint = "; a file with an outline is a lug file, see fastpin compliance"
             source.report(f"unknown section [{name}]{hint}", name)
         else:
-            hint = _owners(name) or closest(name, ("title",))
+            hint = _owners(name) or closest(name, ("title",)) or _elsewhere(name)
             source.report(f'unknown key "{name}" before the first section{hint}', name)
+
+
+def key_hint(section: str, key: str) -> str:
+    """A hint at the key that is meant by an unknown `key` of a section, or at all keys of the section."""
+    known = KEYS[section]
+    elsewhere = closest(key, known, spelling=False) or _owners(key) or _elsewhere(key)
+    return elsewhere or closest(key, known) or f"; the keys are {', '.join(known)}"
 
 
 def _owners(key: str) -> str:
     """A hint at the sections that have a key of this name; empty if there are none."""
+    if key == "load":
+        return "; loads are [[load]] blocks, with double brackets"
     owners = [_in_brackets(section) for section, keys in KEYS.items() if key in keys]
     return f"; it belongs in {' or '.join(owners)}" if owners else ""
+
+
+def _elsewhere(word: str) -> str:
+    """A hint at a key of some section that is meant by `word`; empty if there is none."""
+    for name in meant(word):
+        owners = [_in_brackets(section) for section, keys in KEYS.items() if name in keys]
+        if owners:
+            hint = closest(word, [name])
+            return f"{hint.removesuffix('?')} in {' or '.join(owners)}{'?' * hint.endswith('?')}"
+    return ""
 
 
 def _in_brackets(section: str) -> str:

@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, number
+from fastpin.model.synonyms import meant
 
 Place = tuple[str | int, ...]
 """The keys and indices that lead to a value: ("load", 0, "P")."""
@@ -111,7 +112,7 @@ class CaseText:
             return Section(self, (name,), table)
         if table is not None:
             self.report(f"{name}: must be a section [{name}], not {as_toml(table)}", name)
-        elif required and name not in self.root:
+        elif required and name not in self.root and not self.root.means(name):
             self.report(f"the section [{name}] is missing", name)
         return Section(self, (name,), {}, present=False)
 
@@ -154,9 +155,16 @@ class Section:
         self._text.report(message, *self._place, *key)
 
     def require(self, key: str, hint: str = "") -> None:
-        """Report the key if it is missing. The message ends with `hint`."""
-        if key not in self:
+        """Report the key if it is missing. The message ends with `hint`.
+
+        A key that was written with another word is not reported here: the unknown word is.
+        """
+        if key not in self and not self.means(key):
             self.report(f"[{self.name}]: {key} is missing{hint}")
+
+    def means(self, *keys: str) -> bool:
+        """Whether a word of this table is another word for one of the keys."""
+        return any(name in keys for word in self.table for name in meant(word))
 
     def value(self, key: str) -> Any:
         """The parsed value of a key; None if it is missing or faulty."""

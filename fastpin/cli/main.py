@@ -14,7 +14,7 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from fastpin.cli.options import join_words, parser
+from fastpin.cli.options import read_options
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail
 from fastpin.errors import CaseFileError, FastpinError, InputError
 
@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     gc.set_threshold(COLLECT_AFTER)
     try:
-        options = parser().parse_args(join_words(sys.argv[1:] if arguments is None else list(arguments)))
+        options = read_options(sys.argv[1:] if arguments is None else list(arguments))
         _log(getattr(options, "verbose", 0))
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems end a job by SIGTERM

@@ -8,9 +8,11 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
 
 EXIT_CODES = (
@@ -44,6 +46,11 @@ PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
 
 def parser() -> argparse.ArgumentParser:
     """Build the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
+    return _parsers()[0]
+
+
+def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
+    """The parser of the command line, and the parsers of the commands by name."""
     root = argparse.ArgumentParser(
         prog="fastpin",
         description="Frictional contact of an elastic pin in the hole of an elastic plate.",
@@ -61,7 +68,28 @@ def parser() -> argparse.ArgumentParser:
     add_compliance(commands)
     add_paper(commands)
     add_verify(commands)
-    return root
+    return root, commands.choices
+
+
+def read_options(arguments: list[str]) -> argparse.Namespace:
+    """Read the command line. An unknown option ends the program with a hint at the option that is meant."""
+    root, commands = _parsers()
+    options, unknown = root.parse_known_args(join_words(arguments))
+    if unknown:
+        hints = (_option_hint(commands, arguments[0], word) for word in unknown if word.startswith("--"))
+        root.error(f"unrecognized arguments: {' '.join(unknown)}{next(filter(None, hints), '')}")
+    return options
+
+
+def _option_hint(commands: Mapping[str, argparse.ArgumentParser], command: str, word: str) -> str:
+    """A hint at the option of a command, or the key of a case file, that an unknown option means."""
+    name = word.partition("=")[0].lstrip("-").replace("-", "_")
+    usage = commands[command].format_usage() if command in commands else ""
+    options = [option.replace("-", "_") for option in re.findall(r"--([a-z-]+)", usage)]
+    keys = [] if (hint := closest(name, options)) else meant(name)
+    if keys:
+        return f"; {keys[0]} is a key of the case file"
+    return re.sub(r'"(\w+)"', lambda found: f"--{found[1].replace('_', '-')}", hint)
 
 
 def join_words(arguments: list[str]) -> list[str]:

@@ -15,6 +15,7 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, not_negative, number, positive
 from fastpin.model.compliance import Compliance
 from fastpin.model.materials import Material
+from fastpin.model.synonyms import explains_keywords
 
 TubeLoad = Literal["uniform", "normal", "shear", "held", "body"]
 """Kinds of load in the bore of a hollow pin."""
@@ -47,6 +48,7 @@ class Disk:
     """A solid pin. Its load enters as the problem's ``pin_load`` says."""
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class Tube:
     """A hollow pin. The forces on the pin enter at its bore.
@@ -79,6 +81,7 @@ class Tube:
         return self.load == "held"
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class Plate:
     """An infinite plate.
@@ -106,6 +109,7 @@ class Plate:
         object.__setattr__(self, "reaction", (x, y))
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class Ring:
     """A ring lug: a plate with a circular outer rim round the hole.
@@ -140,6 +144,7 @@ class Ring:
         return self.support == "held"
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class Bushing:
     """A bush in the hole of the plate, bonded to it. The pin touches the bush.

@@ -6,7 +6,6 @@ Python, case files, plans and the command line all call these validators. So the
 from __future__ import annotations
 
 import contextlib
-import difflib
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from fastpin.errors import InputError, printable
+from fastpin.model.synonyms import closest
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -226,10 +226,3 @@ def _cut(words: str) -> str:
     """Words on one line that can be printed, at most :data:`LONGEST_TEXT` characters."""
     shown = printable(" ".join(words[: 2 * LONGEST_TEXT].split()))
     return shown if len(shown) < LONGEST_TEXT else f"{shown[: LONGEST_TEXT - 4]}..."
-
-
-def closest(word: str, known: Sequence[str]) -> str:
-    """A hint at the known word closest to `word`; empty if no word is close."""
-    lower = {name.lower(): name for name in known}
-    close = difflib.get_close_matches(word.lower(), lower, n=1)
-    return f', did you mean "{lower[close[0]]}"?' if close else ""

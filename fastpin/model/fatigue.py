@@ -8,10 +8,12 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.model.checks import negative, positive, string
+from fastpin.model.synonyms import explains_keywords
 
 _EXPONENTS = ("strength_exponent", "ductility_exponent", "shear_strength_exponent", "shear_ductility_exponent")
 
 
+@explains_keywords
 @dataclass(frozen=True, repr=False)
 class FatigueConstants:
     """Fatigue constants of a material, each of them optional. A criterion says which ones it needs.

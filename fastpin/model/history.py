@@ -33,6 +33,7 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.history_csv import read_corners
 from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import explains_keywords
 
 POINTS = 24
 """Default number of corners in a cycle of loads that are out of phase."""
@@ -193,6 +194,7 @@ class LoadHistory:
         return cls({k: v * (i + 1) / steps for k, v in last.items()} for i in range(steps))
 
     @classmethod
+    @explains_keywords
     def cycles(
         cls, mean: Corner, amplitude: Corner, count: int = 1, start: float = 1.0, return_to_mean: bool = False
     ) -> LoadHistory:
@@ -228,6 +230,7 @@ class LoadHistory:
         return history
 
     @classmethod
+    @explains_keywords
     def harmonic(
         cls, mean: Corner, amplitude: Corner, phase: Corner | None = None, count: int = 1, points: int | None = None
     ) -> LoadHistory:

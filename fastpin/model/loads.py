@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import LONGEST_TEXT, as_toml, closest, number
+from fastpin.model.checks import LONGEST_TEXT, as_toml, number
+from fastpin.model.synonyms import closest
 
 LOAD_KIND = {
     "P": "force",

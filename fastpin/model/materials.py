@@ -21,6 +21,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, number, string
 from fastpin.model.fatigue import FatigueConstants
+from fastpin.model.synonyms import explains_keywords
 
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
@@ -44,6 +45,7 @@ LEAST_SQUEEZE = 1e-11
 """Least compliance of a pair under uniform pressure, in parts of beta*. A smaller compliance is rounding."""
 
 
+@explains_keywords
 @dataclass(frozen=True, repr=False)
 class Material:
     """An isotropic elastic material.
@@ -165,6 +167,7 @@ MATERIALS: dict[str, Material] = {
 """
 
 
+@explains_keywords
 @dataclass(frozen=True, repr=False)
 class MaterialPair:
     """The materials of pin and plate, with their composite constants.
@@ -197,6 +200,7 @@ class MaterialPair:
         return f"{self.pin!r} in {self.plate!r}, plane {self.plane}"
 
     @classmethod
+    @explains_keywords
     def from_dundurs(
         cls,
         alpha: float,

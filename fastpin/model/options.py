@@ -16,6 +16,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, is_whole, number, true_or_false, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
+from fastpin.model.synonyms import explains_keywords
 
 Method = Literal["path", "increment"]
 """Name of a solver, for type checkers."""
@@ -103,6 +104,7 @@ class KeepRule:
         return ends_cycle if self.which == "cycles" else (corner + 1) % self.every == 0
 
 
+@explains_keywords
 @dataclass(frozen=True)
 class SolveOptions:
     """The options of the solver, checked and frozen.

@@ -13,6 +13,7 @@ from fastpin.model.checks import as_toml, choice, instance, not_negative, number
 from fastpin.model.compliance import Compliance
 from fastpin.model.joint import Joint, PinLoad
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair, check_moduli
+from fastpin.model.synonyms import explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
 """Kinds of pin rotation."""
@@ -39,6 +40,7 @@ Drive = Literal["force", "ux", "uy", "both"]
 """Ways to drive the pin: by the forces P and Q, or by displacements in place of Q (ux), of P (uy) or of both."""
 
 
+@explains_keywords
 @dataclass(frozen=True, repr=False)
 class Problem:
     """An elastic pin in the hole of an elastic plate, with Coulomb friction.
@@ -244,6 +246,7 @@ class Problem:
         )
 
     @classmethod
+    @explains_keywords
     def from_load_parameter(
         cls,
         pair: MaterialPair,

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, closest
+from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
+from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled, units
 from fastpin.report.table import table
 from fastpin.storage.files import check_writable, replacing

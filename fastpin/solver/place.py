@@ -14,10 +14,10 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.model.checks import closest
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import closest
 from fastpin.solver.result import Restart
 from fastpin.states.state import State
 

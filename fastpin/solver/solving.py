@@ -17,6 +17,7 @@ from fastpin.model.grid import Grid, halved
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import KeepRule, Method, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.result import Result
@@ -30,6 +31,7 @@ DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
 
 
+@explains_keywords
 def solve(
     problem: Problem,
     history: LoadHistory | Sequence[dict[str, float]],

@@ -9,11 +9,12 @@ from typing import Any, Unpack
 
 from fastpin.errors import InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, check_callable, closest, file_path, items, string, true_or_false, whole_number
+from fastpin.model.checks import as_toml, check_callable, file_path, items, string, true_or_false, whole_number
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver.errors import ArcError, ConvergenceError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
@@ -163,4 +164,4 @@ def _check_names(options: Mapping[str, Any]) -> None:
     known = [field.name for field in fields(SolveOptions)]
     for name in options:
         if name not in known:
-            raise TypeError(f"record() got an unexpected keyword argument {name!r}{closest(name, known)}")
+            raise unknown_keyword("record", name, known)

@@ -16,6 +16,7 @@ from fastpin.model.grid import MAX_NODES, Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import Method, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.result import Result
@@ -159,6 +160,7 @@ class StudyLostError(SolveError):
     """The finished part of the study, or None."""
 
 
+@explains_keywords
 def converge(
     problem: Problem,
     history: LoadHistory | Sequence[dict[str, float]],

@@ -19,7 +19,8 @@ from typing import Any
 from fastpin.casefile.reader import read_text
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.checks import as_toml, choice, closest, file_path, string
+from fastpin.model.checks import as_toml, choice, file_path, string
+from fastpin.model.synonyms import closest
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,

@@ -20,12 +20,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fastpin.casefile.reader import EXAMPLE, KEYS, read_text
+from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, read_text
 from fastpin.casefile.toml_text import CaseText, Place, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, choice, closest, file_path, instance, number, string, whole_number
+from fastpin.model.checks import as_toml, choice, file_path, instance, number, string, whole_number
 from fastpin.model.loads import LOADS
+from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
@@ -329,8 +330,7 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     if len(names) == 4 and names[2:3] not in LOAD_TABLES:
         return f'"{name}": only mean, amplitude and phase of a block have loads of their own'
     if names[2:3] not in LOAD_TABLES and names[-1] not in KEYS[section]:
-        hint = closest(names[-1], KEYS[section]) or f"; the keys are {', '.join(KEYS[section])}"
-        return f'"{name}": there is no key "{names[-1]}" in [{section}]{hint}'
+        return f'"{name}": there is no key "{names[-1]}" in [{section}]{key_hint(section, names[-1])}'
     return other_units(base.text.root.table, name) if base else None
 
 

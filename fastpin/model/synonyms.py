@@ -1,0 +1,203 @@
+"""Words that users write for the names of fastpin, and hints at the names that are meant.
+
+Case files, plans, the command line and the keywords of Python classes take their hints from here. Nothing heavy is
+imported: wrong options of the command line are answered without NumPy.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import re
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+_SYNONYMS: dict[str, str] = {
+    # materials
+    "E": "young youngs_modulus young_s_modulus young_modulus modulus elastic_modulus e_modulus emod stiffness",
+    "nu": "v poisson poissons_ratio poisson_s_ratio poisson_ratio",
+    "yield_strength": "yield yield_stress yield_point sigma_y sy fy rp02 rp0_2 re proof_stress",
+    "material": "mat alloy",
+    "rigid": "is_rigid stiff",
+    "fatigue": "fatigue_constants",
+    "fatigue_strength": "sigma_f sf sf_prime",
+    "fatigue_ductility": "epsilon_f ef ef_prime",
+    "strength_exponent": "b basquin_exponent",
+    "ductility_exponent": "c coffin_manson_exponent",
+    "pin": "pin_material disk disc",
+    "plate": "plate_material lug_material",
+    # contact
+    "hole_radius": "r radius r_hole plate_radius a",
+    "clearance": "delta delta_r dr gap play radial_clearance initial_gap c",
+    "friction": "mu cof f friction_coefficient coefficient_of_friction coulomb",
+    "thickness": "t h width plate_thickness depth b",
+    "load_parameter": "lp l_p",
+    "pin_load": "load_type loading load_model",
+    "plane": "state plane_state stress_state",
+    "rotation": "theta omega phi angle twist rotate pin_rotation",
+    "hub_radius": "r_hub hub",
+    "hub_stiffness": "stiffness spring_stiffness k k_theta rotational_stiffness",
+    "gauge_radius": "r_gauge gauge",
+    "bore_radius": "radius inner_radius r_i ri bore r_bore hollow",
+    "outer_radius": "radius r_o ro r_outer rim_radius",
+    # loads
+    "P": "load force f vertical_force pin_force pin_load normal_force n bearing_load",
+    "Q": "fx f_x h horizontal_force tangential_force shear_force",
+    "M": "moment torque mz m_z",
+    "sxx": "sigma sigma_x sigma_xx stress remote_stress bypass bypass_stress s_xx sx",
+    "syy": "sigma_y sigma_yy s_yy sy",
+    "sxy": "tau tau_xy sigma_xy shear_stress s_xy txy",
+    "ux": "u u_x dx displacement_x displacement",
+    "uy": "v u_y dy displacement_y",
+    "repeat": "cycles n_cycles count times number_of_cycles repeats",
+    "points": "n_points steps",
+    "phase": "phi phase_angle lag",
+    "amplitude": "amp range",
+    "csv": "file filename path spectrum",
+    # solver
+    "nodes": "n n_nodes num_nodes number_of_nodes mesh elements resolution points",
+    "increments": "steps n_steps n_increments substeps load_steps",
+    "method": "solver algorithm",
+    "keep": "store save_states output",
+    "between": "intermediate substates",
+    "error_bars": "errors uncertainty",
+    "arc": "angles window",
+    "solve": "options settings numerics",
+    "load": "loads loading forces step steps",
+    "contact": "geometry problem joint hole interface",
+    "history": "loadhistory load_history",
+    "plate_body": "lug ring bush bushing",
+    "pin_body": "tube hollow_pin",
+    "title": "name description",
+    # options of the command line
+    "workers": "jobs n_jobs processes threads cores",
+    "output": "out save to",
+    "plot": "figure fig picture",
+    "table": "results",
+}
+"""Other words for each name, in lower case. A word may belong to several names; the names that are allowed decide."""
+
+_NOTES: dict[str, tuple[str, str]] = {
+    "diameter": ("hole_radius", "hole_radius is half of it"),
+    "d": ("hole_radius", "hole_radius is half of the diameter"),
+    "hole_diameter": ("hole_radius", "hole_radius is half of it"),
+    "pin_radius": ("clearance", "clearance is the hole radius minus the pin radius"),
+    "r_pin": ("clearance", "clearance is the hole radius minus the pin radius"),
+    "pin_diameter": ("clearance", "clearance is the hole radius minus the pin radius"),
+    "diametral_clearance": ("clearance", "clearance is half of it: hole radius minus pin radius"),
+    "diametrical_clearance": ("clearance", "clearance is half of it: hole radius minus pin radius"),
+    "interference": ("clearance", "a negative clearance is an interference fit"),
+    "interference_fit": ("clearance", "a negative clearance is an interference fit"),
+    "bore_diameter": ("bore_radius", "bore_radius is half of it"),
+    "inner_diameter": ("bore_radius", "bore_radius is half of it"),
+    "outer_diameter": ("outer_radius", "outer_radius is half of it"),
+    "hub_diameter": ("hub_radius", "hub_radius is half of it"),
+    "g": ("E", "with the shear modulus G, E is 2 G (1 + nu)"),
+    "shear_modulus": ("E", "with the shear modulus G, E is 2 G (1 + nu)"),
+    "fy": ("P", "P is the force downwards: the opposite of a force along +y"),
+    "f_y": ("P", "P is the force downwards: the opposite of a force along +y"),
+    "plane_strain": ("plane", 'write plane = "strain"'),
+    "plane_stress": ("plane", 'write plane = "stress"'),
+}
+"""Words whose value must be changed to give a name: the name, and how."""
+
+_VALUES: dict[str, str] = {
+    "path": "exact event_driven",
+    "increment": "incremental steps",
+    "spring": "elastic",
+    "fixed": "held clamped none",
+    "free": "frictionless released",
+    "centre": "center point concentrated",
+    "body": "body_force distributed",
+    "held": "fixed clamped rigid core",
+}
+"""Other words for the words that a value may be."""
+
+
+def _by_word(names: dict[str, str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for name, words in names.items():
+        for word in words.split():
+            found.setdefault(word, []).append(name)
+    return found
+
+
+_MEANT = _by_word(_SYNONYMS)
+for _word, _names in _by_word(_VALUES).items():
+    _MEANT.setdefault(_word, []).extend(_names)
+
+
+def closest(word: str, known: Iterable[str], spelling: bool = True) -> str:
+    """Return a hint at the known name that `word` means; empty if there is none.
+
+    A name that is spelt nearly so counts only with `spelling`.
+    """
+    names = tuple(known)
+    written = _plain(word)
+    if written in _NOTES and _NOTES[written][0] in names:
+        return f"; {_NOTES[written][1]}"
+    lower = {name.lower(): name for name in names}
+    found = lower.get(word.lower()) or next((name for name in _MEANT.get(written, ()) if name in names), None)
+    if found is None and spelling:
+        found = next((lower[near] for near in difflib.get_close_matches(word.lower(), lower, n=1)), None)
+    return "" if found is None else f', did you mean "{found}"?'
+
+
+def meant(word: str) -> list[str]:
+    """Return all names that `word` may mean, wherever they belong. A name means itself first."""
+    written = _plain(word)
+    if written in _NOTES:
+        return [_NOTES[written][0]]
+    return [name for name in (word, word.upper()) if name in _SYNONYMS] + _MEANT.get(written, [])
+
+
+def words() -> list[str]:
+    """Return all words that stand for a name."""
+    return [*_NOTES, *_MEANT]
+
+
+def _plain(word: str) -> str:
+    """A word in lower case, with underscores for all signs between its parts."""
+    return re.sub(r"[^a-z0-9]+", "_", word.lower()).strip("_")
+
+
+_KEYWORDS: dict[str, tuple[str, ...]] = {}
+"""Names of the parameters of all classes and functions that explain their keywords."""
+
+_FIRST_OWNERS = ("Problem", "Material", "MaterialPair", "SolveOptions")
+"""Classes that a hint at a keyword elsewhere names before others: most cases need them."""
+
+
+def explains_keywords(made: T) -> T:
+    """Make a class or function answer an unknown keyword with the one that is meant, in a :class:`TypeError`."""
+    if isinstance(made, type):
+        setattr(made, "__init__", _explaining(made.__name__, getattr(made, "__init__")))  # noqa: B009, B010 - for mypy
+        return made
+    return _explaining(made.__name__, made)  # type: ignore[attr-defined, arg-type, return-value]
+
+
+def _explaining(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    code = function.__code__
+    known = frozenset(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
+    _KEYWORDS[name] = tuple(word for word in code.co_varnames if word in known - {"self", "cls"})
+
+    @functools.wraps(function)
+    def explaining(*arguments: Any, **keywords: Any) -> Any:
+        for word in keywords:
+            if word not in known:
+                raise unknown_keyword(name, word, _KEYWORDS[name])
+        return function(*arguments, **keywords)
+
+    return explaining
+
+
+def unknown_keyword(function: str, word: str, known: Iterable[str]) -> TypeError:
+    """Return the error of a keyword that a function does not know, with a hint at the keyword that is meant."""
+    hint = closest(word, known)
+    if not hint:
+        owners = {owner: name for name in meant(word) for owner, names in _KEYWORDS.items() if name in names}
+        first = next((owner for owner in (*_FIRST_OWNERS, *owners) if owner in owners), None)
+        hint = f", did you mean {owners[first]} of {first}?" if first else ""
+    return TypeError(f"{function}() got an unexpected keyword argument {word!r}{hint}")
