@@ -52,3 +52,23 @@ class CaseFileError(InputError):
 
     def __reduce__(self) -> tuple[type[CaseFileError], tuple[str, list[tuple[int, str]]]]:  # type: ignore[override]
         return type(self), (self.field, self.problems)
+
+
+class InputWarning(UserWarning):
+    """Input that can be used, but is probably a mistake. The result is not changed by the warning.
+
+    Attributes
+    ----------
+    field : str
+        The field in doubt.
+    reason : str
+        The message without the field.
+    """
+
+    def __init__(self, field: str, message: str) -> None:
+        super().__init__(printable(f"{field}: {message}"))
+        self.field = field
+        self.reason = printable(message)
+
+    def __reduce__(self) -> tuple[type[InputWarning], tuple[str, str]]:
+        return type(self), (self.field, self.reason)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
+from typing import Any
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, number, true_or_false
+from fastpin.model.checks import as_toml, choice, number, positive, true_or_false
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.synonyms import closest
 
-MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue")
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength")
 """Keys of the material of a body."""
 
 DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
@@ -37,26 +38,21 @@ def read_pair(source: CaseText) -> MaterialPair | None:
 
 
 def read_material(source: CaseText, section: Section, may_be_rigid: bool = True) -> Material | None:
-    """The material of a body, with its fatigue constants. They replace the constants of a named material.
+    """The material of a body, with its fatigue constants and yield strength. They replace those of a named material.
 
     None if it can't be used. The reason is reported.
     """
-    material, fatigue = _elastic(section, may_be_rigid), _fatigue(source, section)
-    if material is None or fatigue is None:
-        return material
-    return replace(material, fatigue=fatigue)
+    given: dict[str, Any] = {"fatigue": _fatigue(source, section), "yield_strength": _yield_strength(source, section)}
+    material = _elastic(section, may_be_rigid)
+    if material is None:
+        return None
+    return replace(material, **{name: value for name, value in given.items() if value is not None})
 
 
 def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
     """The fatigue constants of a body; None if there are none, or they are wrong (reported)."""
     table = section.value("fatigue")
-    if table is None:
-        return None
-    if section.value("rigid") is True:
-        section.report(f"[{section.name}]: fatigue can't be given together with rigid", "fatigue")
-        return None
-    if "load_parameter" in source.section("contact"):
-        section.report("fatigue: has no meaning with load_parameter, for the stresses have no unit", "fatigue")
+    if table is None or not _has_stresses(source, section, "fatigue"):
         return None
     if not isinstance(table, dict):
         section.report(f"fatigue: must be a table {{ ... }}, not {as_toml(table)}", "fatigue")
@@ -68,6 +64,24 @@ def _fatigue(source: CaseText, section: Section) -> FatigueConstants | None:
             inner.report(f'unknown key "{key}" in fatigue of [{section.name}]{hint}', key)
     given = {key: inner.value(key) for key in _FATIGUE_KEYS if inner.value(key) is not None}
     return inner.build(FatigueConstants, given, {**dict.fromkeys(_FATIGUE_KEYS), "source": ""})
+
+
+def _yield_strength(source: CaseText, section: Section) -> float | None:
+    """The yield strength of a body, Pa; None if there is none, or it is wrong (reported)."""
+    if "yield_strength" not in section or not _has_stresses(source, section, "yield_strength"):
+        return None
+    return section.checked("yield_strength", positive)
+
+
+def _has_stresses(source: CaseText, section: Section, key: str) -> bool:
+    """Whether the stresses in a body have a meaning and a unit; else the `key` is reported."""
+    if section.value("rigid") is True:
+        section.report(f"[{section.name}]: {key} can't be given together with rigid", key)
+    elif "load_parameter" in source.section("contact"):
+        section.report(f"{key}: has no meaning with load_parameter, for the stresses have no unit", key)
+    else:
+        return True
+    return False
 
 
 def _elastic(section: Section, may_be_rigid: bool) -> Material | None:

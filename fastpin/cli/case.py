@@ -6,6 +6,7 @@ import argparse
 
 from fastpin import casefile, report
 from fastpin.cli.terminal import EXIT_OK
+from fastpin.model.doubts import doubts, warn_of
 
 
 def example(_: argparse.Namespace) -> int:
@@ -15,6 +16,8 @@ def example(_: argparse.Namespace) -> int:
 
 
 def check(options: argparse.Namespace) -> int:
-    """Read a case file, and print how it is understood."""
-    print(report.describe(casefile.read_case(options.case)))
+    """Read a case file, and print how it is understood, with warnings of doubtful values."""
+    case = casefile.read_case(options.case)
+    print(report.describe(case))
+    warn_of(doubts(case.problem, case.history, case.options), 2)
     return EXIT_OK

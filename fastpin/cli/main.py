@@ -5,6 +5,7 @@ The file of a command is imported only when the command is chosen. Help and wron
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import importlib
 import logging
@@ -12,11 +13,13 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from fastpin.cli.options import read_options
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail
-from fastpin.errors import CaseFileError, FastpinError, InputError
+from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning
 
 COLLECT_AFTER = 50_000
 """New objects after which garbage is looked for. Imports make no garbage, and Python's 700 objects cost them 30 ms."""
@@ -39,7 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems end a job by SIGTERM
         file, function = options.command
-        code = int(getattr(importlib.import_module(f"fastpin.cli.{file}"), function)(options))
+        with _printed_warnings():
+            code = int(getattr(importlib.import_module(f"fastpin.cli.{file}"), function)(options))
         sys.stdout.flush()
         return code
     except CaseFileError as error:
@@ -58,6 +62,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_PIPE
     except OSError as error:
         return fail(str(error), EXIT_FAILED)
+
+
+@contextlib.contextmanager
+def _printed_warnings() -> Iterator[None]:
+    """Print warnings of doubtful input as messages, each of them once."""
+    printed: set[str] = set()
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if not issubclass(category, InputWarning):
+            others(message, category, *place, **more)
+        elif str(message) not in printed:
+            printed.add(str(message))
+            print(f"fastpin: warning: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        others = warnings.showwarning
+        warnings.simplefilter("always", InputWarning)
+        warnings.showwarning = show
+        yield
 
 
 def _log(verbose: int) -> None:

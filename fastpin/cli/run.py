@@ -25,6 +25,7 @@ from fastpin.cli.terminal import (
 )
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
+from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, state_table
 from fastpin.report.table import visible_rows
 from fastpin.states.choice import check_choice
@@ -37,9 +38,6 @@ NOTES = {
     "released": "note: {count} times a narrow contact with next to no force was let go and lost its memory",
 }
 """Notes on counts of the statistics that are not zero."""
-
-LARGE_STRAIN = 0.05
-"""Contact strain above which linear elasticity fails; probably the units of the case are wrong."""
 
 SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars", "slip_sums")
 """Options of the solver that the command line can set."""
@@ -251,6 +249,7 @@ def _write_result(
     `ended` is the error that ended the run early. `hidden` states in the middle were left out of `result`.
     """
     code, error = _report_end(case, options, result, ended)
+    warn_of(pressure_doubts(case.problem, case.history, (state.pressure for state in result or ())), 2)
     cycle = _known_cycle(case, options, result, hidden)
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
@@ -351,9 +350,6 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
         if line:
             print(line)
-    strain = case.problem.surfaces.beta_star * max(state.peak_pressure for state in result)
-    if strain > LARGE_STRAIN and not case.problem.dimensionless:
-        print(f"note: contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?")
     for line in cycle_lines(case.problem, result.cycles):
         print(line)
     if cycle is not None:

@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, instance, number, string
+from fastpin.model.checks import choice, instance, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.synonyms import explains_keywords
 
@@ -60,18 +60,21 @@ class Material:
         Name in tables and plots.
     fatigue : FatigueConstants, optional
         They change no state, and serve :mod:`fastpin.damage` only.
+    yield_strength : float, optional
+        Pa, positive. It changes no state: fastpin warns of a contact pressure above it.
 
     Raises
     ------
     InputError
-        If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, or `fatigue` is of
-        another class.
+        If `E` is not positive or beyond its limits, `nu` is outside [0, 0.5], `name` is no text, `fatigue` is of
+        another class, or `yield_strength` is not positive.
     """
 
     E: float
     nu: float
     name: str = ""
     fatigue: FatigueConstants | None = None
+    yield_strength: float | None = None
 
     def __post_init__(self) -> None:
         rigid = isinstance(self.E, (float, np.floating)) and math.inf == self.E
@@ -88,11 +91,14 @@ class Material:
         string("name", self.name)
         if self.fatigue is not None:
             instance("fatigue", self.fatigue, FatigueConstants, "fastpin.model.FatigueConstants")
+        if self.yield_strength is not None:
+            object.__setattr__(self, "yield_strength", positive("yield_strength", self.yield_strength))
 
     def __repr__(self) -> str:
         name = f", {self.name!r}" if self.name else ""
         fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
-        return f"Material({self.E:g}, {self.nu:g}{name}{fatigue})"
+        strength = "" if self.yield_strength is None else f", yield_strength={self.yield_strength:g}"
+        return f"Material({self.E:g}, {self.nu:g}{name}{fatigue}{strength})"
 
     @classmethod
     def rigid(cls) -> Material:
@@ -109,8 +115,15 @@ class Material:
         """G = E / (2 (1 + nu)), Pa."""
         return self.E / (2.0 * (1.0 + self.nu))
 
+    @property
+    def known_yield_strength(self) -> float | None:
+        """The yield strength, Pa: the material's own, or else the one of its fatigue constants; None if unknown."""
+        if self.yield_strength is None and self.fatigue is not None:
+            return self.fatigue.yield_strength
+        return self.yield_strength
+
     def scaled(self, factor: float) -> Material:
-        """The same material with another modulus, E times `factor`, without fatigue constants: it is another one."""
+        """The same material with another modulus, E times `factor`. It is another one: its strengths are unknown."""
         return Material(self.E * factor, self.nu, self.name)
 
     def kolosov(self, plane: Plane) -> float:
@@ -260,7 +273,7 @@ class MaterialPair:
     def scaled(self, beta_star: float) -> MaterialPair:
         """The same pair with both moduli scaled. Its composite compliance is then `beta_star`, 1/Pa.
 
-        Fatigue constants are left out, because the scaled materials are others.
+        Fatigue constants and yield strengths are left out, because the scaled materials are others.
 
         A `beta_star` beyond :data:`LEAST_BETA_STAR` and :data:`MOST_BETA_STAR` raises :class:`InputError`.
         """

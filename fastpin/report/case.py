@@ -212,4 +212,6 @@ def _material(material: Material, dimensionless: bool) -> str:
         return "rigid"
     name = f"{material.name}, " if material.name else ""
     modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {with_unit(material.E, 'Pa')}"
-    return f"{name}{modulus}, nu = {material.nu:.4g}"
+    strength = material.known_yield_strength
+    yields = "" if strength is None else f", yields at {with_unit(strength, 'Pa', 4)}"
+    return f"{name}{modulus}, nu = {material.nu:.4g}{yields}"

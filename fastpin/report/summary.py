@@ -91,7 +91,8 @@ def _block_summary(block: Block) -> dict[str, Any]:
 
 def _material_summary(material: Material) -> dict[str, Any]:
     modulus = None if material.is_rigid else material.E
-    return {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
+    known = {"name": material.name, "rigid": material.is_rigid, "E": modulus, "nu": material.nu}
+    return known | {"yield_strength": material.yield_strength}
 
 
 def _body_summary(body: PinBody | PlateBody) -> dict[str, Any]:

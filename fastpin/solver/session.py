@@ -20,6 +20,7 @@ from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.checks import choice, whole_number
+from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
 from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load, named_load
@@ -148,6 +149,7 @@ class Session:
         self._options = SolveOptions(nodes=nodes, arc=arc, slip_sums=slip_sums, keep=keep)
         check_options(self._options, grid, None)
         Task(problem, NO_HISTORY, self._options, grid)
+        warn_of(doubts(problem, None, self._options), 2)
         self._expected = None if expected is None else as_history(expected, "expected")
         if self._expected is not None:
             check_loads(problem, self._expected)

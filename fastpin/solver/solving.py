@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid, halved
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import KeepRule, Method, SolveOptions
@@ -29,6 +30,9 @@ from fastpin.states.state import SlipFields, State
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
+
+USER = 3
+"""Calls from a warning to the line of the user, above :func:`solve` and the explanation of its keywords."""
 
 
 @explains_keywords
@@ -115,7 +119,9 @@ def solve(
     task = Task(problem, as_history(history), options, grid, progress)
     if error_bars:
         _check_halves(task, start)
+    warn_of(doubts(problem, task.history, options), USER)
     result = _follow_task(task, start)
+    warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result)), USER)
     return _with_coarse(task, start, result) if error_bars else result
 
 

@@ -27,6 +27,8 @@ def write_material(group: h5py.Group, name: str, material: Material) -> None:
     """Write a material into a new group of this name."""
     body = group.create_group(name)
     body.attrs.update(E=material.E, nu=material.nu, name=material.name)
+    if material.yield_strength is not None:
+        body.attrs["yield_strength"] = material.yield_strength
     if material.fatigue is not None:
         body.create_group("fatigue").attrs.update(material.fatigue.given())
 
@@ -37,7 +39,8 @@ def read_material(group: h5py.Group) -> Material:
     if "fatigue" in group:
         stored = group["fatigue"].attrs.items()
         fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
-    return Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue)
+    strength = float(attributes["yield_strength"]) if "yield_strength" in attributes else None
+    return Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue, strength)
 
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:

@@ -10,6 +10,7 @@ from typing import Any, Unpack
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, check_callable, file_path, items, string, true_or_false, whole_number
+from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -89,6 +90,7 @@ def record(
         raise InputError(
             "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
         )
+    warn_of(doubts(problem, task.history, solve_options), 2)
     writer = FileRecorder(path, task, title)
     writer.overwrite = overwrite
     writer.check_overwriting()

@@ -12,6 +12,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, check_callable, items, whole_number
+from fastpin.model.doubts import doubts, doubts_given, warn_of
 from fastpin.model.grid import MAX_NODES, Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import Method, SolveOptions
@@ -230,6 +231,7 @@ def converge(
     if corner is not None and whole_number("corner", corner, 1) > len(task.history):
         raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {as_toml(corner)}")
     chosen = _checked_outcomes(outcomes or {})
+    warn_of(doubts(problem, task.history, task.options), 3)  # above are the explanation of keywords and the user
     return _Work(task, counts, steps, single, corner, progress, chosen).study()
 
 
@@ -344,10 +346,11 @@ class _Work:
 
         setting = label if method == "path" else f"{label} a step and {nodes} nodes"
         try:
-            result = solve(
-                self.task.problem, self.history, method=method, increments=increments or None, grid=grid,
-                keep=self.keep, progress=progress, slip_sums=bool(self.outcomes),
-            )  # fmt: skip
+            with doubts_given():
+                result = solve(
+                    self.task.problem, self.history, method=method, increments=increments or None, grid=grid,
+                    keep=self.keep, progress=progress, slip_sums=bool(self.outcomes),
+                )  # fmt: skip
         except ArcError as error:
             error.args = (f"with {setting}: {error}",)
             raise

@@ -22,9 +22,10 @@ import numpy as np
 
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, read_text
 from fastpin.casefile.toml_text import CaseText, Place, Section
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, choice, file_path, instance, number, string, whole_number
+from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, run_id
@@ -87,6 +88,8 @@ class Plan:
         All points in the order of the plan. The last field of the grid changes fastest, the [[list]] slowest.
     outcomes : dict of str to Outcome
         The numbers that are read from every result, by name. They change no run and no id.
+    doubts : list of InputWarning
+        Values that are probably a mistake. They change no run.
     """
 
     title: str
@@ -94,6 +97,7 @@ class Plan:
     fields: dict[str, Spacing]
     points: list[Point]
     outcomes: Outcomes
+    doubts: list[InputWarning]
     _base: BaseCase
     _cases: dict[str, Case]
 
@@ -167,7 +171,9 @@ def read_plan(path: str | Path) -> Plan:
         If `path` is no path.
     """
     path = file_path("path", path)
-    return parse_plan(read_text(path), str(path), path.parent)
+    plan = _parsed(read_text(path), str(path), path.parent)
+    warn_of(plan.doubts, 2)
+    return plan
 
 
 def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
@@ -190,6 +196,13 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     InputError
         If an argument is of the wrong kind.
     """
+    plan = _parsed(text, name, folder)
+    warn_of(plan.doubts, 2)
+    return plan
+
+
+def _parsed(text: str, name: str, folder: str | Path) -> Plan:
+    """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
     source = CaseText(text)
     place, title = file_path("folder", folder), string("name", name)
     plan = _plan(source, text, place) if source.readable else None
@@ -232,8 +245,9 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     if base is None or source.faults:
         return None
     cases: dict[str, Case] = {}
-    points = _points(source, base, places, rows or [{}], axes, cases)
-    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, base, cases)
+    found: list[InputWarning] = []
+    points = _points(source, base, places, rows or [{}], axes, (cases, found))
+    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, found, base, cases)
 
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:
@@ -368,12 +382,14 @@ def _points(
     places: dict[str, Place],
     rows: list[Row],
     axes: dict[str, list[Any]],
-    cases: dict[str, Case],
+    kept: tuple[dict[str, Case], list[InputWarning]],
 ) -> list[Point]:
     """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
 
-    The first cases without files of their own are kept in `cases`, by id.
+    Two things are `kept`: the first cases without files of their own, by id, and one doubt of each field.
     """
+    cases, doubtful = kept
+    doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
     points: list[Point] = []
     faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
     count = 0
@@ -389,6 +405,8 @@ def _points(
         for place, message in text.placed:
             faults.setdefault(_locate_fault(base, sites, values, place, message), []).append(values)
         if case is not None and not text.placed:
+            for doubt in doubts(case.problem, case.history, case.options):
+                doubted.setdefault(doubt.field, (doubt, []))[1].append(values)
             document = canonical(case)
             points.append(Point(run_id(document), values, canonical_json(document)))
             if len(cases) < MOST_CASES and not reads_files(text.root.table):
@@ -397,6 +415,7 @@ def _points(
         source.report(f"{message}{_which(runs, count)}", *place)
     if len(faults) > MAX_FAULTS:
         source.report(f"and {len(faults) - MAX_FAULTS:,} more faults in the runs")
+    doubtful += [InputWarning(name, f"{doubt.reason}{_which(runs, count)}") for name, (doubt, runs) in doubted.items()]
     return points
 
 

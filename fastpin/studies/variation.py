@@ -72,10 +72,10 @@ class BaseCase:
 
 
 _REPLACED: dict[str, tuple[str, ...]] = {
-    "material": ("E", "nu", "rigid", "fatigue"),
+    "material": ("E", "nu", "rigid", "fatigue", "yield_strength"),
     "E": ("material", "rigid"),
     "nu": ("material", "rigid"),
-    "rigid": ("material", "E", "nu", "fatigue"),
+    "rigid": ("material", "E", "nu", "fatigue", "yield_strength"),
     "ring_outer_radius": ("reaction",),
     "reaction": ("ring_outer_radius", "support"),
 }
@@ -169,6 +169,8 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
         body |= {"E": material.E, "nu": material.nu}
         if material.fatigue is not None:
             body.setdefault("fatigue", material.fatigue.given())
+        if material.yield_strength is not None:
+            body.setdefault("yield_strength", material.yield_strength)
     for replaced in _REPLACED.get(key, ()):
         body.pop(replaced, None)
 

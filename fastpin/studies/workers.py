@@ -27,6 +27,7 @@ from fastpin.errors import FastpinError
 from fastpin.kernels.jit import limit_to_one_thread
 from fastpin.kernels.threads import in_one_thread
 from fastpin.model.case import Case
+from fastpin.model.doubts import doubts_given
 from fastpin.solver.errors import SolveError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -302,7 +303,7 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
     content: bytes | None = None
     try:
         try:
-            with in_one_thread():
+            with in_one_thread(), doubts_given():
                 result: Result | None = solve(case.problem, case.history, **case.options.keywords())
         except SolveError as error:
             reason, result = str(error), error.result

@@ -126,7 +126,9 @@ def test_the_summary_has_the_bodies() -> None:
     case = parse_case(JOINED + BUSH + '[pin_body]\nbore_radius = 5e-3\nload = "held"\n')
     found, problem = document(case, None)["problem"], case.problem
     assert found["pin_body"] == {"kind": "tube", "bore_radius": 5e-3, "load": "held"}
-    assert found["plate_body"]["material"] == {"name": "", "rigid": False, "E": 110e9, "nu": 0.34}
+    assert found["plate_body"]["material"] == {
+        "name": "", "rigid": False, "E": 110e9, "nu": 0.34, "yield_strength": None,
+    }  # fmt: skip
     assert found["plate_body"]["inside"] == {"kind": "plate", "reaction": None}
     assert found["plate_body"]["interference"] == 20e-6
     assert found["dundurs"]["alpha"] == problem.surfaces.dundurs()[0]

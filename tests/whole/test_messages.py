@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
+import pickle
+import re
+import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import fastpin
@@ -13,9 +19,11 @@ from fastpin.casefile.lug import LUG_KEYS
 from fastpin.casefile.reader import EXAMPLE, KEYS, parse_case
 from fastpin.cli.main import main
 from fastpin.cli.options import parser
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model import synonyms
-from fastpin.studies.plan import parse_plan
+from fastpin.model.doubts import doubts, pressure_doubts
+from fastpin.model.loads import LOAD_KIND
+from fastpin.studies.plan import parse_plan, read_plan
 
 PAIR = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
 
@@ -171,3 +179,252 @@ def test_every_name_with_synonyms_is_a_name_of_fastpin() -> None:
     names = {name for word in synonyms.words() for name in synonyms.meant(word)}
     assert names - allowed == {"thickness"} - allowed
     assert {"friction", "hole_radius", "P", "nodes"} <= names
+
+
+# -- doubtful values -----------------------------------------------------------------------------------------
+
+ONLY_P = "P = 2.42e6\n\n[[load]]\nQ = [7.26e5, -7.26e5, 7.26e5]"
+SMALL_E = "softer than rubber; moduli are in Pa"
+
+DOUBTFUL: list[tuple[str, str, str]] = [
+    ("E  = 69e9", "E = 69", f"E: 69 Pa of the plate is {SMALL_E}: 69 GPa is 69e9"),
+    ("E  = 69e9", "E = 69e3", f"E: 69000 Pa of the plate is {SMALL_E}: 69000 MPa is 69e9"),
+    (
+        "E  = 69e9",
+        "E = 69e15",
+        "E: 69e15 Pa of the plate is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9; a body without strain is "
+        "rigid",
+    ),
+    ("nu = 0.33", "nu = 0.033", "nu: 0.033 of the plate is very small; metals have 0.25 to 0.45"),
+    ("nu = 0.33", "nu = 0.48", "nu: 0.48 of the plate is unusual for a stiff body; metals have 0.25 to 0.45"),
+    (
+        "nu = 0.33",
+        "nu = 0.33\nyield_strength = 345",
+        "yield_strength: 345 Pa of the plate is very small; stresses are in Pa: 345 MPa is 345e6",
+    ),
+    (
+        "nu = 0.33",
+        "nu = 0.33\nfatigue = { fatigue_strength = 1100, strength_exponent = -0.124 }",
+        "fatigue_strength: 1100 Pa of the plate is very small; stresses are in Pa: 1100 MPa is 1.1e9",
+    ),
+    (
+        "hole_radius = 10e-3",
+        "hole_radius = 10",
+        "hole_radius: 10 m is larger than any pin; lengths are in m: 10 mm is 10e-3",
+    ),
+    (
+        "clearance = 20e-6",
+        "clearance = 9.98e-3",
+        "clearance: 9.98e-3 is more than half of the hole radius 10e-3; clearance is the hole radius minus the pin "
+        "radius",
+    ),
+    (
+        "clearance = 20e-6",
+        "clearance = -2e-3",
+        "clearance: the interference is 20 % of the hole radius; metals yield at 0.5 %",
+    ),
+    ("friction = 0.4", "friction = 40", "friction: 40 is above 2, more than dry metals have; 40 % is 0.4"),
+    (
+        ONLY_P,
+        "P = 12.1e3",
+        "P: 12100 N/m is a bearing stress of 0.605 MPa only; forces are per thickness, in N/m: divide a force in N by "
+        "the thickness in m",
+    ),
+    (
+        "P = 2.42e6",
+        "P = 2.42e9",
+        "P: 2.42e9 N/m strains the bodies by 10, far beyond linear elasticity; forces are per thickness, in N/m",
+    ),
+    ("P = 2.42e6", "P = 2.42e6\nsxx = 80", "sxx: 80 Pa is next to nothing; stresses are in Pa: 80 MPa is 80e6"),
+    (
+        "P = 2.42e6",
+        "P = 2.42e6\nsyy = -80e9",
+        "syy: -80e9 Pa strains the bodies by 6.6, far beyond linear elasticity; stresses are in Pa",
+    ),
+    (
+        'pin_load = "body"',
+        'pin_load = "centre"\ndrive = "uy"',
+        "uy: -0.5 m is 50 hole radii; lengths are in m: 1 mm is 1e-3",
+    ),
+    (
+        'rotation = "free"',
+        'rotation = "fixed"',
+        "rotation: 5 rad is 286 degrees; rotations are in rad, and small",
+    ),
+    ("nodes = 401", "nodes = 401\narc = [-90, -87]", "arc: -90 rad is more than two turns; angles are in rad"),
+]
+"""A line of the example, the line that is typed instead, and the only doubt."""
+
+
+def doubtful_text(line: str, typed: str) -> str:
+    """The example with a doubtful line. Some lines need another load, or another load of the pin."""
+    text = EXAMPLE.replace(line, typed, 1)
+    if "drive" in typed.partition("\n")[2]:
+        return text.replace("P = 2.42e6", "uy = -0.5", 1)
+    return (
+        text.replace('"body"', '"centre"', 1).replace("P = 2.42e6", "P = 2.42e6\nrotation = 5", 1)
+        if "fixed" in typed
+        else text
+    )
+
+
+@pytest.mark.parametrize(("line", "typed", "sentence"), DOUBTFUL)
+def test_a_doubtful_value_gets_one_sentence_in_python_and_on_the_command_line(
+    line: str, typed: str, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert line in EXAMPLE
+    path = tmp_path / "case.toml"
+    path.write_text(doubtful_text(line, typed))
+    case = fastpin.read_case(path)
+    assert [str(doubt) for doubt in doubts(case.problem, case.history, case.options)] == [sentence]
+    assert main(["check", str(path)]) == 0
+    assert capsys.readouterr().err == f"fastpin: warning: {sentence}\n"
+
+
+HARD = EXAMPLE.replace("friction = 0.4", "friction = 40").replace("nodes = 401", "nodes = 51")
+FRICTION = "friction: 40 is above 2, more than dry metals have; 40 % is 0.4"
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        lambda case, folder: fastpin.solve(case.problem, case.history, nodes=51),
+        lambda case, folder: fastpin.record(case.problem, case.history, folder / "a.h5", nodes=51),
+        lambda case, folder: fastpin.converge(case.problem, case.history, [51, 61, 71]),
+        lambda case, folder: fastpin.Session(case.problem, nodes=51),
+    ],
+    ids=["solve", "record", "converge", "Session"],
+)
+def test_python_warns_on_the_line_of_the_user(work: Callable[..., Any], tmp_path: Path) -> None:
+    with pytest.warns(InputWarning) as given:
+        work(parse_case(HARD), tmp_path)
+    (warning,) = given
+    assert str(warning.message) == FRICTION
+    assert warning.filename == __file__
+
+
+def test_a_run_prints_each_warning_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(HARD)
+    for more in ([], ["-o", str(tmp_path / "a.h5")], ["--error-bars", "--nodes", "101"]):
+        assert main(["run", str(path), *more]) == 0
+        assert capsys.readouterr().err == f"fastpin: warning: {FRICTION}\n"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert main(["show", str(tmp_path / "a.h5")]) == 0
+
+
+def test_a_plan_names_the_runs_in_doubt(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text("[grid]\ncontact.friction = [0.1, 30, 40]\ncontact.clearance = [0, 1e-5]\n")
+    with pytest.warns(InputWarning) as given:
+        plan = read_plan(path)
+    (warning,) = given
+    assert str(warning.message) == (
+        "friction: 30 is above 2, more than dry metals have; 30 % is 0.3 "
+        "(in 4 runs, first contact.friction = 30, contact.clearance = 0)"
+    )
+    assert warning.filename == __file__
+    assert len(plan.points) == 6
+
+
+@pytest.mark.parametrize("other", [False, True], ids=["named", "given"])
+def test_a_pressure_above_the_yield_strength_is_doubted(
+    other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    strength = "fatigue = { yield_strength = 100e6 }" if other else "yield_strength = 100e6"
+    text = EXAMPLE.replace("nu = 0.33", f"nu = 0.33\n{strength}").replace("nodes = 401", "nodes = 51")
+    case = parse_case(text)
+    with pytest.warns(InputWarning) as given:
+        result = fastpin.solve(case.problem, case.history, nodes=51)
+    peak = max(state.pressure.max() for state in result)
+    sentence = (
+        f"peak pressure: {peak / 1e6:.4g} MPa is above the yield strength 100 MPa of the plate; fastpin is elastic, "
+        "but a real contact would yield there and spread"
+    )
+    assert [str(warning.message) for warning in given] == [sentence]
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    assert main(["run", str(path)]) == 0
+    assert capsys.readouterr().err == f"fastpin: warning: {sentence}\n"
+    higher = dataclasses.replace(case.problem.pair.plate, yield_strength=2.0 * peak)
+    problem = dataclasses.replace(case.problem, pair=fastpin.MaterialPair(case.problem.pair.pin, higher))
+    assert pressure_doubts(problem, case.history, [result[0].pressure]) == []
+
+
+def test_a_large_contact_strain_is_doubted_unless_the_loads_are() -> None:
+    case = parse_case(EXAMPLE)
+    beta = case.problem.pair.beta_star
+    for strain, expected in ((0.04, 0), (0.06, 1)):
+        found = pressure_doubts(case.problem, case.history, [np.array([0.0, strain / beta])])
+        assert len(found) == expected
+    assert "contact strains of about 0.06 are beyond linear elasticity" in str(found[0])
+    heavy = fastpin.LoadHistory([{"P": 1e9}])
+    assert pressure_doubts(case.problem, heavy, [np.array([1.0 / beta])]) == []
+
+
+def test_warnings_can_be_pickled() -> None:
+    warning = InputWarning("friction", "40 is large")
+    again = pickle.loads(pickle.dumps(warning))
+    assert (again.field, again.reason, str(again)) == ("friction", "40 is large", "friction: 40 is large")
+
+
+# -- input that raises no doubt ------------------------------------------------------------------------------
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTED = [EXAMPLE, *((ROOT / "docs" / name).read_text() for name in ("cycles.toml", "riveted-joint.toml"))]
+
+
+@pytest.mark.parametrize("text", DOCUMENTED)
+@pytest.mark.parametrize("units", [(1.0, 1.0), (1e3, 1e-6), (1e3, 1e-3), (39.37, 1.45e-7), (100.0, 10.0)])
+def test_consistent_units_of_any_kind_raise_no_doubt(text: str, units: tuple[float, float]) -> None:
+    """In m and Pa; mm and MPa; mm and kPa; inch and ksi; cm and dyn/cm^2."""
+    length, stress = units
+    case = parse_case(text)
+    problem, pair = case.problem, case.problem.pair
+    pin, plate = (fastpin.Material(stress * body.E, body.nu) for body in (pair.pin, pair.plate))
+    size = {"hole_radius": length * problem.hole_radius, "clearance": length * problem.clearance}
+    changed = dataclasses.replace(problem, pair=fastpin.MaterialPair(pin, plate, pair.plane), **size)
+    factor = {"force": stress * length, "moment": stress * length**2, "traction": stress, "displacement": length}
+    factors = [factor.get(kind, 1.0) for kind in LOAD_KIND.values()]
+    history = fastpin.LoadHistory.from_array(case.history.distinct() * factors)
+    assert doubts(changed, history, case.options) == []
+
+
+STEEL = fastpin.MATERIALS["steel"]
+UNIT = fastpin.Material(1.0, 0.3)
+FIRM = fastpin.Material(2e9, 0.5)
+SOLID: dict[str, tuple[fastpin.Problem, dict[str, float]]] = {
+    "unit radius and modulus": (fastpin.Problem(fastpin.MaterialPair(UNIT, UNIT), 1.0, 0.1, 0.3), {"P": 1.0}),
+    "unit radius": (fastpin.Problem(PAIR, 1.0, 1e-3, 0.3), {"P": 1.0}),
+    "unit modulus": (fastpin.Problem(fastpin.MaterialPair(UNIT, UNIT), 0.01, 1e-5, 0.3), {"P": 5.0}),
+    "unit load": (fastpin.Problem(PAIR, 0.01, 1e-5, 0.3), {"P": 1.0}),
+    "dimensionless": (fastpin.Problem.from_load_parameter(PAIR, 3.0, 0.3), {"P": 1.0, "sxx": 5.0}),
+    "rigid pin": (fastpin.Problem(fastpin.MaterialPair(fastpin.Material.rigid(), STEEL), 0.01, 1e-5, 0.3), {"P": 1e6}),
+    "rubber": (fastpin.Problem(fastpin.MaterialPair(STEEL, fastpin.Material(5e6, 0.499)), 0.01, 0.0, 0.8), {"P": 1e3}),
+    "incompressible": (
+        fastpin.Problem(fastpin.MaterialPair(STEEL, FIRM), 0.01, 0.0, 1.0),
+        {"P": 1e5},
+    ),
+    "all sticks": (fastpin.Problem(PAIR, 0.01, 1e-5, 1e6), {"P": 1e6}),
+    "interference alone": (fastpin.Problem(PAIR, 0.01, -1e-5, 0.3), {"P": 10.0}),
+    "no load": (fastpin.Problem(PAIR, 0.01, 1e-5, 0.3), {"P": 0.0}),
+    "small force beside a stress": (fastpin.Problem(PAIR, 0.01, 1e-5, 0.3), {"P": 5.0, "sxx": 5e7}),
+}
+
+
+@pytest.mark.parametrize("name", SOLID)
+def test_a_legitimate_problem_raises_no_doubt(name: str) -> None:
+    problem, loads = SOLID[name]
+    assert doubts(problem, fastpin.LoadHistory([loads])) == []
+
+
+def test_examples_of_the_documents_raise_no_doubt() -> None:
+    """The numbers of all problems in Python that the documents build in units."""
+    pattern = r"hole_radius=([\d.e-]+), clearance=([\d.e-]+), friction=([\d.]+)"
+    texts = [path.read_text() for path in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))]
+    found = {numbers for text in texts for numbers in re.findall(pattern, text)}
+    assert len(found) >= 4
+    for numbers in found:
+        radius, clearance, friction = map(float, numbers)
+        assert doubts(fastpin.Problem(PAIR, radius, clearance, friction)) == []

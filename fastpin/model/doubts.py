@@ -1,0 +1,378 @@
+"""Doubts about input that can be used: values that are probably a mistake, such as a modulus in GPa.
+
+Python, ``fastpin check`` and ``fastpin run`` give the same sentences. A doubt never changes a result.
+
+A unit can be wrong only where there are units. A dimensionless problem has none, and neither has a problem whose hole
+radius or modulus is exactly 1. In every other problem the loads, the moduli and the size must fit together: the loads
+strain the bodies by some 1e-4 to 1e-2. A mistake in one unit changes this strain by a factor of 1,000 or more. So
+consistent units of any kind, such as N and mm, raise no doubt.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import warnings
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from fastpin.errors import InputWarning
+from fastpin.model.bodies import Bushing
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.materials import Material
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+
+MOST_FRICTION, PERCENT = 2.0, 200.0
+"""Friction above the first is rare: clean metals reach 1.5. The second is as much in percent.
+
+Beyond, a pin is meant to stick wherever it touches.
+"""
+
+LEAST_NU, MOST_NU = 0.05, 0.46
+"""Poisson's ratio of stiff solids lies between these: beryllium and cork below, and indium with 0.45, are the extremes.
+
+The bounds 0 and 0.5 themselves are chosen on purpose.
+"""
+
+STIFF = 1e9
+"""Young's modulus, Pa, above which a body is stiff: no solid with a ratio near 0.5, such as rubber, reaches it."""
+
+SOFTEST, STIFFEST = 1e6, 2e13
+"""Young's moduli, Pa, of the softest rubber, and above diamond: it has 1.2e12 Pa, or 1.2e13 dyn/cm^2."""
+
+IN_GPA = 2e3
+"""A modulus below this is probably in GPa, one above in MPa: no solid has more than 1,300 GPa."""
+
+MOST_MODULI = 1e6
+"""Largest ratio of two moduli: steel and rubber differ by a factor of 2e5."""
+
+MOST_STRAIN = 0.1
+"""Strain by the loads above which something is wrong. Metals yield below 0.01, and rubber is not linear then."""
+
+LARGE_STRAIN = 0.05
+"""Contact strain, pressure times beta*, above which linear elasticity fails."""
+
+LEAST_STRAIN = 6e-5
+"""Strain below which forces in N/m may be forces in N: those are 100 to 1,000 times smaller.
+
+It is a nominal bearing stress of 0.7 MPa in aluminium and 1.7 MPa in steel. Joints carry 10 MPa to 500 MPa.
+"""
+
+LEAST_STRESS = 2e3
+"""Remote stress, Pa, below which the number is probably in MPa: no metal carries 2,000 MPa."""
+
+LARGEST_HOLE = 1.0
+"""Hole radius, m, above which it is probably in mm: pins of large bridges and cranes have half of it."""
+
+LOOSEST, TIGHTEST = 0.5, 0.02
+"""Clearance and interference in parts of the radius. A looser pin is no pin of this hole; a tighter one yields."""
+
+MOST_ROTATION = 0.2
+"""Prescribed rotation, rad, above which it is probably in degrees: small rotations are assumed."""
+
+MOST_SHIFT = 0.05
+"""Prescribed displacement beyond the clearance, in parts of the hole radius: a strain of that size."""
+
+MOST_ANGLE = 4.0 * math.pi
+"""Angle of an arc, rad, above which it is probably in degrees: two turns."""
+
+LEAST_STRENGTH = 1e-5
+"""Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""
+
+_STRENGTHS = (
+    "yield_strength", "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
+)  # fmt: skip
+"""Constants of a material that are stresses."""
+
+
+def doubts(
+    problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
+) -> list[InputWarning]:
+    """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
+    found = [*_of_contact(problem)]
+    for name, material in _materials(problem):
+        found += _of_material(name, material, _has_units(problem))
+    if options is not None and options.arc is not None:
+        angle = max(options.arc, key=abs)
+        if abs(angle) > MOST_ANGLE:
+            found.append(InputWarning("arc", f"{angle:g} rad is more than two turns; angles are in rad"))
+    if _has_units(problem):
+        found += _of_sizes(problem)
+        by_loads = [] if history is None else [*_of_loads(problem, history)]
+        found += by_loads
+        if all(doubt.field != "E" for doubt in by_loads):
+            found += _of_moduli(problem)
+    return found
+
+
+def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[np.ndarray]) -> list[InputWarning]:
+    """Return warnings about contact strain and yield in a result.
+
+    Parameters
+    ----------
+    problem : Problem
+    history : LoadHistory
+        If the loads themselves are in doubt, there is no doubt about the strain.
+    pressures : iterable of ndarray, shape (n,)
+        Contact pressures at the nodes of each state, Pa. An array that comes again is looked at once.
+    """
+    if problem.dimensionless:
+        return []
+    found = []
+    distinct = {id(pressure): pressure for pressure in pressures}
+    peak = max((float(np.max(pressure, initial=0.0)) for pressure in distinct.values()), default=0.0)
+    strain = problem.surfaces.beta_star * peak
+    by_loads = max(_strains(problem, _largest(history)).values(), default=0.0)
+    if strain > LARGE_STRAIN and by_loads <= MOST_STRAIN and _has_units(problem):
+        found.append(
+            InputWarning(
+                "peak pressure",
+                f"contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?",
+            )
+        )
+    for name, material in (("pin", problem.pair.pin), (_edge(problem), problem.surfaces.plate)):
+        strength = material.known_yield_strength
+        if strength is not None and peak > strength >= LEAST_STRENGTH * material.E:
+            found.append(
+                InputWarning(
+                    "peak pressure",
+                    f"{_mega(peak)} is above the yield strength {_mega(strength)} of the {name}; "
+                    "fastpin is elastic, but a real contact would yield there and spread",
+                )
+            )
+    return found
+
+
+def warn_of(found: Iterable[InputWarning], stacklevel: int) -> None:
+    """Give warnings. `stacklevel` counts the calls up to the line of the user, as for :func:`warnings.warn`."""
+    for doubt in found:
+        warnings.warn(doubt, stacklevel=stacklevel + 1)
+
+
+@contextlib.contextmanager
+def doubts_given() -> Iterator[None]:
+    """Within, no doubts are given: they were given before, for the whole study of many runs."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        yield
+
+
+def _has_units(problem: Problem) -> bool:
+    """Whether a problem is given in units, and not in parts of its own radius or modulus."""
+    own = [problem.hole_radius, *(material.E for _, material in _materials(problem))]
+    return not problem.dimensionless and 1.0 not in own
+
+
+def _materials(problem: Problem) -> Iterator[tuple[str, Material]]:
+    yield "pin", problem.pair.pin
+    yield "plate", problem.pair.plate
+    if isinstance(problem.plate_body, Bushing):
+        yield "bush", problem.plate_body.material
+
+
+def _edge(problem: Problem) -> str:
+    return "bush" if isinstance(problem.plate_body, Bushing) else "plate"
+
+
+def _short(value: float) -> str:
+    """A number as one writes it in a case file: 0.4, 69e9 or 10e-3."""
+    power = 3 * math.floor(math.log10(abs(value)) / 3.0) if value else 0
+    if 0.1 <= abs(value) < 1e6:
+        power = 0
+    return f"{value / 10.0**power:.6g}" + (f"e{power}" if power else "")
+
+
+def _mega(stress: float) -> str:
+    return f"{stress / 1e6:.4g} MPa"
+
+
+def _of_contact(problem: Problem) -> Iterator[InputWarning]:
+    friction = problem.friction
+    if MOST_FRICTION < friction <= PERCENT:
+        yield InputWarning(
+            "friction",
+            f"{friction:g} is above {MOST_FRICTION:g}, more than dry metals have; "
+            f"{friction:g} % is {_short(friction / 100)}",
+        )
+    if not problem.dimensionless and problem.clearance > LOOSEST * problem.hole_radius:
+        yield InputWarning(
+            "clearance",
+            f"{_short(problem.clearance)} is more than half of the hole radius {_short(problem.hole_radius)}; "
+            "clearance is the hole radius minus the pin radius",
+        )
+
+
+def _of_material(name: str, material: Material, has_units: bool) -> Iterator[InputWarning]:
+    if material.is_rigid:
+        return
+    nu = material.nu
+    if 0.0 < nu < LEAST_NU:
+        yield InputWarning("nu", f"{nu:g} of the {name} is very small; metals have 0.25 to 0.45")
+    if not has_units:
+        return
+    if MOST_NU < nu < 0.5 and material.E >= STIFF:
+        yield InputWarning("nu", f"{nu:g} of the {name} is unusual for a stiff body; metals have 0.25 to 0.45")
+    for field, value in _strengths(material):
+        if value < LEAST_STRENGTH * material.E:
+            yield InputWarning(
+                field,
+                f"{_short(value)} Pa of the {name} is very small; stresses are in Pa: "
+                f"{_short(value)} MPa is {_short(1e6 * value)}",
+            )
+
+
+def _strengths(material: Material) -> Iterator[tuple[str, float]]:
+    """The strengths of a material, Pa, by field. The yield strength stands first."""
+    given = {} if material.fatigue is None else material.fatigue.given()
+    given |= {} if material.yield_strength is None else {"yield_strength": material.yield_strength}
+    yield from ((name, given[name]) for name in _STRENGTHS if name in given)
+
+
+def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
+    """Doubts about lengths and moduli."""
+    radius, clearance, moduli = problem.hole_radius, problem.clearance, _moduli(problem)
+    if radius > LARGEST_HOLE and all(modulus >= STIFF for _, modulus in moduli):
+        yield InputWarning(
+            "hole_radius",
+            f"{_short(radius)} m is larger than any pin; lengths are in m: "
+            f"{_short(radius)} mm is {_short(radius / 1e3)}",
+        )
+    if clearance < -TIGHTEST * radius:
+        yield InputWarning(
+            "clearance",
+            f"the interference is {-100.0 * clearance / radius:.3g} % of the hole radius; metals yield at 0.5 %",
+        )
+    body = problem.plate_body
+    if isinstance(body, Bushing) and body.interference > TIGHTEST * body.outer_radius:
+        yield InputWarning(
+            "interference",
+            f"the one of the bush is {100.0 * body.interference / body.outer_radius:.3g} % of its outer radius; "
+            "metals yield at 0.5 %",
+        )
+
+
+def _of_moduli(problem: Problem) -> Iterator[InputWarning]:
+    """Doubts about moduli that do not fit together."""
+    soft, stiff = _softest(problem), _stiffest(problem)
+    if stiff[1] > STIFFEST and SOFTEST <= soft[1] <= STIFFEST:
+        yield InputWarning(
+            "E",
+            f"{_short(stiff[1])} Pa of the {stiff[0]} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9; "
+            "a body without strain is rigid",
+        )
+    elif stiff[1] > MOST_MODULI * soft[1]:
+        yield InputWarning(
+            "E",
+            f"{_short(soft[1])} Pa of the {soft[0]} and {_short(stiff[1])} Pa of the {stiff[0]} differ by more than "
+            f"a factor {MOST_MODULI:,.0f}; moduli are in Pa: 69 GPa is 69e9",
+        )
+
+
+def _moduli(problem: Problem) -> list[tuple[str, float]]:
+    """The name and modulus of each body that is not rigid. There is at least one."""
+    return [(name, material.E) for name, material in _materials(problem) if not material.is_rigid]
+
+
+def _softest(problem: Problem) -> tuple[str, float]:
+    return min(_moduli(problem), key=lambda pair: pair[1])
+
+
+def _stiffest(problem: Problem) -> tuple[str, float]:
+    return max(_moduli(problem), key=lambda pair: pair[1])
+
+
+def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:
+    """Doubts about loads: whether they fit the moduli and the size."""
+    largest = _largest(history)
+    yield from _of_displacements(problem, largest)
+    strains = _strains(problem, largest)
+    if not strains:
+        return
+    name, soft = max(strains, key=lambda name: strains[name]), _softest(problem)
+    if strains[name] > MOST_STRAIN:
+        yield _too_large(name, largest[name], strains[name], soft)
+    elif strains[name] < LEAST_STRAIN and _stiffest(problem)[1] > STIFFEST:
+        yield InputWarning(
+            "E", f"{_short(soft[1])} Pa of the {soft[0]} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9"
+        )
+    elif soft[1] >= SOFTEST:
+        yield from _too_small(problem, largest, strains)
+
+
+def _strains(problem: Problem, largest: dict[str, float]) -> dict[str, float]:
+    """The strain by the largest value of each load: of a force by its nominal bearing stress F / (2 R)."""
+    natural, share = problem.natural_loads(), {"force": 0.5, "moment": 1.0, "traction": 1.0}
+    return {
+        name: share[LOAD_KIND[name]] * abs(load) / natural[LOAD_KIND[name]]
+        for name, load in largest.items()
+        if LOAD_KIND[name] in share
+    }
+
+
+def _too_large(name: str, load: float, strain: float, soft: tuple[str, float]) -> InputWarning:
+    body, modulus = soft
+    if modulus < SOFTEST:
+        unit, factor = ("GPa", 1e9) if modulus < IN_GPA else ("MPa", 1e6)
+        return InputWarning(
+            "E",
+            f"{_short(modulus)} Pa of the {body} is softer than rubber; "
+            f"moduli are in Pa: {_short(modulus)} {unit} is {_short(modulus * factor)}",
+        )
+    units = {"force": ("N/m", "forces are per thickness, in N/m"), "moment": ("N", "moments are per thickness, in N")}
+    unit, hint = units.get(LOAD_KIND[name], ("Pa", "stresses are in Pa"))
+    return InputWarning(
+        name, f"{_short(load)} {unit} strains the bodies by {strain:.2g}, far beyond linear elasticity; {hint}"
+    )
+
+
+def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, float]) -> Iterator[InputWarning]:
+    """Doubts about forces that are alone and small, and about small remote stresses."""
+    radius = problem.hole_radius
+    name = max(strains, key=lambda name: strains[name])
+    alone = all(LOAD_KIND[other] == "force" for other, load in largest.items() if load)
+    force = abs(largest[name])
+    if (
+        alone
+        and 0.0 < strains[name] < LEAST_STRAIN
+        and problem.assembled_clearance >= 0.0
+        and radius <= LARGEST_HOLE
+        and force != 1.0
+    ):
+        yield InputWarning(
+            name,
+            f"{_short(largest[name])} N/m is a bearing stress of {_mega(force / (2.0 * radius))} only; "
+            "forces are per thickness, in N/m: divide a force in N by the thickness in m",
+        )
+    for name in ("sxx", "syy", "sxy"):
+        stress = abs(largest.get(name, 0.0))
+        if 0.0 < stress < LEAST_STRESS and stress != 1.0:
+            yield InputWarning(
+                name,
+                f"{_short(largest[name])} Pa is next to nothing; stresses are in Pa: "
+                f"{_short(largest[name])} MPa is {_short(1e6 * largest[name])}",
+            )
+
+
+def _of_displacements(problem: Problem, largest: dict[str, float]) -> Iterator[InputWarning]:
+    rotation = largest.get("rotation", 0.0)
+    if abs(rotation) > MOST_ROTATION and problem.rotation == "fixed":
+        yield InputWarning(
+            "rotation", f"{rotation:g} rad is {math.degrees(rotation):.3g} degrees; rotations are in rad, and small"
+        )
+    free = abs(problem.assembled_clearance)
+    for name in ("ux", "uy"):
+        shift = largest.get(name, 0.0)
+        if abs(shift) - free > MOST_SHIFT * problem.hole_radius:
+            parts = abs(shift) / problem.hole_radius
+            yield InputWarning(name, f"{_short(shift)} m is {parts:.2g} hole radii; lengths are in m: 1 mm is 1e-3")
+
+
+def _largest(history: LoadHistory) -> dict[str, float]:
+    """The largest value of each load that is given, by size, with its sign."""
+    low = np.fmin.reduce(np.array([np.fmin.reduce(block.given) for block in history.blocks]))
+    high = np.fmax.reduce(np.array([np.fmax.reduce(block.given) for block in history.blocks]))
+    largest = np.asarray(np.where(-low > high, low, high))
+    return {name: value for name, value in zip(LOADS, largest.tolist(), strict=True) if not math.isnan(value)}
