@@ -70,7 +70,11 @@ def implied_kind(kinds: Kinds, table: Mapping[str, Any]) -> str:
 
 
 def read_bodies(
-    source: CaseText, folder: Path, radius: float | None, pair: MaterialPair | None
+    source: CaseText,
+    folder: Path,
+    radius: float | None,
+    pair: MaterialPair | None,
+    materials: Mapping[str, Material],
 ) -> dict[str, PinBody | PlateBody]:
     """Read the bodies of a case.
 
@@ -84,6 +88,8 @@ def read_bodies(
         Radius of the hole. None if it is unknown; the bodies are then a solid pin and an infinite plate.
     pair : MaterialPair or None
         Materials of pin and plate. None if they are unknown; a compliance is then an infinite plate.
+    materials : mapping of str to Material
+        The materials with a name, for a bush.
 
     Returns
     -------
@@ -91,7 +97,7 @@ def read_bodies(
         The arguments ``pin_body`` and ``plate_body`` of a :class:`Problem`.
     """
     pin = _pin_body(source.section("pin_body"))
-    plate = _plate_body(source, folder)
+    plate = _plate_body(source, folder, materials)
     if radius is None or (pair is None and isinstance(plate, Compliance)):
         plate = Plate()
     if radius is None or not _fits(source.section("pin_body"), functools.partial(check_pin_body, pin, radius)):
@@ -122,13 +128,13 @@ def _pin_body(section: Section) -> PinBody:
     return Disk() if bore is None or load is None else Tube(bore, load)  # type: ignore[arg-type]
 
 
-def _plate_body(source: CaseText, folder: Path) -> PlateBody:
+def _plate_body(source: CaseText, folder: Path, materials: Mapping[str, Material]) -> PlateBody:
     section = source.section("plate_body")
     kind = _kind(section)
     if kind == "compliance":
         return _compliance(section, folder)
     if kind == "bushing":
-        return _bushing(source, section)
+        return _bushing(source, section, materials)
     if kind == "ring":
         return _ring(section, "outer_radius")
     return _plate(section)
@@ -146,8 +152,8 @@ def _ring(section: Section, key: str) -> Plate | Ring:
     return Plate() if outer is None or support is None else Ring(outer, support)  # type: ignore[arg-type]
 
 
-def _bushing(source: CaseText, section: Section) -> PlateBody:
-    material = _bush_material(source, section)
+def _bushing(source: CaseText, section: Section, materials: Mapping[str, Material]) -> PlateBody:
+    material = _bush_material(source, section, materials)
     section.require("outer_radius")
     outer = section.checked("outer_radius", positive)
     interference, friction = (section.checked(key, not_negative) for key in ("interference", "friction"))
@@ -168,9 +174,9 @@ def _bushing(source: CaseText, section: Section) -> PlateBody:
     return found or Plate()
 
 
-def _bush_material(source: CaseText, section: Section) -> Material | None:
+def _bush_material(source: CaseText, section: Section, materials: Mapping[str, Material]) -> Material | None:
     """The material of a bush. None if it can't be used. The reason is reported."""
-    material = read_material(source, section, may_be_rigid=False)
+    material = read_material(source, section, materials, may_be_rigid=False)
     if "material" in section and "dundurs" in source.root and "load_parameter" in source.section("contact"):
         section.report(
             "material: with [dundurs] and load_parameter the moduli count in units of 1/beta* of pin and plate; "

@@ -10,8 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from fastpin.casefile.reader import read_text
-from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER

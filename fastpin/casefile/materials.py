@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Any
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, number, positive, true_or_false
+from fastpin.model.checks import as_toml, number, positive, true_or_false
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.synonyms import closest
 
 MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength")
@@ -22,8 +23,11 @@ DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
 _FATIGUE_KEYS = tuple(field.name for field in fields(FatigueConstants))
 
 
-def read_pair(source: CaseText) -> MaterialPair | None:
-    """The materials of pin and plate. None if they can't be used. The reason is reported."""
+def read_pair(source: CaseText, materials: Mapping[str, Material]) -> MaterialPair | None:
+    """The materials of pin and plate. None if they can't be used. The reason is reported.
+
+    `materials` are those with a name.
+    """
     contact = source.section("contact")
     plane = contact.choice("plane", ("strain", "stress")) or "strain"
     if "dundurs" in source.root:
@@ -31,19 +35,21 @@ def read_pair(source: CaseText) -> MaterialPair | None:
             if name in source.root:
                 source.report(f"[{name}]: give either [dundurs] or [pin] and [plate]", name)
         return _dundurs(source.section("dundurs"), contact, plane)
-    pin, plate = (read_material(source, source.section(name, required=True)) for name in ("pin", "plate"))
+    pin, plate = (read_material(source, source.section(name, required=True), materials) for name in ("pin", "plate"))
     if pin is None or plate is None:
         return None
     return source.root.build(MaterialPair, {"pin": pin, "plate": plate, "plane": plane}, {})
 
 
-def read_material(source: CaseText, section: Section, may_be_rigid: bool = True) -> Material | None:
+def read_material(
+    source: CaseText, section: Section, materials: Mapping[str, Material], may_be_rigid: bool = True
+) -> Material | None:
     """The material of a body, with its fatigue constants and yield strength. They replace those of a named material.
 
     None if it can't be used. The reason is reported.
     """
     given: dict[str, Any] = {"fatigue": _fatigue(source, section), "yield_strength": _yield_strength(source, section)}
-    material = _elastic(section, may_be_rigid)
+    material = _elastic(section, materials, may_be_rigid)
     if material is None:
         return None
     return replace(material, **{name: value for name, value in given.items() if value is not None})
@@ -84,7 +90,7 @@ def _has_stresses(source: CaseText, section: Section, key: str) -> bool:
     return False
 
 
-def _elastic(section: Section, may_be_rigid: bool) -> Material | None:
+def _elastic(section: Section, materials: Mapping[str, Material], may_be_rigid: bool) -> Material | None:
     if not section.present:
         return None
     rigid = section.checked("rigid", true_or_false)
@@ -97,7 +103,7 @@ def _elastic(section: Section, may_be_rigid: bool) -> Material | None:
                 section.report(f"[{section.name}]: {other} can't be given together with {chosen}", other)
         if chosen == "rigid":
             return Material.rigid()
-        return MATERIALS.get(section.checked("material", choice, tuple(MATERIALS)) or "")
+        return section.checked("material", _named, materials)
     if "E" not in section and "nu" not in section:
         if rigid is not None or "rigid" not in section:
             section.report(
@@ -107,6 +113,16 @@ def _elastic(section: Section, may_be_rigid: bool) -> Material | None:
     section.require("E")
     section.require("nu")
     return section.build(Material, values, {"E": 1.0, "nu": 0.3})
+
+
+def _named(field: str, name: object, materials: Mapping[str, Material]) -> Material:
+    """The material of a name."""
+    if not isinstance(name, str):
+        raise InputError(field, f"must be the name of a material in quotes, not {as_toml(name)}")
+    if name not in materials:
+        hint = closest(name, materials) or f"; there are {', '.join(materials)}"
+        raise InputError(field, f"there is no material {as_toml(name)}{hint}")
+    return materials[name]
 
 
 def _modulus(name: str, value: object) -> float:

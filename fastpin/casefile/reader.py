@@ -8,31 +8,29 @@ harmless one, so that the rest is still checked.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
+from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.materials import DUNDURS_KEYS, MATERIAL_KEYS, read_pair
-from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
-from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
 from fastpin.model.synonyms import closest, meant
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
-
-MOST_BYTES = 100_000_000
-"""Most bytes of a case file or a plan."""
 
 KEYS: dict[str, tuple[str, ...]] = {
     "pin": MATERIAL_KEYS,
@@ -57,6 +55,9 @@ KEYS: dict[str, tuple[str, ...]] = {
     "solve": tuple(field.name for field in fields(SolveOptions)),
 }
 """Sections of a case file and their keys."""
+
+ROOT_KEYS = ("title", "materials")
+"""Keys before the first section."""
 
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
 
@@ -83,29 +84,6 @@ def read_case(path: str | Path) -> Case:
     """
     path = file_path("path", path)
     return parse_case(read_text(path), str(path), path.parent)
-
-
-def read_text(path: Path) -> str:
-    """Read the text of a case file (UTF-8).
-
-    Raises
-    ------
-    CaseFileError
-        If the file can't be read, is larger than :data:`MOST_BYTES`, or is not UTF-8 text.
-    """
-    try:
-        with path.open("rb") as file:
-            raw = file.read(MOST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
-    if len(raw) > MOST_BYTES:
-        raise CaseFileError(str(path), [(0, f"is larger than {MOST_BYTES:,} bytes")])
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        raise CaseFileError(str(path), [(line, "is not UTF-8 text")]) from None
 
 
 def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> Case:
@@ -157,7 +135,8 @@ def case_from(
     """
     _check_keys(source)
     title = source.root.checked("title", string) or ""
-    problem = _problem(source, folder, read_pair(source))
+    materials = known_materials(source, folder)
+    problem = _problem(source, folder, read_pair(source, materials), materials)
     history = read(source, folder)
     options = _options(source.section("solve"))
     if problem is not None and history is not None:
@@ -180,7 +159,7 @@ def _check_together(source: CaseText, check: Callable[[], None]) -> None:
 def _check_keys(source: CaseText) -> None:
     """Report unknown sections and keys."""
     for name, value in source.root.table.items():
-        if name == "title":
+        if name in ROOT_KEYS:
             continue
         if name in KEYS:
             for section in source.blocks(name):
@@ -193,7 +172,7 @@ def _check_keys(source: CaseText) -> None:
                 hint = "; a file with an outline is a lug file, see fastpin compliance"
             source.report(f"unknown section [{name}]{hint}", name)
         else:
-            hint = _owners(name) or closest(name, ("title",)) or _elsewhere(name)
+            hint = _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name)
             source.report(f'unknown key "{name}" before the first section{hint}', name)
 
 
@@ -226,11 +205,13 @@ def _in_brackets(section: str) -> str:
     return "[[load]]" if section == "load" else f"[{section}]"
 
 
-def _problem(source: CaseText, folder: Path, given: MaterialPair | None) -> Problem | None:
+def _problem(
+    source: CaseText, folder: Path, given: MaterialPair | None, materials: Mapping[str, Material]
+) -> Problem | None:
     """The problem. None if [contact] is missing, or pin_load, rotation or drive is wrong: the loads depend on them."""
     contact, pair = source.section("contact", required=True), given or _STEEL
     if not contact.present:
-        read_bodies(source, folder, None, given)
+        read_bodies(source, folder, None, given, materials)
         return None
     make: Callable[..., Problem] = Problem
     needed = ["hole_radius", "clearance", "friction"]
@@ -252,7 +233,7 @@ def _problem(source: CaseText, folder: Path, given: MaterialPair | None) -> Prob
     radius = values.get("hole_radius", 1.0)
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
         radius, hub = None, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
-    values |= read_bodies(source, folder, radius, given)
+    values |= read_bodies(source, folder, radius, given, materials)
     radius = radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     held = None not in (pin_load, rotation, drive)

@@ -10,11 +10,15 @@ import copy
 import re
 import tomllib
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
-from fastpin.errors import InputError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, choice, number
 from fastpin.model.synonyms import meant
+
+MOST_BYTES = 100_000_000
+"""Most bytes of a case file or a plan."""
 
 Place = tuple[str | int, ...]
 """The keys and indices that lead to a value: ("load", 0, "P")."""
@@ -22,6 +26,29 @@ Place = tuple[str | int, ...]
 T = TypeVar("T")
 
 _FAULTY = object()  # stands for a value that can't be parsed: it is reported already, and not missing
+
+
+def read_text(path: Path) -> str:
+    """Read the text of a case file (UTF-8).
+
+    Raises
+    ------
+    CaseFileError
+        If the file can't be read, is larger than :data:`MOST_BYTES`, or is not UTF-8 text.
+    """
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
+    if len(raw) > MOST_BYTES:
+        raise CaseFileError(str(path), [(0, f"is larger than {MOST_BYTES:,} bytes")])
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise CaseFileError(str(path), [(line, "is not UTF-8 text")]) from None
 
 
 class CaseText:

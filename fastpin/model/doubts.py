@@ -115,18 +115,17 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
     ----------
     problem : Problem
     history : LoadHistory
-        If the loads themselves are in doubt, there is no doubt about the strain.
+        If they strain the bodies too much, they are in doubt, and not the pressure.
     pressures : iterable of ndarray, shape (n,)
         Contact pressures at the nodes of each state, Pa. An array that comes again is looked at once.
     """
-    if problem.dimensionless:
+    if problem.dimensionless or max(_strains(problem, _largest(history)).values(), default=0.0) > MOST_STRAIN:
         return []
     found = []
     distinct = {id(pressure): pressure for pressure in pressures}
     peak = max((float(np.max(pressure, initial=0.0)) for pressure in distinct.values()), default=0.0)
     strain = problem.surfaces.beta_star * peak
-    by_loads = max(_strains(problem, _largest(history)).values(), default=0.0)
-    if strain > LARGE_STRAIN and by_loads <= MOST_STRAIN and _has_units(problem):
+    if strain > LARGE_STRAIN and _has_units(problem):
         found.append(
             InputWarning(
                 "peak pressure",

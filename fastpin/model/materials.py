@@ -137,7 +137,7 @@ class Material:
 
 
 MATERIALS: dict[str, Material] = {
-    "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V"),
+    "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V", yield_strength=828e6),
     "aluminium": Material(69e9, 0.33, "aluminium"),
     "steel": Material(210e9, 0.30, "steel"),
     "nickel alloy": Material(199.9e9, 0.294, "nickel alloy"),
@@ -167,16 +167,38 @@ MATERIALS: dict[str, Material] = {
             source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
         ),
     ),
+    "7075-T6": Material(71.7e9, 0.33, "7075-T6", yield_strength=503e6),
+    "A36": Material(200e9, 0.30, "A36", yield_strength=250e6),
+    "4340 normalized": Material(207e9, 0.30, "4340 normalized", yield_strength=862e6),
+    "304": Material(193e9, 0.30, "304", yield_strength=205e6),
+    "316": Material(193e9, 0.30, "316", yield_strength=205e6),
+    "17-4PH H900": Material(197e9, 0.272, "17-4PH H900", yield_strength=1170e6),
+    "Inconel 718": Material(199.9e9, 0.294, "Inconel 718", yield_strength=1034e6),
+    "C93200": Material(100e9, 0.35, "C93200", yield_strength=138e6),
+    "PEEK": Material(4.0e9, 0.40, "PEEK", yield_strength=98e6),
 }
 """Named materials at room temperature.
 
 * Ti-6Al-4V (116 GPa, 0.32) and aluminium (69 GPa, 0.33): in plane strain the pair has the Dundurs parameters 0.2507
-  and 0.0595. The paper's Ti6Al4V-Al pair has -0.2503 and -0.0594, in the paper's sign convention.
+  and 0.0595. The paper's Ti6Al4V-Al pair has -0.2503 and -0.0594, in the paper's sign convention. The yield strength of
+  Ti-6Al-4V is the least one of ASTM B265, grade 5 (120 ksi).
 * steel (210 GPa, 0.30): EN 1993-1-1, 3.2.6.
 * nickel alloy (199.9 GPa, 0.294): INCONEL alloy 718, Special Metals data sheet SMC-045, annealed and aged, 21 C.
 * 2024-T3 sheet (70 GPa) and SAE 1020 hot-rolled sheet (203 GPa) have fatigue constants. They are quoted after Stephens,
   Fatemi, Stephens and Fuchs, Metal Fatigue in Engineering, 2nd ed. (Wiley 2001), appendix A, which cites SAE J1099.
   Compare them with the print before relying on a life. Poisson's ratios (0.33, 0.30) are usual values of such alloys.
+* 7075-T6: typical values of the Aluminum Association, as data sheets of ASM Aerospace Specification Metals quote them.
+* A36: modulus and ratio of AISC 360 (29,000 ksi, 0.3); the least yield strength of ASTM A36 (36 ksi).
+* 4340 normalized, 304 and 316: Callister and Rethwisch, Materials Science and Engineering, appendix B. 205 MPa is also
+  the least yield strength of ASTM A240 for 304 and 316.
+* 17-4PH H900: modulus and ratio of the data sheet of AK Steel (28.5e6 psi, 0.272); the least yield strength of ASTM
+  A564 (170 ksi).
+* Inconel 718: elastic constants as for nickel alloy; the least yield strength of AMS 5663 (150 ksi).
+* C93200 (SAE 660 bearing bronze): modulus of the Copper Development Association (14,500 ksi); the least yield strength
+  of continuous castings of ASTM B505 (20 ksi). Poisson's ratio is a usual value of bronzes.
+* PEEK: Victrex 450G, data sheet of the maker, at 23 C.
+
+The yield strengths of other products and tempers differ: give your own in a file of materials (docs/case-files.md).
 """
 
 

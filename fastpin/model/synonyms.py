@@ -71,6 +71,7 @@ _SYNONYMS: dict[str, str] = {
     "plate_body": "lug ring bush bushing",
     "pin_body": "tube hollow_pin",
     "title": "name description",
+    "materials": "material_file materials_file library",
     # options of the command line
     "workers": "jobs n_jobs processes threads cores",
     "output": "out save to",
@@ -112,6 +113,18 @@ _VALUES: dict[str, str] = {
     "centre": "center point concentrated",
     "body": "body_force distributed",
     "held": "fixed clamped rigid core",
+    "aluminium": "aluminum al alu",
+    "Ti-6Al-4V": "titanium ti64 ti6al4v ti_6_4 grade_5",
+    "2024-T3": "2024 al2024 aa2024",
+    "7075-T6": "7075 al7075 aa7075",
+    "SAE 1020": "1020 aisi_1020",
+    "4340 normalized": "4340 aisi_4340",
+    "304": "aisi_304 304l stainless stainless_steel 1_4301",
+    "316": "aisi_316 316l 1_4401",
+    "17-4PH H900": "17_4 17_4ph 17_4_ph 1_4542",
+    "Inconel 718": "718 in718 inconel",
+    "nickel alloy": "nickel",
+    "C93200": "bronze sae_660 bearing_bronze",
 }
 """Other words for the words that a value may be."""
 

@@ -16,8 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fastpin.casefile.reader import read_text
-from fastpin.casefile.toml_text import CaseText, Section
+from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.model.checks import as_toml, choice, file_path, string
 from fastpin.model.synonyms import closest

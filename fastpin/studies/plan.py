@@ -20,8 +20,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, read_text
-from fastpin.casefile.toml_text import CaseText, Place, Section
+from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint
+from fastpin.casefile.toml_text import CaseText, Place, Section, read_text
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, choice, file_path, instance, number, string, whole_number
@@ -146,14 +146,16 @@ class Plan:
         Raises
         ------
         InputError
-            If a file of its loads or of its plate has changed since the plan was read, or `point` is no point.
+            If a file of its loads, plate or materials has changed since the plan was read, or `point` is no point.
         """
         instance("point", point, Point, "a Point of this plan")
         if point.id in self._cases:
             return self._cases[point.id]
         text, case = self._base.vary(point.values)
         if case is None or text.placed or run_id(canonical(case)) != point.id:
-            raise InputError(f"run {point.id}", "files of its loads or bodies have changed since the plan was read")
+            raise InputError(
+                f"run {point.id}", "files of its loads, bodies or materials have changed since the plan was read"
+            )
         return case
 
 

@@ -7,17 +7,19 @@ body replaces the keys of other kinds.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.loads import read_history
+from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.reader import case_from
 from fastpin.casefile.toml_text import CaseText
 from fastpin.errors import CaseFileError
 from fastpin.model.case import Case
 from fastpin.model.history import LoadHistory
-from fastpin.model.materials import MATERIALS
+from fastpin.model.materials import MATERIALS, Material
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 """Keys of a [[load]] block that are tables of loads."""
@@ -47,6 +49,7 @@ class BaseCase:
         if self.text.faults:
             raise CaseFileError(name, self.text.faults)
         self._folder = folder
+        self._materials = known_materials(self.text.with_tables(self.text.root.table), folder)
         self._loads: tuple[str, LoadHistory | None] = "", None
 
     @property
@@ -57,7 +60,7 @@ class BaseCase:
 
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""
-        text = self.text.with_tables(with_values(self.text.root.table, values))
+        text = self.text.with_tables(with_values(self.text.root.table, values, self._materials))
         case = case_from(text, self._folder, self._read_loads)
         if case is not None and case.options.error_bars:
             text.report("error_bars: are not kept by sweeps; leave them out", "solve", "error_bars")
@@ -87,11 +90,16 @@ _REPLACED_SECTIONS = {"pin": ("dundurs",), "plate": ("dundurs",), "dundurs": ("p
 _FILE = "history.csv"
 
 
-def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a case with other values of some fields. `tables` does not change."""
+def with_values(
+    tables: dict[str, Any], values: dict[str, Any], materials: Mapping[str, Material] = MATERIALS
+) -> dict[str, Any]:
+    """Return the tables of a case with other values of some fields. `tables` does not change.
+
+    `materials` are those with a name.
+    """
     new = {name: _copied(table) for name, table in tables.items()}
     for name, value in values.items():
-        _make_room(new, name, value)
+        _make_room(new, name, value, materials)
     for name, value in values.items():
         section, *rest = name.split(".")
         table = new["load"][int(rest.pop(0)) - 1] if section == "load" else new.setdefault(section, {})
@@ -104,9 +112,9 @@ def with_values(tables: dict[str, Any], values: dict[str, Any]) -> dict[str, Any
 
 
 def reads_files(table: Any) -> bool:
-    """Whether the tables of a case name a CSV file or the file of a plate, which may change later."""
+    """Whether the tables of a case name a CSV file, or the file of a plate or of materials, which may change later."""
     if isinstance(table, dict):
-        return "csv" in table or "file" in table or any(map(reads_files, table.values()))
+        return bool({"csv", "file", "materials"} & set(table)) or any(map(reads_files, table.values()))
     return isinstance(table, list) and any(map(reads_files, table))
 
 
@@ -144,7 +152,7 @@ def _copied(table: Any) -> Any:
     return dict(table) if isinstance(table, dict) else table
 
 
-def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
+def _make_room(tables: dict[str, Any], name: str, value: Any, materials: Mapping[str, Material]) -> None:
     """Remove the inputs that a field replaces from the tables of the base case."""
     section, key = name.split(".")[0], name.split(".")[-1]
     for replaced in _REPLACED_SECTIONS.get(section, ()):
@@ -163,9 +171,9 @@ def _make_room(tables: dict[str, Any], name: str, value: Any) -> None:
     if section not in ("pin", "plate", "plate_body") or (key == "rigid" and value is not True):
         return
     material_name = body.get("material")
-    if key in ("E", "nu") and isinstance(material_name, str) and material_name in MATERIALS:
+    if key in ("E", "nu") and isinstance(material_name, str) and material_name in materials:
         # One constant is varied. The other constants of the material stay.
-        material = MATERIALS[material_name]
+        material = materials[material_name]
         body |= {"E": material.E, "nu": material.nu}
         if material.fatigue is not None:
             body.setdefault("fatigue", material.fatigue.given())

@@ -389,7 +389,7 @@ def test_a_pair_with_names_keeps_them() -> None:
 
 @pytest.mark.parametrize("path", ["/dev/zero", "endless"])
 def test_a_file_without_an_end_is_refused(path, tmp_path, monkeypatch):
-    monkeypatch.setattr("fastpin.casefile.reader.MOST_BYTES", 1000)
+    monkeypatch.setattr("fastpin.casefile.toml_text.MOST_BYTES", 1000)
     (tmp_path / "endless").write_text("#" * 2000)
     with pytest.raises(CaseFileError, match="is larger than 1,000 bytes"):
         read_case(tmp_path / path)

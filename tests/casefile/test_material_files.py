@@ -1,0 +1,146 @@
+"""Files of materials, and the materials that fastpin names."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from pathlib import Path
+
+import pytest
+
+import fastpin
+from fastpin.casefile import read_materials
+from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model import materials
+from fastpin.studies.plan import read_plan
+
+SHEET = """
+[sheet]
+E = 71e9
+nu = 0.33
+yield_strength = 352e6
+source = "certificate 4711"
+
+["cast iron"]
+E = 110e9
+nu = 0.26
+fatigue = { fatigue_strength = 1.1e9, strength_exponent = -0.1, source = "a book" }
+"""
+
+OWN = EXAMPLE.replace("[pin]  ", 'materials = "own.toml"\n[pin]  ', 1).replace('"Ti-6Al-4V"', '"cast iron"', 1)
+BUSH = """
+[plate_body]
+material = "sheet"
+outer_radius = 12e-3
+[[load]]"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "own.toml").write_text(SHEET)
+    return tmp_path
+
+
+def test_a_file_gives_materials_by_name(folder: Path) -> None:
+    found = read_materials(folder / "own.toml")
+    assert list(found) == ["sheet", "cast iron"]
+    assert found["sheet"] == fastpin.Material(71e9, 0.33, "sheet", yield_strength=352e6)
+    assert found["cast iron"].fatigue.fatigue_strength == 1.1e9
+    assert found["cast iron"].name == "cast iron"
+
+
+def test_a_case_takes_them_for_pin_plate_and_bush(folder: Path) -> None:
+    case = parse_case(OWN.replace("[[load]]", BUSH, 1), folder=folder)
+    own = read_materials(folder / "own.toml")
+    assert case.problem.pair.pin == own["cast iron"]
+    assert case.problem.plate_body.material == own["sheet"]
+    changed = OWN.replace('"cast iron"', '"sheet"\nyield_strength = 300e6', 1)
+    assert parse_case(changed, folder=folder).problem.pair.pin == dataclasses.replace(own["sheet"], yield_strength=3e8)
+
+
+def test_a_plan_varies_them(folder: Path) -> None:
+    (folder / "case.toml").write_text(OWN)
+    (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\npin.material = ["sheet", "steel", "cast iron"]\n')
+    plan = read_plan(folder / "plan.toml")
+    assert [plan.case(point).problem.pair.pin.name for point in plan.points] == ["sheet", "steel", "cast iron"]
+    (folder / "own.toml").write_text(SHEET.replace("0.33", "0.34"))
+    with pytest.raises(InputError, match="files of its loads, bodies or materials have changed"):
+        plan.case(plan.points[0])
+    (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\npin.E = [50e9, 60e9]\n')
+    plan = read_plan(folder / "plan.toml")
+    found = [plan.case(point).problem.pair.pin for point in plan.points]
+    assert [(pin.E, pin.nu, pin.fatigue.fatigue_strength) for pin in found] == [
+        (50e9, 0.26, 1.1e9),
+        (60e9, 0.26, 1.1e9),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "sentence"),
+    [
+        ("nu = 0.33", "nu = 0.6", 4, "nu: Poisson's ratio must lie between 0 and 0.5, not 0.6"),
+        ("E = 71e9", "E = -1", 3, "E: Young's modulus must be positive, not -1"),
+        ("E = 71e9", "modulus = 71e9", 3, 'unknown key "modulus" in [sheet], did you mean "E"?'),
+        ("E = 71e9", "", 2, "[sheet]: E is missing"),
+        ("yield_strength = 352e6", "yield_strength = 0", 5, "yield_strength: must be positive, not 0"),
+        ("yield_strength", "yield_stress", 5, 'unknown key "yield_stress" in [sheet], did you mean "yield_strength"?'),
+        ("[sheet]", "[steel]", 2, "[steel]: is a material of fastpin; choose another name"),
+        ("[sheet]", "colour = 3\n[sheet]", 2, "colour: must be a section [colour] with E and nu, not 3"),
+        ('source = "certificate 4711"', "source = 4711", 6, "source: must be text in quotes, not 4711"),
+        ("-0.1", "0.1", 11, "strength_exponent: must be negative, not 0.1"),
+        (SHEET, "", 0, "no materials: a material is a section, such as [my-alloy], with E and nu"),
+        (SHEET, "[sheet\n", 1, "not TOML"),
+    ],
+)
+def test_a_fault_gets_one_sentence_in_python_and_in_a_case(
+    folder: Path, old: str, new: str, line: int, sentence: str
+) -> None:
+    path = folder / "own.toml"
+    path.write_text(SHEET.replace(old, new, 1))
+    with pytest.raises(CaseFileError) as caught:
+        read_materials(path)
+    ((found_line, found),) = caught.value.problems
+    assert (found_line, found[: len(sentence)]) == (line, sentence)
+    with pytest.raises(CaseFileError) as caught:
+        parse_case(OWN.replace('"cast iron"', '"steel"', 1), folder=folder)
+    where = f"materials: own.toml{f', line {line}' if line else ''}: "
+    place = OWN[: OWN.index('\nmaterials = "own')].count("\n") + 2
+    assert caught.value.problems == [(place, where + found)]
+
+
+def test_a_missing_file_and_an_unknown_name_are_faults(folder: Path) -> None:
+    with pytest.raises(CaseFileError, match=r"materials: none.toml: can't be read: No such file or directory"):
+        parse_case(EXAMPLE.replace("[pin]  ", 'materials = "none.toml"\n[pin]  ', 1), folder=folder)
+    with pytest.raises(CaseFileError, match=r'material: there is no material "shet", did you mean "sheet"\?'):
+        parse_case(OWN.replace('"cast iron"', '"shet"', 1), folder=folder)
+    with pytest.raises(InputError, match=r"^path: must be the name of a file, not 3$"):
+        read_materials(3)
+
+
+def test_named_materials_have_sources_and_plausible_numbers() -> None:
+    text = Path(materials.__file__).read_text(encoding="utf-8")
+    sources = text[text.index('"""Named materials at room temperature.') :]
+    for name, material in fastpin.MATERIALS.items():
+        assert material.name == name
+        assert re.search(rf"\b{re.escape(name)}\b", sources), name
+        strength = material.known_yield_strength
+        if strength is not None:
+            assert 5e-4 < strength / material.E < 0.03
+    generic = {"aluminium", "steel", "nickel alloy"}
+    assert {name for name, one in fastpin.MATERIALS.items() if one.known_yield_strength is None} == generic
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        ("aluminum", "aluminium"),
+        ("Ti64", "Ti-6Al-4V"),
+        ("7075", "7075-T6"),
+        ("bronze", "C93200"),
+        ("718", "Inconel 718"),
+    ],
+)
+def test_other_names_of_materials_are_answered(typed: str, name: str) -> None:
+    with pytest.raises(CaseFileError, match=rf'did you mean "{name}"\?'):
+        parse_case(EXAMPLE.replace('"Ti-6Al-4V"', f'"{typed}"', 1))
