@@ -16,7 +16,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.units import acting_loads, scaled, units, with_unit
-from fastpin.report.table import table, visible_rows
+from fastpin.report.table import Column, table, visible_rows
 
 _PIN_LOADS = {"centre": "force at the centre", "body": "uniform body force"}
 """Words for the load of a solid pin."""
@@ -43,6 +43,19 @@ _SUPPORTS = {
 
 def describe(case: Case) -> str:
     """Describe a case as text: pair, contact, solver, and a table of the loads with their load parameters.
+
+    Another class than :class:`Case` raises :class:`InputError`.
+    """
+    rows = case_rows(case)
+    text = [case.title] if case.title else []
+    width = max(8, *(len(name) for name, _ in rows))
+    text += [f"{name:{width}s} {value}" for name, value in rows]
+    columns, hidden = corner_columns(case.problem, case.history)
+    return "\n".join([*text, "", table(columns, hidden)])
+
+
+def case_rows(case: Case) -> list[tuple[str, str]]:
+    """Return the pair, the contact and the solver of a case in words: rows of (subject, text).
 
     Another class than :class:`Case` raises :class:`InputError`.
     """
@@ -80,10 +93,7 @@ def describe(case: Case) -> str:
     ]
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
-    text = [case.title] if case.title else []
-    width = max(8, *(len(name) for name, _ in rows))
-    text += [f"{name:{width}s} {value}" for name, value in rows]
-    return "\n".join([*text, "", _load_table(problem, case.history)])
+    return rows
 
 
 def hole_body(problem: Problem) -> str:
@@ -171,8 +181,11 @@ def _drive(problem: Problem) -> str:
     return words
 
 
-def _load_table(problem: Problem, history: LoadHistory) -> str:
-    """Return the table of the loads. Of a repeated block it shows the first cycle, and the number of cycles."""
+def corner_columns(problem: Problem, history: LoadHistory) -> tuple[list[Column], int]:
+    """Return the columns of the table of the corners, and the number of corners that it leaves out.
+
+    Of a repeated block it shows the first cycle, and the number of cycles.
+    """
     numbers, counts, loads = [], [], []
     last = np.zeros(len(LOADS))
     begin = 1
@@ -189,10 +202,10 @@ def _load_table(problem: Problem, history: LoadHistory) -> str:
     columns += load_columns(problem, loads)
     forces = [math.hypot(load["P"], load["Q"]) for load in loads]
     columns.append(("L_p", "", [f"{problem.load_parameter(force):.4g}" if force else "-" for force in forces]))
-    return table(columns, sum(len(block.given) for block in history.blocks) - len(loads))
+    return columns, sum(len(block.given) for block in history.blocks) - len(loads)
 
 
-def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[tuple[str, str, list[str]]]:
+def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[Column]:
     """Return the columns of all loads that are not zero throughout: name, unit and one number a row, for :func:`table`.
 
     Loads of one kind share a unit and its SI prefix.

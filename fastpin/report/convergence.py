@@ -17,7 +17,7 @@ from typing import Any
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, scaled, units
 from fastpin.report.summary import json_ready
-from fastpin.report.table import table
+from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
 from fastpin.studies.convergence import ROUNDING, Convergence, QuantitySeries, Study
@@ -113,7 +113,7 @@ def text(convergence: Convergence) -> str:
         parts.append(f"corner {corner}: {named_loads(convergence.problem, load)}")
         for study in convergence.studies:
             parts += [
-                _heading(study, convergence),
+                heading(study, convergence),
                 _table(study, reported_series(study, convergence.problem, corner)),
                 "",
             ]
@@ -124,18 +124,23 @@ def text(convergence: Convergence) -> str:
     return "\n".join(parts)
 
 
-def _heading(study: Study, convergence: Convergence) -> str:
+def heading(study: Study, convergence: Convergence) -> str:
+    """Return the heading of the table of a study: its solver and its nodes."""
     if study.method == "increment":
         return f"increment solver, {study.nodes} nodes; increments a step:"
     where = "the circle" if convergence.grid.closed else "one arc"
     return f"path solver; nodes on {where}:"
 
 
-def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
+def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[Column]:
+    """Return the columns of the table of a study: values, order, limit and error bar of each quantity."""
     cells = [_cells(row, study.method == "increment") for row in rows]
     names = ["quantity", "unit", *map(str, study.counts), "order", "limit", "bar", "path", "within"]
-    columns = [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
-    lines = table(columns).splitlines()
+    return [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
+
+
+def _table(study: Study, rows: Sequence[ReportedSeries]) -> str:
+    lines = table(series_columns(study, rows)).splitlines()
     return "\n".join([lines[0], *lines[2:]])  # without the line of units: they have a column
 
 

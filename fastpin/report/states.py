@@ -14,7 +14,7 @@ from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled, units, with_unit
 from fastpin.report.case import hole_body, load_columns
-from fastpin.report.table import MAX_ROWS, table
+from fastpin.report.table import MAX_ROWS, Column, table
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
@@ -41,34 +41,34 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     InputError
         If an argument is of another class.
     """
-    instance("problem", problem, Problem, "a Problem")
     whole_number("hidden", hidden, 0)
+    return table(state_columns(problem, states), hidden)
+
+
+def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
+    """Return the columns of :func:`state_table`, with a cell for each state.
+
+    Raises
+    ------
+    InputError
+        If an argument is of another class.
+    """
+    instance("problem", problem, Problem, "a Problem")
     for state in items("states", states, "a list of states"):
         instance("states", state, State, "a list of states")
-    unit = units(problem)
 
-    def column(name: str, digits: int = 5, natural: float = 0.0) -> tuple[str, str, list[str]]:
-        each = QUANTITIES[name]
-        values = [each.of(state) for state in states]
-        # Values below 1e-9 of the column's largest, or of the natural size, are printed as 0: they are rounding.
-        noise = 1e-9 * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
-        cleaned = [0.0 if abs(value) <= noise else value for value in values]
-        factor, label = scaled(cleaned, unit[each.kind])
-        bars = [_bar(state, factor, name) for state in states]
-        return (
-            each.label,
-            label,
-            [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)],
-        )
+    def column(name: str, digits: int = 5, natural: float = 0.0) -> Column:
+        return quantity_column(problem, states, name, digits, natural)
 
-    def angles(name: str) -> tuple[str, str, list[str]]:
-        return "at", "deg", [_angle(QUANTITIES[name].of(state)) + _bar(state, _DEGREE, name) for state in states]
+    def angles(name: str) -> Column:
+        return ("at", *quantity_column(problem, states, name)[1:])
 
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
     columns = [("load point", "", [_point(state) for state in states])]
     columns += load_columns(problem, [state.load for state in states])
-    columns += [
+    return [
+        *columns,
         column("peak_pressure"),
         angles("peak_pressure_angle"),
         column("peak_shear"),
@@ -80,7 +80,37 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
         column("dissipation", 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
     ]
-    return table(columns, hidden)
+
+
+def quantity_column(
+    problem: Problem, states: Sequence[State], name: str, digits: int = 5, natural: float = 0.0
+) -> Column:
+    """Return the label of a quantity, its unit, and its value in each state with its error bar, if there is one.
+
+    Values below 1e-9 of the largest, or of the size `natural`, become 0: they are rounding.
+
+    Parameters
+    ----------
+    problem : Problem
+    states : sequence of State
+        Of this problem.
+    name : str
+        A name in :data:`fastpin.states.QUANTITIES`.
+    digits : int
+        Significant digits of a value that is no angle.
+    natural : float
+        In the quantity's unit.
+    """
+    each = QUANTITIES[name]
+    values = [each.of(state) for state in states]
+    if each.kind == "angle":
+        bars = [_bar(state, _DEGREE, name) for state in states]
+        return each.label, "deg", [_angle(value) + bar for value, bar in zip(values, bars, strict=True)]
+    noise = 1e-9 * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
+    cleaned = [0.0 if abs(value) <= noise else value for value in values]
+    factor, label = (_DEGREE, "deg") if each.kind == "width" else scaled(cleaned, units(problem)[each.kind])
+    bars = [_bar(state, factor, name) for state in states]
+    return each.label, label, [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)]
 
 
 def hoop_line(problem: Problem, states: Sequence[State]) -> str:

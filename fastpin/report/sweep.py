@@ -17,7 +17,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled, units
-from fastpin.report.table import table
+from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.plan import Plan
@@ -69,10 +69,15 @@ _SHOWN = {
 
 
 def text(plan: Plan, rows: Sequence[Row]) -> str:
-    """Return a text table: varied fields, outcomes of the plan, status.
+    """Return the table of :func:`run_columns` as text. A long table lacks its middle."""
+    return table(run_columns(plan, rows))
+
+
+def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
+    """Return the columns of the table of runs: varied fields, outcomes of the plan, status.
 
     A plan without outcomes has the most important key figures in their place. `rows` come from
-    :func:`fastpin.studies.sweep.rows`. A long table lacks its middle.
+    :func:`fastpin.studies.sweep.rows`.
     """
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
@@ -82,7 +87,7 @@ def text(plan: Plan, rows: Sequence[Row]) -> str:
     for name, heading in shown.items():
         columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
     columns.append(("status", "", [row["status"] for row in rows]))
-    return table(columns)
+    return columns
 
 
 def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
@@ -253,7 +258,7 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
     return axis, {value: place for place, value in enumerate(values)}
 
 
-def _column(name: str, values: Sequence[Any], unit: str) -> tuple[str, str, list[str]]:
+def _column(name: str, values: Sequence[Any], unit: str) -> Column:
     """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
     if not all(value is None or _is_number(value) for value in values):
         return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+Column = tuple[str, str, list[str]]
+"""A column of a table: its name, its unit and its cells."""
+
 MAX_ROWS = 40
 """Most rows of a printed table."""
 
@@ -14,12 +17,12 @@ def visible_rows(count: int) -> list[int]:
     return list(range(count)) if count <= MAX_ROWS else [*range(half), *range(count - half, count)]
 
 
-def table(columns: Sequence[tuple[str, str, list[str]]], hidden: int = 0) -> str:
+def table(columns: Sequence[Column], hidden: int = 0) -> str:
     """Return a table as text, with at most :data:`MAX_ROWS` rows.
 
     Parameters
     ----------
-    columns : sequence of (str, str, list of str)
+    columns : sequence of Column
         Name, unit and cells of each column.
     hidden : int
         Number of rows that `columns` lack in their middle. The table counts them among the rows it leaves out.
