@@ -26,18 +26,13 @@ from fastpin.cli.terminal import (
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.report.notes import note_lines, solver_line
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, state_table
 from fastpin.report.table import visible_rows
 from fastpin.states.choice import check_choice
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
-
-NOTES = {
-    "jumps": "note: the pin snapped {count} times; work does not balance there",
-    "released": "note: {count} times a narrow contact with next to no force was let go and lost its memory",
-}
-"""Notes on counts of the statistics that are not zero."""
 
 SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars", "slip_sums")
 """Options of the solver that the command line can set."""
@@ -357,12 +352,6 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     states = result.states if cycle is None else cycle.states
     if result.cycles and (line := report.cycle.fatigue_line(states, result.cycles[-1])):
         print(line)
-    statistics = result.statistics
-    for name, note in NOTES.items():
-        if statistics.get(name):
-            print(note.format(count=int(statistics[name])))
-    if result.grid.size > case.options.nodes and not result.grid.uniform:
-        print(f"note: {result.grid.size} nodes instead of {case.options.nodes}, dense where the contact is narrow")
-    names = ("events", "exchanges", "rebuilds", "repeated", "increments", "seconds")
-    known = [f"{statistics[name]:.4g} {name}" for name in names if statistics.get(name)]
-    print(f"{result.method} solver, {result.grid.size} nodes{''.join(f', {part}' for part in known)}")
+    for note in note_lines(case, result, result.states):
+        print(f"note: {note}")
+    print(solver_line(result))
