@@ -63,6 +63,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_run(commands)
     add_stored_commands(commands)
     add_plot(commands)
+    add_report(commands)
     add_converge(commands)
     add_sweep(commands)
     add_compliance(commands)
@@ -200,6 +201,29 @@ def add_plot(commands: Any) -> None:
         "--depth", metavar="D", type=literal, help="profile: largest depth, in radii; fatigue: depth of the points, m"
     )
     plot.add_argument("--criterion", help="of fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
+
+
+def add_report(commands: Any) -> None:
+    """Add ``report``."""
+    report = _command(commands, "report", "report", "run", "write one HTML page on a stored result, a case or a sweep")
+    report.add_argument(
+        "source",
+        metavar="FILE_OR_DIR",
+        type=Path,
+        help="HDF5 file (run -o FILE), case file (TOML), which is solved first, or directory of a sweep",
+    )
+    report.add_argument(
+        "-o", "--output", metavar="PAGE", type=Path, help="the page (html; default: the source's name with .html)"
+    )
+    report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
+    report.add_argument("--case", metavar="FILE", type=Path, help="case file of an HDF5 file; the page shows its text")
+    report.add_argument("--plan", metavar="FILE", type=Path, help="plan of a sweep (default: its copy there)")
+    report.add_argument(
+        "--error-bars",
+        action="store_true",
+        default=None,
+        help="of a case file: solve a second time on a grid with half the intervals, for error bars",
+    )
 
 
 def add_converge(commands: Any) -> None:

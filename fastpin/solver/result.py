@@ -211,6 +211,23 @@ class Result(Sequence[State]):
         states = cycle_states(self, self.cycles[-1]) if self.cycles else self.states
         return fatigue(states, criterion, body, **options)
 
+    def report(self, path: str | Path, **options: Any) -> None:
+        """Write one HTML page on the result: case, loads, key figures, figures, checks.
+
+        Parameters
+        ----------
+        path, **options
+            See :func:`fastpin.pages.write_report`.
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.pages.write_report`.
+        """
+        from fastpin.pages import write_report
+
+        write_report(self, path, **options)
+
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 file; see :func:`fastpin.save`."""
         import fastpin

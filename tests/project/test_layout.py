@@ -44,6 +44,7 @@ BREAKS = {
     "tomllib elsewhere": ("one_home", "studies/plan.py", "import tomllib\n"),
     "sqlite3 elsewhere": ("one_home", "solver/run.py", "import sqlite3\n"),
     "argparse elsewhere": ("one_home", "report/case.py", "import argparse\n"),
+    "jinja2 elsewhere": ("one_home", "report/table.py", "import jinja2\n"),
     "print elsewhere": ("one_home", "report/case.py", "print(1)\n"),
     "a private name of another file": (
         "nothing_private",

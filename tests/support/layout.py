@@ -26,6 +26,7 @@ RANKS = {
     "report": 8,
     "figures": 9,
     "paper": 10,
+    "pages": 10,
     "cli": 11,
 }
 """Every folder and its rank. A file imports from its own folder and from lower ranks."""
@@ -44,6 +45,7 @@ HOMES = {
     "multiprocessing": ("studies",),
     "argparse": ("cli",),
     "tqdm": ("cli",),
+    "jinja2": ("pages",),
 }
 """Packages that only some folders may import."""
 
@@ -57,7 +59,7 @@ MOST_PUBLIC_NAMES = 41
 
 UPWARD = {
     "states/state.py": "State shows itself in notebooks",
-    "solver/result.py": "Result plots, saves and shows itself, and has its fatigue computed",
+    "solver/result.py": "Result plots, reports, saves and shows itself, and has its fatigue computed",
 }
 """Files that call public faces, of fastpin or of other folders, inside functions, and why."""
 

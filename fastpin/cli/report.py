@@ -1,0 +1,92 @@
+"""``fastpin report``: one HTML page on a stored result, a case or a sweep."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from pathlib import Path
+
+from fastpin import casefile, pages, solver
+from fastpin.cli.progress import Bar, progress_to
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail
+from fastpin.errors import InputError
+from fastpin.pages.html import check_page
+from fastpin.pages.result import write_source
+from fastpin.pages.source import Source
+
+SECTIONS = "section {n:.0f} of {total:.0f}"
+"""Text of the progress bar of the page."""
+
+CORNERS = "load point {n:.2f} of {total}"
+"""Text of the progress bar of a case that is solved."""
+
+APPLIES = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
+"""Options, and the kinds of sources on which they have an effect."""
+
+KINDS = {"result": "a stored result", "case": "a case file", "sweep": "the directory of a sweep"}
+"""Words for the kinds of sources."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the page."""
+    kind = _kind(options.source)
+    for name, kinds in APPLIES.items():
+        if getattr(options, name) is not None and kind not in kinds:
+            allowed = " or ".join(KINDS[each] for each in kinds)
+            raise InputError(_flag(name), f"has no effect on {KINDS[kind]}; it is for {allowed}")
+    page = Path(f"{options.source.resolve().stem}.html") if options.output is None else options.output
+    check_page("--output", page)
+    try:
+        code = _WRITERS[kind](options, page)
+    except InputError as error:
+        named = error.field in ("title", "case", "plan", "error_bars")
+        raise InputError(_flag(error.field), error.reason) if named else error from None
+    print(f"wrote {page}")
+    return code
+
+
+def _kind(source: Path) -> str:
+    """Return the kind of a source by its name."""
+    if source.is_dir():
+        return "sweep"
+    return "case" if source.suffix == ".toml" else "result"
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _of_result(options: argparse.Namespace, page: Path) -> int:
+    with Bar(1, SECTIONS) as bar:
+        given = {"title": options.title or "", "case": options.case, "progress": progress_to(bar)}
+        pages.write_report(options.source, page, **given)
+    return EXIT_OK
+
+
+def _of_sweep(options: argparse.Namespace, page: Path) -> int:
+    with Bar(1, SECTIONS) as bar:
+        pages.write_sweep_report(options.source, page, plan=options.plan, progress=progress_to(bar))
+    return EXIT_OK
+
+
+def _of_case(options: argparse.Namespace, page: Path) -> int:
+    """Solve a case, and write its page. A run that ends early has a page of its states."""
+    case, code, reason = casefile.read_case(options.source), EXIT_OK, None
+    if options.error_bars:
+        case = dataclasses.replace(case, options=case.options.changed(error_bars=True))
+    with Bar(len(case.history), CORNERS) as bar:
+        try:
+            result = solver.solve(case.problem, case.history, progress=progress_to(bar), **case.options.keywords())
+        except solver.SolveError as error:
+            if error.result is None or not len(error.result):
+                raise
+            result, reason = error.result, str(error)
+            code = fail(reason, EXIT_FAILED)
+    source = Source.of_result(result, case=case, error=reason)
+    source = dataclasses.replace(source, case_text=options.source.read_text(encoding="utf-8-sig"))
+    with Bar(1, SECTIONS) as bar:
+        write_source(source, page, options.title or case.title, progress=progress_to(bar))
+    return code
+
+
+_WRITERS = {"result": _of_result, "sweep": _of_sweep, "case": _of_case}

@@ -1,0 +1,130 @@
+"""Figures of load histories."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from fastpin.figures.style import (
+    MAX_NAMED,
+    Line,
+    add_heading,
+    add_legend,
+    check_figure_text,
+    draw_and_save,
+    line,
+    panels,
+)
+from fastpin.model.checks import instance
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.problem import Problem
+from fastpin.model.units import scaled, units
+
+MOST_MARKED = 60
+"""Most corners that are marked by dots. More dots would hide the lines."""
+
+MOST_NAMED_BLOCKS = 8
+"""Most repeated blocks that are named in the figure. More names would overlap."""
+
+
+def plot_history(
+    problem: Problem,
+    history: LoadHistory,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 6.7,
+    dpi: float = 200.0,
+) -> Figure:
+    """Draw the loads of a history over its corners, with a panel for each kind of load.
+
+    A repeated block is drawn once, shaded, with the number of times. The loads are those of the first time through. The
+    history starts without load at corner 0, and the loads are linear between the corners.
+
+    Parameters
+    ----------
+    problem : Problem
+        It tells the units.
+    history : LoadHistory
+    path, title, width, dpi
+        See :func:`fastpin.plot_tractions`.
+
+    Raises
+    ------
+    InputError
+        If an argument is of another class or out of range, the figure's format is unknown, or the file can't be
+        written.
+    """
+    instance("problem", problem, Problem, "a Problem")
+    instance("history", history, LoadHistory, "a LoadHistory")
+    inches = check_figure_text(title, width)
+    return draw_and_save(lambda: _draw(problem, history, title, inches), path, dpi)
+
+
+def _draw(problem: Problem, history: LoadHistory, title: str, width: float) -> Figure:
+    loads, numbers, repeated = _folded(history)
+    acting = [name for k, name in enumerate(LOADS) if loads[:, k].any()] or [LOADS[0]]
+    kinds = list(dict.fromkeys(LOAD_KIND[name] for name in acting))
+    figure, axes = panels(len(kinds), 1, 1.7, width)
+    figure.set_figheight(1.7 * len(kinds) + 0.9)
+    entries: list[tuple[str, Line]] = []
+    for kind, panel in zip(kinds, axes[:, 0], strict=True):
+        names = [name for name in acting if LOAD_KIND[name] == kind]
+        columns = {name: loads[:, LOADS.index(name)] for name in names}
+        factor, label = scaled(np.concatenate(list(columns.values())).tolist(), units(problem)[kind])
+        for name in names:
+            style = line(len(entries) % MAX_NAMED, len(entries) % MAX_NAMED)
+            dots = {"marker": "o", "markersize": 2.2} if len(loads) <= MOST_MARKED else {}
+            panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
+            entries.append((name, style))
+        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        panel.set_ylabel(f"{', '.join(names)}  [{label}]")
+        panel.set_xlim(0.0, len(loads) - 1.0)
+        _shade(panel, repeated, panel is axes[0, 0])
+    _number_corners(axes[-1, 0], numbers)
+    figure.align_ylabels(axes)
+    if len(entries) > 1:
+        add_legend(figure, entries)
+    add_heading(figure, title)
+    return figure
+
+
+def _folded(history: LoadHistory) -> tuple[np.ndarray, list[int], list[tuple[int, int, int]]]:
+    """Return the loads of all corners, the first time through each block, and the numbers of these corners.
+
+    The first row is the start without load, corner 0. The third list has the first row, the last row and the number of
+    times of each repeated block.
+    """
+    last, begin = np.zeros(len(LOADS)), 1
+    rows, numbers, repeated = [last[None, :]], [0], []
+    for block in history.blocks:
+        values = LoadHistory.from_array(block.given).values(initial=last)
+        if block.count > 1:
+            repeated.append((len(numbers) - 1, len(numbers) - 1 + len(values), block.count))
+        rows.append(values)
+        numbers += range(begin, begin + len(values))
+        last, begin = values[-1], begin + block.corners
+    return np.concatenate(rows), numbers, repeated
+
+
+def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> None:
+    """Shade the repeated blocks, and name the number of times above the panel."""
+    for place, (first, last, count) in enumerate(repeated):
+        panel.axvspan(first, last, color="0.93" if place % 2 == 0 else "0.88", linewidth=0, zorder=-1)
+        if named and len(repeated) <= MOST_NAMED_BLOCKS:
+            panel.text(
+                0.5 * (first + last), 1.02, f"× {count:,}", transform=panel.get_xaxis_transform(), ha="center",
+                va="bottom", fontsize=8.0,
+            )  # fmt: skip
+
+
+def _number_corners(panel: Axes, numbers: list[int]) -> None:
+    """Label the axis with the numbers of the corners."""
+    locator = MaxNLocator(nbins=9, integer=True)
+    ticks = [int(tick) for tick in locator.tick_values(0, len(numbers) - 1) if 0 <= tick < len(numbers)]
+    panel.set_xticks(ticks, [f"{numbers[tick]:,}" for tick in ticks])
+    panel.set_xlabel("corner of the load history")

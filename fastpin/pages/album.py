@@ -1,0 +1,98 @@
+"""Figures as parts of a page: inline SVG, or PNG where that is smaller by far."""
+
+from __future__ import annotations
+
+import base64
+import html
+import re
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+from fastpin.pages.content import Picture
+
+MOST_SVG = 250_000
+"""Most characters of an inline SVG. Curves take some 50,000; a map of filled contours takes more as SVG than as PNG."""
+
+_DROPPED = ("metadata", "style")
+"""Elements of Matplotlib's SVG that a page does not need. Its style sheet would hold for the whole page."""
+
+_SIZE = ("width", "height", "version")
+"""Attributes of the element ``svg`` that are left out. The style sheet of the page sets the size."""
+
+
+class Album:
+    """The figures of one page. It numbers them, and keeps the ids of their elements apart."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def picture(self, draw: Callable[[Path], object], words: str, caption: str, bitmap: bool = False) -> Picture:
+        """Return a figure as a part of a page.
+
+        Parameters
+        ----------
+        draw : callable
+            ``draw(path)`` writes the figure to a file; the suffix chooses the format.
+        words : str
+            The text in place of the figure, for readers who can't see it.
+        caption : str
+        bitmap : bool
+            Draw a PNG at once: the figure would be too large as SVG.
+
+        Raises
+        ------
+        InputError
+            As `draw`.
+        """
+        with tempfile.TemporaryDirectory(prefix="fastpin-") as folder:
+            path, text = Path(folder) / "figure.svg", ""
+            if not bitmap:
+                draw(path)
+                text = path.read_text(encoding="utf-8")
+            if bitmap or len(text) > MOST_SVG:
+                path = path.with_suffix(".png")
+                draw(path)
+                markup = _png(path.read_bytes(), words)
+            else:
+                markup = _svg(text, words, f"f{self._count + 1}-")
+        self._count += 1
+        return Picture(markup, caption, self._count)
+
+
+def _png(content: bytes, words: str) -> str:
+    data = base64.b64encode(content).decode("ascii")
+    return f'<img alt="{html.escape(words)}" src="data:image/png;base64,{data}">'
+
+
+def _svg(text: str, words: str, prefix: str) -> str:
+    """Return the element ``svg`` of a file for an HTML page, with ids that begin with `prefix`.
+
+    Only ids that are referred to are kept. Namespaces are left out: HTML knows the element.
+    """
+    root = ElementTree.fromstring(text)
+    for element in root.iter():
+        element.tag = _local(element.tag)
+        element.attrib = {_local(name): value for name, value in element.attrib.items()}
+        for child in list(element):
+            if _local(child.tag) in _DROPPED:
+                element.remove(child)
+    root.attrib = {name: value for name, value in root.attrib.items() if name not in _SIZE}
+    width = root.attrib["viewBox"].split()[2]  # in points; the style sheet makes the element as wide
+    root.attrib |= {"role": "img", "aria-label": words, "style": f"--width: {width}"}
+    values = [value for element in root.iter() for value in element.attrib.values()]
+    used = dict.fromkeys(name for value in values for name in re.findall(r"^#(.+)$|url\(#([^)]+)\)", value))
+    names = {a or b: f"{prefix}{number}" for number, (a, b) in enumerate(used, start=1)}
+    for element in root.iter():
+        identity = element.attrib.pop("id", None)
+        for name, value in element.attrib.items():
+            element.set(name, re.sub(r"^#(.+)$|(?<=url\()#([^)]+)", lambda f: f"#{names[f[1] or f[2]]}", value))
+        if identity in names:
+            element.set("id", names[identity])
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _local(name: str) -> str:
+    """Return a name of XML without its namespace."""
+    return name.rpartition("}")[2]

@@ -1,0 +1,108 @@
+"""The page of a result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from fastpin.casefile.reader import parse_case, read_text
+from fastpin.errors import InputError
+from fastpin.model.case import Case
+from fastpin.model.checks import check_callable, file_path, instance, string
+from fastpin.pages.album import Album
+from fastpin.pages.content import Page
+from fastpin.pages.html import check_page, write_page
+from fastpin.pages.sections import SECTIONS, Pages
+from fastpin.pages.source import Source, now
+from fastpin.solver.result import Result
+from fastpin.studies.convergence import Convergence
+from fastpin.studies.identity import canonical
+from fastpin.version import __version__
+
+Progress = Callable[[float, float], None]
+"""Receives the number of finished sections and the number of all sections."""
+
+
+def write_report(
+    result: Result | str | Path,
+    path: str | Path,
+    *,
+    title: str = "",
+    case: str | Path | None = None,
+    convergence: Convergence | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Write the report of a result: one HTML page with all figures inside, which needs no other file and no network.
+
+    Of a long history the page shows the last cycle and the ends of the table. A section that lacks its data says how
+    to get them.
+
+    Parameters
+    ----------
+    result : Result or path
+        A result, or the file of one. The run of the file may be finished, unfinished or going on.
+    path : path
+        The page. Its name ends in .html or .htm. An existing page is overwritten, whole or not at all.
+    title : str
+        Title of the page; that of the stored case unless given.
+    case : path, optional
+        The case file of the result. Its text is shown on the page.
+    convergence : Convergence, optional
+        A study of the case, which is shown on the page.
+    progress : callable, optional
+        Called as ``progress(done, all)`` with numbers of sections.
+
+    Raises
+    ------
+    InputError
+        If an argument is of another class, the result can't be read, the case file belongs to another case, or the page
+        can't be written.
+    CaseFileError
+        If the case file has faults.
+    """
+    target = check_page("path", path)
+    check_callable("progress", progress)
+    string("title", title)
+    if convergence is not None:
+        instance("convergence", convergence, Convergence, "a Convergence")
+    if isinstance(result, Result):
+        source = Source.of_result(result, title)
+    else:
+        file = file_path("result", result)
+        if target.resolve() == file.resolve():
+            raise InputError("path", f"won't overwrite the result {file}")
+        source = Source.of_file(file)
+    if case is not None:
+        source = replace(source, case_text=_case_text(case, source.case))
+    write_source(source, target, title or source.case.title, convergence, progress)
+
+
+def write_source(
+    source: Source,
+    path: Path,
+    title: str,
+    convergence: Convergence | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Write the page of a source, see :func:`write_report`."""
+    report = progress or (lambda done, total: None)
+    page, sections = Pages(source, Album(), convergence), []
+    for number, make in enumerate(SECTIONS):
+        report(number, len(SECTIONS))
+        sections.append(make(page))
+    report(len(SECTIONS), len(SECTIONS))
+    lead = "Frictional contact of an elastic pin in the hole of an elastic plate."
+    made = f"Made by fastpin {__version__} on {now()}."
+    write_page(Page(title or "Report of a result", lead, sections, made), path)
+
+
+def _case_text(path: str | Path, case: Case) -> str:
+    """Return the text of a case file, which must have the problem and the loads of a case."""
+    file = file_path("case", path)
+    text = read_text(file)
+    given, stored = (canonical(each) for each in (parse_case(text, str(file), file.parent), case))
+    for name in given.keys() | stored.keys():
+        if name != "solve" and given.get(name) != stored.get(name):
+            raise InputError("case", f"{file} is not the case of this result: {name.replace('_', ' ')} differs")
+    return text

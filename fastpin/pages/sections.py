@@ -1,0 +1,411 @@
+"""The sections of the page of a result."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from fastpin import damage
+from fastpin.errors import InputError
+from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.angles import interval_from_bottom
+from fastpin.model.bodies import Bushing
+from fastpin.model.checks import as_toml
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.materials import Material
+from fastpin.model.units import acting_loads, units, with_unit
+from fastpin.pages import drawings
+from fastpin.pages.album import Album
+from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
+from fastpin.pages.source import Source
+from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
+from fastpin.report.case import case_rows, corner_columns, hole_body
+from fastpin.report.convergence import heading, reported_series, series_columns
+from fastpin.report.cycle import MOST_STOPS, cycle_line, fatigue_line
+from fastpin.report.notes import note_lines, solver_line
+from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
+from fastpin.report.table import MAX_ROWS, Column
+from fastpin.solver.configuration import MAX_RESIDUAL
+from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.quantities import size
+from fastpin.states.state import State
+from fastpin.states.zones import is_all_round
+from fastpin.studies.convergence import Convergence
+from fastpin.studies.identity import canonical, run_id
+
+CRITERION: Any = "smith-watson-topper"
+"""The criterion of fatigue of a page: without constants of a material it still finds the hot spot."""
+
+STRAIGHT = 3
+"""States of a cycle, with both ends, between which a loop is a line."""
+
+NEGLIGIBLE = 1e-9
+"""Slip that is rounding, in parts of the natural size of a displacement, as in the tables of states."""
+
+NO_SLIP = "from corner {0.first:,} to {0.last:,} nothing slips beyond rounding"
+"""In place of the slip of a cycle."""
+
+MOST_CHARACTERS = 20_000
+"""Most characters of a listing: some four printed pages."""
+
+NO_STATE = "There is no state: the run ended before its first corner, or its states were not kept."
+"""In place of a section that needs states."""
+
+
+@dataclass(frozen=True)
+class Pages:
+    """What the sections of one page share.
+
+    Attributes
+    ----------
+    source : Source
+    album : Album
+    convergence : Convergence or None
+    """
+
+    source: Source
+    album: Album
+    convergence: Convergence | None = None
+
+
+def overview(page: Pages) -> Section:
+    """Return the most important sentences on the result."""
+    source, problem = page.source, page.source.case.problem
+    states, cycle = source.rows[0], source.cycle
+    parts: list[Part] = [_status(source)]
+    if states:
+        largest = max(states, key=lambda state: state.peak_pressure)
+        unit = units(problem)["traction"]
+        sentences = [f"largest contact pressure in these states: {with_unit(largest.peak_pressure, unit, 5)}"]
+        sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
+        sentences += cycle_lines(problem, source.result.cycles)
+        sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
+        if cycle is not None and source.last_cycle is not None:
+            sentences.append(fatigue_line(cycle.states, source.last_cycle))
+        parts.append(Items([_sentence(line) for line in sentences if line]))
+        notes = note_lines(source.case, source.result, states)
+        parts += [Text(f"Note: {note}.", "note") for note in notes]
+    parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
+    return Section("overview", "Overview", parts)
+
+
+def _sentence(line: str) -> str:
+    """Return a line of a report as a sentence."""
+    return f"{line[0].upper()}{line[1:]}."
+
+
+def _status(source: Source) -> Text:
+    """Say whether the result is complete, and why not."""
+    corners = len(source.case.history)
+    if source.result.complete:
+        return Text(f"Complete: all {corners:,} corners of the load history were followed; {_count(source)}.")
+    why = f" The reason: {source.error}." if source.error else " The run may still be going on."
+    how = f" To continue it: fastpin resume {source.path}" if source.path else ""
+    return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{how}", "note")
+
+
+def _count(source: Source) -> str:
+    return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
+
+
+def case(page: Pages) -> Section:
+    """Return every parameter of the case in words, and the options of the solver."""
+    found = page.source.case
+    problem, unit = found.problem, units(found.problem)
+    rows = [row for row in case_rows(found) if row[0] not in ("pin", "plate")]
+    if not problem.dimensionless:
+        clearance = problem.assembled_clearance
+        rows += [
+            ("pin radius", with_unit(problem.hole_radius - clearance, unit["length"])),
+            ("clearance / radius", f"{clearance / problem.hole_radius:.4g}"),
+        ]
+    known = page.source.knows_options
+    options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
+    solver = [(name, as_toml(value), OPTION_WORDS[name]) for name, value in options.items() if value is not None]
+    return Section(
+        "case",
+        "Case",
+        [
+            Facts("The problem", rows, ("subject", "in words")),
+            Facts("Options of the solver", solver, ("option", "value", "meaning")),
+        ],
+    )
+
+
+_IN_RESULTS = ("nodes", "method", "error_bars")
+"""Options that a result tells without its run."""
+
+
+def materials(page: Pages) -> Section:
+    """Return the constants of all materials."""
+    problem = page.source.case.problem
+    found = {"pin": problem.pair.pin, "plate": problem.pair.plate}
+    if isinstance(problem.plate_body, Bushing):
+        found["bush"] = problem.plate_body.material
+    modulus = "1/beta*" if problem.dimensionless else "Pa"
+    columns: list[Column] = [("constant", "", _CONSTANTS)]
+    columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
+    parts: list[Part] = [Table("Elastic constants", columns)]
+    fatigue = {
+        name: material.fatigue.given() for name, material in found.items() if material.fatigue and not material.is_rigid
+    }
+    sources = {name: given.pop("source", "") for name, given in fatigue.items()}
+    if fatigue:
+        names = list(dict.fromkeys(name for given in fatigue.values() for name in given))
+        columns = [("constant", "", [name.replace("_", " ") for name in names])]
+        for body, given in fatigue.items():
+            columns.append((body, "", [_cell(given.get(name, "-")) for name in names]))
+        parts.append(Table("Fatigue constants, in SI units", columns))
+        parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
+    else:
+        parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
+    return Section("materials", "Materials", parts)
+
+
+_CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G"]
+
+
+def _constants(material: Material, unit: str) -> list[str]:
+    if material.is_rigid:
+        return [material.name or "rigid", "infinite", "-", "infinite"]
+    moduli = [with_unit(value, unit, 5) for value in (material.E, material.shear_modulus)]
+    return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1]]
+
+
+def _cell(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def loads(page: Pages) -> Section:
+    """Return the figure and the table of the corners."""
+    found = page.source.case
+    history = found.history
+    columns, hidden = corner_columns(found.problem, history)
+    names = acting_loads([dict(zip(LOAD_KIND, row, strict=True)) for row in history.distinct().tolist()])
+    rows = [(name, LOAD_WORDS[name]) for name in names]
+    count = len(columns[0][2])
+    gaps = {min(count, MAX_ROWS) // 2: f"{hidden:,} corners not shown here"} if hidden else {}
+    if count > MAX_ROWS:  # each block is short, but there are many
+        half = MAX_ROWS // 2
+        columns = [(name, unit, cells[:half] + cells[-half:]) for name, unit, cells in columns]
+        gaps = {half: f"{hidden + count - MAX_ROWS:,} corners not shown here"}
+    remarks = [Text("L_p is the load parameter (R - R_D)/(F beta*) of the force F on the pin.")]
+    parts: list[Part] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found)]
+    return Section("loads", "Loads", [*parts, Table("Corners of the load history", columns, gaps), *remarks])
+
+
+def key_figures(page: Pages) -> Section:
+    """Return the table of states, and all quantities of the states that are drawn."""
+    source, problem = page.source, page.source.case.problem
+    states, gaps = source.rows
+    if not states:
+        return Section("figures", "Key figures", [Text(NO_STATE, "missing")])
+    parts: list[Part] = [Table("States", state_columns(problem, states), gaps)]
+    drawn = source.drawn
+    natural = {name: max(size(name, state) for state in drawn) for name in QUANTITY_WORDS}
+    cells = [quantity_column(problem, drawn, name, natural=natural[name]) for name in QUANTITY_WORDS]
+    shown = [(words, *cell[1:]) for words, cell in zip(QUANTITY_WORDS.values(), cells, strict=True)]
+    shown = [row for row in shown if not all(cell in ("nan", "-") for cell in row[2])]
+    columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
+    for place, state in enumerate(drawn):
+        columns.append((f"{state.step + state.fraction:.5g}", "", [row[2][place] for row in shown]))
+    parts.append(Table("All quantities, by load point", columns))
+    if states[0].error_bars is None:
+        how = (
+            "There are no error bars: result files do not hold them. fastpin report CASE.toml --error-bars solves the "
+            "case with them; in Python, solve(..., error_bars=True) and then result.report(...)."
+        )
+        parts.append(Text(how, "missing"))
+    else:
+        words = "Error bars stand behind ±. The true value lies within the bar in some 95 of 100 cases."
+        parts.append(Text(f"{words} A ? stands for a bar that is not known."))
+    return Section("figures", "Key figures", parts)
+
+
+def tractions(page: Pages) -> Section:
+    """Return the figure of the tractions."""
+    if not page.source.drawn:
+        return Section("tractions", "Tractions", [Text(NO_STATE, "missing")])
+    return Section("tractions", "Tractions", [drawings.tractions(page.album, page.source.drawn)])
+
+
+def zones(page: Pages) -> Section:
+    """Return the zones of contact, stick and slip."""
+    drawn = page.source.drawn
+    if not drawn:
+        return Section("zones", "Stick and slip", [Text(NO_STATE, "missing")])
+    rows = [row for state in drawn for row in _zone_rows(state)]
+    heads = ("load point", "zone", "from", "to", "direction of the pin")
+    units_ = ("", "", "deg", "deg", "")
+    columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
+    return Section("zones", "Stick and slip", [Table("Zones of contact, stick and slip", columns)])
+
+
+def _zone_rows(state: State) -> list[tuple[str, ...]]:
+    point = f"{state.step + state.fraction:.5g}"
+    found = [("contact", start, stop, "") for start, stop in state.contact]
+    found += [("stick", start, stop, "") for start, stop in state.stick]
+    found += [("slip", start, stop, _DIRECTIONS[int(sign)]) for start, stop, sign in state.slip_zones]
+    return [(point, zone, *_ends(start, stop), words) for zone, start, stop, words in found] or [
+        (point, "no contact", "-", "-", "")
+    ]
+
+
+_DIRECTIONS = {SLIP_POSITIVE: "counter-clockwise", SLIP_NEGATIVE: "clockwise"}
+
+
+def _ends(start: float, stop: float) -> tuple[str, str]:
+    if is_all_round(stop - start):
+        return "all round", "all round"
+    first, last = interval_from_bottom(start, stop)
+    return f"{first:z.2f}", f"{last:z.2f}"
+
+
+def hysteresis(page: Pages) -> Section:
+    """Return loops and slip of the last cycle, and the changes of all cycles."""
+    source, cycle, parts = page.source, page.source.cycle, list[Part]()
+    if cycle is None:
+        how = "A load block with repeat = 2, or a history that ends with the loads of an earlier corner, has a cycle."
+        parts.append(Text(f"There are no loops: {source.why_no_cycle}. {how}", "missing"))
+    else:
+        if source.last_cycle is None:
+            words = "The history has no repeated block; its last part begins and ends with the same loads"
+            parts.append(Text(f"{words}: corners {cycle.first:,} to {cycle.last:,}."))
+        parts += _drawn(lambda: drawings.loops(page.album, cycle))
+        if len(cycle.states) <= STRAIGHT:
+            parts.append(Text("Loops need states between the corners, such as between = 20 in [solve].", "missing"))
+        if _slips(cycle):
+            parts += _drawn(lambda: drawings.slip(page.album, cycle))
+        else:
+            parts.append(Text(_sentence(NO_SLIP.format(cycle))))
+    if source.result.cycles:
+        parts += _drawn(lambda: drawings.cycles(page.album, source.result))
+    return Section("hysteresis", "Hysteresis and slip", parts)
+
+
+def _slips(cycle: LoadCycle) -> bool:
+    """Whether a node slips over a cycle, beyond rounding."""
+    natural = max(size("dx", state) for state in cycle.states)
+    return cycle.largest_slip_range > NEGLIGIBLE * natural
+
+
+def _drawn(draw: Callable[[], Part]) -> list[Part]:
+    """Return a picture, or the reason why there is none."""
+    try:
+        return [draw()]
+    except InputError as error:
+        return [Text(f"There is no figure: {error.field} {error.reason}.", "missing")]
+
+
+def stresses(page: Pages) -> Section:
+    """Return the hoop stress round the hole, and a map of the state with the largest one."""
+    drawn, problem = page.source.drawn, page.source.case.problem
+    if not drawn:
+        return Section("stresses", "Stresses", [Text(NO_STATE, "missing")])
+    parts = _drawn(lambda: drawings.hoop(page.album, drawn))
+    if line := hoop_line(problem, drawn):
+        parts.append(Text(_sentence(line)))
+    if problem.surfaces.plate.is_rigid:
+        largest = max(drawn, key=lambda state: state.peak_pressure)
+    else:
+        largest = max(drawn, key=lambda state: state.peak_hoop_stress().value)
+    parts += _drawn(lambda: drawings.stress_map(page.album, largest))
+    return Section("stresses", "Stresses", parts)
+
+
+def fatigue(page: Pages) -> Section:
+    """Return the hot spot over the last cycle, with the life if the material has constants for it."""
+    return Section("fatigue", "Fatigue", _fatigue(page))
+
+
+def _fatigue(page: Pages) -> list[Part]:
+    source, cycle = page.source, page.source.cycle
+    plate = source.case.problem.surfaces.plate
+    body = hole_body(source.case.problem)
+    if plate.is_rigid:
+        return [Text(f"The {body} is rigid: it has no stress and no fatigue.", "missing")]
+    if cycle is None:
+        return [Text(f"Fatigue needs a cycle: {source.why_no_cycle}.", "missing")]
+    if len(cycle.states) > MOST_STOPS:
+        how = f"fastpin plot {source.path} fatigue" if source.path else 'result.fatigue("smith-watson-topper")'
+        words = f"The last cycle has {len(cycle.states):,} states; fatigue of more than {MOST_STOPS} takes long"
+        return [Text(f"{words}. It is left to: {how}", "missing")]
+    try:
+        found = damage.fatigue(cycle.states, CRITERION)
+    except InputError as error:
+        return [Text(f"There is no fatigue: {error.field} {error.reason}.", "missing")]
+    parts: list[Part] = [drawings.fatigue(page.album, found)]
+    if found.life is None:
+        words = f"There is no life: the material of the {body} lacks constants for it."
+        parts.append(Text(f"{words} The key fatigue of a case file gives them; see docs/fatigue.md.", "missing"))
+    elif source.last_cycle is not None and (line := fatigue_line(cycle.states, source.last_cycle)):
+        parts.append(Text(_sentence(line)))
+    return parts
+
+
+def convergence(page: Pages) -> Section:
+    """Return a convergence study, if there is one."""
+    study = page.convergence
+    if study is None:
+        words = "There is no convergence study on this page: result files hold none."
+        words += " fastpin converge CASE.toml makes one; in Python, result.report(path, convergence=...) shows it."
+        return Section("convergence", "Convergence", [Text(words, "missing")])
+    parts: list[Part] = []
+    for corner in study.loads:
+        for one in study.studies:
+            rows = reported_series(one, study.problem, corner)
+            words = f"Corner {corner:,}, {heading(one, study).removesuffix(':')}"
+            parts.append(Table(words, series_columns(one, rows)))
+    parts.append(drawings.convergence(page.album, study))
+    return Section("convergence", "Convergence", parts)
+
+
+def checks(page: Pages) -> Section:
+    """Return the residuals of all states, and the counts of the solver."""
+    source = page.source
+    rows = [
+        (name, f"{value:.1e}", "met" if value <= MAX_RESIDUAL else "not met", RESIDUAL_WORDS.get(name, ""))
+        for name, value in source.residuals.items()
+    ]
+    parts: list[Part] = []
+    if rows:
+        words = f"Largest violations of the contact conditions in all {source.points.size:,} states"
+        heads = ("condition", "largest violation", f"at most {MAX_RESIDUAL:g}", "meaning")
+        parts.append(Facts(words, rows, heads))
+    else:
+        parts.append(Text(NO_STATE, "missing"))
+    parts.append(Text(_sentence(solver_line(source.result))))
+    return Section("checks", "Checks", parts)
+
+
+def provenance(page: Pages) -> Section:
+    """Return the versions, the place and time of the run, its id, and its input."""
+    source = page.source
+    document = canonical(source.case)
+    rows, words = [*source.origin], "Input of the run (JSON, SI units)"
+    if source.knows_options:
+        rows.append(("id of the input", run_id(document)))
+    else:
+        del document["solve"]
+        words = "Input of the run without the options of the solver, which are not known (JSON, SI units)"
+    parts: list[Part] = [Facts("Origin", rows, ("subject", "value"))]
+    if source.case_text:
+        parts.append(Listing("Case file", _shortened(source.case_text)))
+    parts.append(Listing(words, _shortened(json.dumps(document, indent=1))))
+    return Section("provenance", "Versions and provenance", parts)
+
+
+def _shortened(text: str) -> str:
+    """Return a text, or its beginning: the compliance of a finite plate has thousands of numbers."""
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[:MOST_CHARACTERS]}\n... {len(text) - MOST_CHARACTERS:,} more characters"
+
+
+SECTIONS: Sequence[Callable[[Pages], Section]] = (
+    overview, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue, convergence,
+    checks, provenance,
+)  # fmt: skip
+"""All sections, in the order of the page."""

@@ -1,0 +1,251 @@
+"""What a page shows of a result: a stored one, of which few states are read, or one in memory."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fastpin import storage
+from fastpin.errors import InputError
+from fastpin.model.case import Case
+from fastpin.model.options import SolveOptions
+from fastpin.report.table import visible_rows
+from fastpin.solver.result import Result
+from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
+from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.quantities import load_point
+from fastpin.states.state import State
+from fastpin.storage.layout import versions
+
+MOST_DRAWN = 6
+"""Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
+
+MOST_CORNERS = 100_000
+"""Most corners in which a closed part without repeated blocks, or the largest force, is looked for."""
+
+PIECE = 1 << 20
+"""Bytes of a file that are read at once for its hash."""
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A result for a page.
+
+    Attributes
+    ----------
+    case : Case
+    result : Result
+        Perhaps without states: `read` gives them.
+    points : ndarray, shape (states,)
+        Load points of all states.
+    read : callable
+        ``read(places)`` gives the states at these places, in increasing order.
+    origin : list of (str, str)
+        Where the result comes from: names and values.
+    residuals : dict of str to float
+        The largest of each kind, over all states.
+    error : str or None
+        Why the run ended early.
+    path : Path or None
+        The file.
+    case_text : str
+        The text of the case file; empty if it is not known.
+    knows_options : bool
+        Whether the options of the case are those of the run. Otherwise only the nodes and the method are.
+    """
+
+    case: Case
+    result: Result
+    points: np.ndarray
+    read: Callable[[Sequence[int]], list[State]]
+    origin: list[tuple[str, str]]
+    residuals: dict[str, float]
+    error: str | None = None
+    path: Path | None = None
+    case_text: str = field(default="", repr=False)
+    knows_options: bool = True
+
+    @classmethod
+    def of_file(cls, path: Path) -> Source:
+        """Return a stored result as a source. Its run may still be going on.
+
+        Raises
+        ------
+        InputError
+            See :func:`fastpin.load`.
+        """
+        stored, result, points = storage.stored_case(path), storage.load(path, states=[]), storage.load_points(path)
+        case = replace(stored, options=_as_given(stored.options))
+        known = storage.provenance(path)
+        origin = [("solved by", _named_versions(known))]
+        origin += [(words, known[name]) for name, words in _PLACES.items() if name in known]
+        origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
+
+        def read(places: Sequence[int]) -> list[State]:
+            return storage.load(path, states=list(places)).states
+
+        residuals, error = storage.largest_residuals(path), storage.stored_error(path)
+        return cls(case, result, points, read, origin, residuals, error, path, knows_options="run" in known)
+
+    @classmethod
+    def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
+        """Return a result in memory as a source, with the `error` that ended it early.
+
+        Without its `case`, the options of the solver are not known.
+        """
+        known = case is not None
+        if case is None:
+            method: Any = result.method
+            options = SolveOptions(nodes=result.grid.size, method=method, error_bars=result.coarse is not None)
+            case = Case(result.problem, result.history, options, title)
+        residuals: dict[str, float] = {}
+        for state in result:
+            residuals = {name: max(value, residuals.get(name, 0.0)) for name, value in state.residuals.items()}
+
+        def read(places: Sequence[int]) -> list[State]:
+            return [result.states[place] for place in places]
+
+        origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
+        points = np.array([load_point(state) for state in result])
+        return cls(case, result, points, read, origin, residuals, error, knows_options=known)
+
+    @property
+    def reached(self) -> int:
+        """Number of the last corner with a state; 0 without states."""
+        return int(np.floor(self.points[-1])) if self.points.size else 0
+
+    # -- choices of states ---------------------------------------------------------------------------------------
+
+    @cached_property
+    def rows(self) -> tuple[list[State], dict[int, str]]:
+        """The states of the table, and words on those left out, by the row before which they are left out.
+
+        Cycles that repeat the cycle before are left out, all but the last one, and the middle of a long table.
+        """
+        repeats = np.zeros(self.points.size, dtype=bool)
+        for block in consecutive_cycles(self.result.cycles):
+            steady, last = periodic_from(block), block[-1]
+            if steady is not None and last.corner - last.length > steady.corner:
+                begin, end = steady.corner + 1, last.corner + 1 - last.length
+                repeats |= (self.points > begin) & (self.points <= end)
+        shown = np.flatnonzero(~repeats)
+        shown = shown[visible_rows(shown.size)]
+        gaps = {}
+        for row, (before, place) in enumerate(zip(shown[:-1].tolist(), shown[1:].tolist(), strict=True), start=1):
+            if place > before + 1:
+                left_out = repeats[before + 1 : place]
+                reason = "of cycles that repeat the one before" if left_out.all() else "not shown here"
+                gaps[row] = f"{place - before - 1:,} states {reason}"
+        return self.read(shown.tolist()), gaps
+
+    @cached_property
+    def drawn(self) -> list[State]:
+        """At most :data:`MOST_DRAWN` states for figures: all corners if they are few, else those of the last cycle."""
+        places = np.arange(self.points.size)
+        corners = places[self.points % 1.0 == 0.0]
+        if self.cycle is not None and max(corners.size, 1) > MOST_DRAWN:
+            places = places[(self.points > self.cycle.first) & (self.points <= self.cycle.last)]
+            corners = places[self.points[places] % 1.0 == 0.0]
+        places = corners if corners.size else places
+        if not places.size:
+            return []
+        chosen = places[np.linspace(0, places.size - 1, min(places.size, MOST_DRAWN)).round().astype(int)]
+        largest = self._largest_force(places)
+        if largest is not None and largest not in chosen:
+            chosen[np.argmin(np.abs(chosen[:-1] - largest))] = largest
+        return self.read(np.unique(chosen).tolist())
+
+    def _largest_force(self, places: np.ndarray) -> int | None:
+        """Return the place of the state with the largest force on the pin, of several; None if that is not known."""
+        if len(self.case.history) > MOST_CORNERS or places.size <= MOST_DRAWN:
+            return None
+        loads = self.case.history.values()[np.floor(self.points[places]).astype(int) - 1]
+        return int(places[np.argmax(np.hypot(loads[:, 0], loads[:, 1]))])
+
+    @cached_property
+    def _cycle(self) -> LoadCycle | str:
+        """The last cycle; or why there is none."""
+        if not self.points.size:
+            return "there is no state"
+        found, first = self.result.cycles[-1] if self.result.cycles else None, 0
+        if found is None:
+            first = self._closing_corner()
+            if not first:
+                return "the history has no cycle that has ended; a load block with repeat = 2 has two"
+        begin, end = (first, self.reached) if found is None else (found.corner + 1 - found.length, found.corner + 1)
+        places = np.flatnonzero((self.points >= begin) & (self.points <= end))
+        part = replace(self.result, states=self.read(places.tolist()))
+        try:
+            return part.cycle() if found is not None else part.cycle(first=first, last=end)
+        except InputError as error:
+            return error.reason
+
+    @property
+    def cycle(self) -> LoadCycle | None:
+        """The last cycle, or without repeated blocks the last part of the history that ends with the loads it began."""
+        return None if isinstance(self._cycle, str) else self._cycle
+
+    @property
+    def why_no_cycle(self) -> str:
+        """Why there is no last cycle; empty if there is one."""
+        return self._cycle if isinstance(self._cycle, str) else ""
+
+    @property
+    def last_cycle(self) -> Cycle | None:
+        """The changes over the last cycle of repeated blocks; None without one."""
+        return self.result.cycles[-1] if self.result.cycles else None
+
+    def _closing_corner(self) -> int:
+        """Return the latest corner with the loads of the last one, before it by two or more; 0 if there is none."""
+        if not 3 <= self.reached <= len(self.case.history) <= MOST_CORNERS:
+            return 0
+        loads = self.case.history.values()[: self.reached]
+        same = np.flatnonzero((loads[:-2] == loads[-1]).all(axis=1))
+        return int(same[-1]) + 1 if same.size else 0
+
+
+_PLACES = {"created": "begun", "host": "machine", "platform": "system", "run": "name of the run"}
+"""Words for the attributes of a file that tell where it comes from."""
+
+LIBRARIES = ("python", "numpy", "scipy", "numba", "h5py")
+"""Libraries whose versions are named."""
+
+
+def _as_given(options: SolveOptions) -> SolveOptions:
+    """Return stored options with the number of states inside each step: a file holds their fractions.
+
+    The id of the input is then that of the case file and of a sweep.
+    """
+    count = options.fractions.size - 1
+    spaced = options.changed(between=count)
+    return spaced if np.array_equal(spaced.fractions, options.fractions) else options
+
+
+def _named_versions(known: dict[str, str]) -> str:
+    """Return the versions of fastpin and the libraries as text."""
+    others = ", ".join(f"{name} {known[name]}" for name in LIBRARIES if name in known)
+    return f"fastpin {known.get('fastpin', 'of an unknown version')}{f' ({others})' if others else ''}"
+
+
+def _digest(path: Path) -> str:
+    """Return the SHA-256 of a file as it is now."""
+    found = hashlib.sha256()
+    try:
+        with path.open("rb") as file:
+            while piece := file.read(PIECE):
+                found.update(piece)
+    except OSError as error:
+        raise InputError(str(path), f"can't be read: {error.strerror or error}") from None
+    return found.hexdigest()
+
+
+def now() -> str:
+    """Return the date and time, UTC, as text."""
+    return datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")

@@ -1,0 +1,208 @@
+"""The page of a sweep."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.checks import check_callable, file_path
+from fastpin.pages import drawings
+from fastpin.pages.album import Album
+from fastpin.pages.content import Facts, Listing, Page, Part, Section, Table, Text
+from fastpin.pages.html import check_page, write_page
+from fastpin.pages.source import now
+from fastpin.report.case import case_rows, corner_columns
+from fastpin.report.sweep import chart, check_axes, run_columns
+from fastpin.storage.packed import INDEX
+from fastpin.studies.index import DONE, FAILED, WAITING, Index
+from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
+from fastpin.studies.sweep import PLAN, rows
+from fastpin.version import __version__
+
+KEY_CHARTS = ("peak_pressure", "contact_width", "stick_width", "dissipation")
+"""Key figures that are drawn if the plan has no outcomes."""
+
+MOST_CHARTS = 8
+"""Most outcomes that are drawn."""
+
+MOST_RUNS = 500
+"""Most runs in the table of a page; a table of more is left to a CSV file."""
+
+MOST_FAILED = 200
+"""Most failed runs that are listed with their reasons."""
+
+
+def write_sweep_report(
+    directory: str | Path,
+    path: str | Path,
+    *,
+    plan: str | Path | None = None,
+    progress: Callable[[float, float], None] | None = None,
+) -> None:
+    """Write the report of a sweep: one HTML page with its plan, maps or curves, a table of its runs, and failed runs.
+
+    Parameters
+    ----------
+    directory : path
+        The directory of the sweep. The sweep may be going on.
+    path : path
+        The page. Its name ends in .html or .htm. An existing page is overwritten, whole or not at all.
+    plan : path, optional
+        The plan. Unless given, it is the copy in the directory. The base case of the copy is looked for from the
+        directory, and from the directory round it.
+    progress : callable, optional
+        Called as ``progress(done, all)`` with numbers of sections.
+
+    Raises
+    ------
+    InputError
+        If an argument is of another class, the directory holds no sweep, its plan or base case is not found, or the
+        page can't be written.
+    CaseFileError
+        If the plan has faults.
+    """
+    target, folder = check_page("path", path), file_path("directory", directory)
+    check_callable("progress", progress)
+    report = progress or (lambda done, total: None)
+    with Index(folder) as index:
+        digest = index.read_note("plan")
+    found = _plan_of(folder, digest) if plan is None else read_plan(plan)
+    runs, album, sections = rows(found, folder), Album(), []
+    for number, make in enumerate(SECTIONS):
+        report(number, len(SECTIONS))
+        sections.append(make(found, runs, album))
+    report(len(SECTIONS), len(SECTIONS))
+    if found.digest != digest:
+        words = "The sweep was last run with another plan than this one; runs that it lacks are waiting."
+        sections[0] = Section("overview", "Overview", [*sections[0].parts, Text(words, "note")])
+    lead = "A parameter sweep of the frictional contact of an elastic pin in the hole of an elastic plate."
+    made = f"Made by fastpin {__version__} on {now()} from {folder.resolve().name}/{INDEX}."
+    write_page(Page(found.title or "Report of a sweep", lead, sections, made), target)
+
+
+def _plan_of(folder: Path, digest: str | None) -> Plan:
+    """Return the plan of a sweep from its copy. Its base case lies where the plan was read, which is not known."""
+    copy, fault, changed = folder / PLAN, None, False
+    if not copy.is_file():
+        raise InputError(str(folder), f"holds no copy of its plan, {PLAN}; name the plan")
+    text = copy.read_text(encoding="utf-8")
+    for base in (folder.resolve().parent, folder):
+        try:
+            plan = parse_plan(text, str(copy), base)
+        except CaseFileError as error:
+            fault = fault or error
+            continue
+        if plan.digest == digest:
+            return plan
+        changed = True
+    if changed:
+        raise InputError(str(folder), "its base case has changed since the sweep was run; name the plan")
+    raise InputError(str(folder), f"its plan can't be read from here; name the plan. The first fault: {fault}")
+
+
+def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    counts = Counter(run["status"] for run in runs)
+    words = ", ".join(f"{counts[status]:,} {status}" for status in (DONE, FAILED, WAITING))
+    seconds = sum(run.get("seconds") or 0.0 for run in runs)
+    parts: list[Part] = [Text(f"{len(runs):,} points: {words}. The solver took {seconds:.3g} s in all.")]
+    if counts[WAITING]:
+        how = "fastpin sweep with the plan continues the sweep"
+        parts.append(Text(f"The sweep is not finished: {counts[WAITING]:,} points are waiting; {how}.", "note"))
+    same = len(plan.points) - len(plan.runs)
+    if same:
+        parts.append(Text(f"{same:,} points have the same input as another one, and share its run."))
+    return Section("overview", "Overview", parts)
+
+
+def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    fields = []
+    for name, spacing in plan.fields.items():
+        values = list(dict.fromkeys(str(point.values[name]) for point in plan.points if name in point.values))
+        shown = values if len(values) <= 12 else [*values[:3], "...", *values[-3:]]
+        fields.append((name, f"{len(values):,}", ", ".join(shown), spacing))
+    parts: list[Part] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]
+    if plan.outcomes:
+        outcomes = [(name, outcome.definition) for name, outcome in plan.outcomes.items()]
+        parts.append(Facts("Outcomes", outcomes, ("name", "definition")))
+    parts.append(Listing("The plan", plan.text))
+    return Section("plan", "Plan", parts)
+
+
+def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    point = plan.points[0]
+    case = plan.case(point)
+    columns, hidden = corner_columns(case.problem, case.history)
+    note = f" ({hidden:,} corners not shown here)" if hidden else ""
+    words = f"The first run, {point.id}: {describe_values(point.values)}."
+    parts: list[Part] = [
+        Text(words),
+        Facts("The problem", case_rows(case), ("subject", "in words")),
+        Table(f"Corners of the load history{note}", columns),
+    ]
+    return Section("case", "The first case", parts)
+
+
+def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    names = [*plan.outcomes] or list(KEY_CHARTS)
+    parts: list[Part] = []
+    try:
+        check_axes(plan, names[0], None, None)
+    except InputError as error:
+        parts.append(Text(f"There is no figure: {error.reason}.", "missing"))
+        names = []
+    for name in names[:MOST_CHARTS]:
+        found = replace(chart(plan, runs, name), title="")  # the page has the title
+        if found.missing == len(runs):
+            parts.append(Text(f"There is no figure of {name}: no run has a value.", "missing"))
+        else:
+            parts.append(drawings.sweep(album, found))
+    if len(names) > MOST_CHARTS:
+        others = ", ".join(names[MOST_CHARTS:])
+        parts.append(Text(f"Not drawn here: {others}. fastpin sweep --plot FILE --value NAME draws one.", "missing"))
+    return Section("results", "Results", parts)
+
+
+def _table(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    columns, gaps, half = run_columns(plan, runs), {}, MOST_RUNS // 2
+    parts: list[Part] = []
+    if len(runs) > MOST_RUNS:
+        columns = [(name, unit, [*cells[:half], *cells[-half:]]) for name, unit, cells in columns]
+        gaps = {half: f"{len(runs) - MOST_RUNS:,} runs not shown here"}
+        parts.append(Text("The table lacks its middle. fastpin sweep --table FILE writes all rows.", "missing"))
+    return Section("runs", "Runs", [Table("Runs with their fields and values", columns, gaps), *parts])
+
+
+def _failed(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    failed = [(run, point) for run, point in zip(runs, plan.points, strict=True) if run["status"] == FAILED]
+    if not failed:
+        return Section("failed", "Failed runs", [Text("No run has failed.")])
+    listed = [
+        (run["id"], describe_values(point.values), run["reason"] or "no reason is known")
+        for run, point in failed[:MOST_FAILED]
+    ]
+    parts: list[Part] = [Facts(f"{len(failed):,} failed runs", listed, ("run", "values", "reason"))]
+    if len(failed) > MOST_FAILED:
+        parts.append(Text(f"{len(failed) - MOST_FAILED:,} more have failed.", "missing"))
+    parts.append(Text("fastpin sweep --retry runs what failed again."))
+    return Section("failed", "Failed runs", parts)
+
+
+def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+    ended = [run for run in runs if run.get("versions")]
+    names = sorted({", ".join(f"{name} {value}" for name, value in run["versions"].items()) for run in ended})
+    started = sorted(run["started"] for run in ended if run.get("started"))
+    residuals = [run["residual"] for run in ended if run.get("residual") is not None]
+    found = [("solved by", version) for version in names]
+    found += [("machine", host) for host in sorted({run["host"] for run in ended if run.get("host")})]
+    found += [("first run begun", started[0]), ("last run begun", started[-1])] if started else []
+    found += [("SHA-256 of fields and runs", plan.digest)]
+    found += [("largest residual of all runs", f"{max(residuals):.1e}")] if residuals else []
+    return Section("provenance", "Versions and provenance", [Facts("Origin", found, ("subject", "value"))])
+
+
+SECTIONS = (_overview, _plan, _first_case, _charts, _table, _failed, _provenance)
+"""All sections, in the order of the page."""

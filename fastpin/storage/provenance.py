@@ -1,0 +1,47 @@
+"""Where a stored result comes from, and how well all of its states meet the contact conditions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from fastpin.model.checks import file_path
+from fastpin.storage.layout import RESIDUALS
+from fastpin.storage.store import open_result
+
+SOURCES = ("created", "host", "platform", "run")
+"""Attributes of a file that tell when and where its run began."""
+
+
+def provenance(path: str | Path) -> dict[str, str]:
+    """Return the versions, the date, the machine and the platform of a stored result, by name.
+
+    The date "created" is that of the file's first writing, UTC, ISO 8601. The entry "run" is there only if a run has
+    written the file, which then holds all options of the solver. What a file does not hold is left out.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        attributes = {str(name): str(value) for name, value in file.attrs.items()}
+    versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
+    found = {name.removeprefix("version_"): value for name, value in versions.items()}
+    return found | {name: attributes[name] for name in SOURCES if name in attributes}
+
+
+def largest_residuals(path: str | Path) -> dict[str, float]:
+    """Return the largest residual of each kind over all states of a file, see :class:`fastpin.State`.
+
+    A file without states has none.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        rows: np.ndarray = file["states/residuals"][()]
+    return dict(zip(RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}

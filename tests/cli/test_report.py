@@ -1,0 +1,80 @@
+"""``fastpin report``: its kinds of sources, its options, its messages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fastpin.cli.main import main
+from fastpin.pages.album import Album
+from fastpin.pages.content import Picture
+from tests.support.html import Page
+from tests.support.samples import JOINT
+
+CASE = f"""title = "A joint"
+{JOINT}
+[[load]]
+P = [1e6, 1.2e6]
+[solve]
+nodes = 121
+"""
+
+
+@pytest.fixture
+def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A case file in the working directory. Pages have captions in place of figures, which take long."""
+    monkeypatch.setattr(Album, "picture", lambda self, draw, words, caption, bitmap=False: Picture("", caption, 1))
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE)
+    return Path("case.toml")
+
+
+def words(path: str) -> str:
+    return Page(Path(path).read_text(encoding="utf-8")).text
+
+
+def test_a_stored_result_gets_the_name_of_its_file(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(case), "-o", "result.h5"]) == 0
+    capsys.readouterr()
+    assert main(["report", "result.h5", "--case", str(case), "--title", "Another title"]) == 0
+    assert capsys.readouterr().out == "wrote result.html\n"
+    assert "Another title" in words("result.html")
+    assert CASE in words("result.html")
+
+
+def test_a_case_is_solved_with_error_bars(case: Path) -> None:
+    assert main(["report", str(case), "-o", "page.html", "--error-bars"]) == 0
+    assert "There are no error bars" not in words("page.html")
+    assert CASE in words("page.html")
+    assert "A joint" in words("page.html")
+
+
+def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(CASE.replace("friction = 0.4", 'friction = 0.4\npin_load = "centre"') + "[[load]]\nM = 1e9\n")
+    assert main(["report", str(case), "-o", "page.html"]) == 1
+    reason = capsys.readouterr().err.removeprefix("fastpin: ").strip()
+    assert f"The reason: {reason}" in words("page.html")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["case.toml", "-o", "page.pdf"], "--output: the page's name must end in .html or .htm, not 'page.pdf'"),
+        (["case.toml", "--plan", "x"], "--plan: has no effect on a case file; it is for the directory of a sweep"),
+        (["a.h5", "--error-bars"], "--error-bars: has no effect on a stored result; it is for a case file"),
+        ([".", "--title", "x"], "--title: has no effect on the directory of a sweep; it is for a stored result or a"),
+        (["a.h5"], "a.h5: there is no such file"),
+        (["."], ".: holds no sweep: there is no index.sqlite"),
+        (["junk.h5"], "junk.h5: is not a whole HDF5 file"),
+    ],
+)
+def test_wrong_input_is_refused_in_one_sentence(
+    arguments: list[str], message: str, case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("junk.h5").write_bytes(b"junk")
+    assert main(["report", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"fastpin: {message}")
+    assert error.count("\n") == 1
+    assert sorted(path.name for path in Path().iterdir()) == ["case.toml", "junk.h5"]

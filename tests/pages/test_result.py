@@ -1,0 +1,274 @@
+"""The page of a result: what it holds, what it escapes, what it refuses, and how it treats long histories."""
+
+from __future__ import annotations
+
+import pickle
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin.errors import InputError
+from fastpin.model.loads import LOADS
+from fastpin.model.options import SolveOptions
+from fastpin.pages import album, write_report
+from fastpin.pages.album import Album
+from fastpin.pages.sections import SECTIONS
+from fastpin.pages.source import MOST_DRAWN, Source
+from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
+from fastpin.report.table import MAX_ROWS
+from fastpin.solver.errors import Interrupted
+from fastpin.states.quantities import QUANTITIES
+from fastpin.storage.layout import RESIDUALS
+from tests.support.html import Page
+from tests.support.samples import JOINT, sample_result
+
+CASE = f"""title = "A <b>bold</b> & \\"quoted\\" title <script>alert(1)</script>"
+{JOINT}
+[[load]]
+P = 1e6
+[[load]]
+Q = [1e5, -1e5]
+repeat = 30
+[solve]
+nodes = 61
+"""
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A stored result of 61 corners that becomes periodic, and its case file beside it."""
+    folder = tmp_path_factory.mktemp("pages")
+    (folder / "case.toml").write_text(CASE)
+    case, path = fastpin.read_case(folder / "case.toml"), folder / "result.h5"
+    fastpin.record(case.problem, case.history, path, title=case.title, nodes=61)
+    return path
+
+
+@pytest.fixture(scope="module")
+def text(stored: Path) -> str:
+    """The page of the stored result, with its case file."""
+    path = stored.with_name("page.html")
+    write_report(stored, path, case=stored.with_name("case.toml"))
+    return path.read_text(encoding="utf-8")
+
+
+def test_page_is_well_formed_and_needs_nothing_from_outside(text: str) -> None:
+    page = Page(text)
+    assert len(page.ids) == len(set(page.ids))
+    assert {link.removeprefix("#") for link in page.links} <= set(page.ids)
+    assert all(source.startswith("data:image/png;base64,") for source in page.sources)
+    assert not {"script", "link", "iframe", "object", "base", "form"} & set(page.tags)
+    assert "http" not in re.sub(r'http-equiv="[^"]*"', "", text)
+    assert "@import" not in text
+    assert re.findall(r"url\((?!#)", text) == []
+    assert len(text) < 1_000_000
+
+
+def test_references_inside_figures_lead_to_elements(text: str) -> None:
+    page = Page(text)
+    used = set(re.findall(r"url\(#([^)]+)\)", text))
+    assert len(used) > 3
+    assert used <= set(page.ids)
+
+
+def test_page_can_be_read_without_seeing_it(text: str) -> None:
+    page = Page(text)
+    elements = page.attributes
+    assert ("html", {"lang": "en"}) in elements
+    assert page.tags.count("h1") == 1
+    assert all(found.get("alt") for tag, found in elements if tag == "img")
+    assert all(found.get("aria-label") and found.get("role") == "img" for tag, found in elements if tag == "svg")
+    assert page.tags.count("svg") + page.tags.count("img") == page.tags.count("figcaption") >= 6
+    assert page.tags.count("table") == page.tags.count("caption") == page.tags.count("thead")
+    assert all(found.get("scope") in ("row", "col") for tag, found in elements if tag == "th")
+    assert any(tag == "meta" and found.get("name") == "viewport" for tag, found in elements)
+
+
+def test_every_section_stands_in_the_contents(text: str) -> None:
+    page = Page(text)
+    sections = [found["id"] for tag, found in page.attributes if tag == "section"]
+    assert len(sections) == len(SECTIONS) == 13
+    links = [found["href"] for tag, found in page.attributes if tag == "a"]
+    assert links == ["#content", *(f"#{name}" for name in sections)]
+
+
+def test_text_of_the_user_is_escaped(text: str) -> None:
+    page = Page(text)
+    assert "b" not in page.tags
+    assert page.text.count('A <b>bold</b> & "quoted" title <script>alert(1)</script>') == 2  # title and heading
+
+
+def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: Path) -> None:
+    words = Page(text).text
+    result = fastpin.load(stored)
+    for part in (
+        "Ti-6Al-4V", "hole radius 10 mm, clearance 20 um, friction 0.4", "9.98 mm", "force on the pin downwards",
+        f"{max(state.peak_pressure for state in result) / 1e6:.5g} MPa", "periodic from cycle", "x 30", "met",
+        f"fastpin {fastpin.__version__}", "SHA-256 of the file", "[[load]]\nP = 1e6", "id of the input",
+        "There are no error bars", "fastpin converge CASE.toml",
+    ):  # fmt: skip
+        assert part in words, part
+    assert "not met" not in words
+
+
+def test_cycles_that_repeat_the_one_before_are_folded(text: str, stored: Path) -> None:
+    states, gaps = Source.of_file(stored).rows
+    points = [state.step + 1 for state in states]
+    (count,) = [int(re.findall(r"(\d+) states of cycles that repeat", words)[0]) for words in gaps.values()]
+    assert len(states) + count == 61
+    assert points[-2:] == [60, 61]
+    full = fastpin.load(stored)
+    (row,) = gaps
+    hidden = range(points[row - 1], points[row - 1] + count)
+    for place in hidden:
+        assert np.array_equal(full[place].pressure, full[place - 2].pressure)
+    assert f"{count} states of cycles that repeat the one before" in text
+
+
+def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
+    result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(200)], nodes=21)
+    source = Source.of_result(result)
+    read: list[int] = []
+    object.__setattr__(source, "read", lambda places: read.extend(places) or [result[k] for k in places])
+    states, gaps = source.rows
+    assert (len(states), gaps) == (MAX_ROWS, {MAX_ROWS // 2: "160 states not shown here"})
+    assert len(source.drawn) == MOST_DRAWN
+    assert 199 in read
+    assert len(read) == MAX_ROWS + MOST_DRAWN
+
+
+def test_the_largest_force_of_a_long_history_is_drawn() -> None:
+    corners = [{"P": 3e6 if k == 77 else 1e6 + 100.0 * k} for k in range(200)]
+    drawn = Source.of_result(sample_result(corners, nodes=21)).drawn
+    assert 77 in [state.step for state in drawn]
+    assert [state.step for state in drawn][-1] == 199
+
+
+def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None:
+    corners = [{"P": 2e6, "Q": load} for load in (0.0, 4e5, -4e5, 1e5, 4e5)]
+    source = Source.of_result(sample_result(corners))
+    assert source.cycle is not None
+    assert (source.cycle.first, source.cycle.last) == (2, 5)
+    assert Source.of_result(sample_result(corners[:4])).cycle is None
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_result_in_memory_has_the_same_page(tmp_path: Path) -> None:
+    path, calls = tmp_path / "page.htm", []
+    result = fastpin.solve(
+        sample_result().problem, [{"P": 1e6}, {"Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}], nodes=121, error_bars=True
+    )
+    result.report(path, title="My joint", progress=lambda done, total: calls.append((done, total)))
+    words = Page(path.read_text(encoding="utf-8")).text
+    assert "My joint" in words
+    assert "a result in memory" in words
+    assert re.search(r"\d ± \d", words)
+    assert "There are no error bars" not in words
+    assert "shortcut" not in words  # the options of the solver are not known
+    assert calls == [(k, len(SECTIONS)) for k in range(len(SECTIONS) + 1)]
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_convergence_study_is_shown(tmp_path: Path) -> None:
+    result = sample_result()
+    study = fastpin.converge(result.problem, [{"P": 2.42e6}], nodes=(51, 101, 201))
+    result.report(tmp_path / "page.html", convergence=study)
+    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    assert "Corner 1, path solver" in words
+    assert "Distance to the limit" in words
+    assert "There is no convergence study" not in words
+
+
+def test_a_figure_has_the_same_markup_each_time() -> None:
+    result = sample_result(nodes=21)
+    first, second = (
+        Album().picture(lambda path: fastpin.plot_tractions(result, path), "words", "caption") for _ in range(2)
+    )
+    assert first == second
+
+
+def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(album, "MOST_SVG", 1000)
+    found = Album().picture(lambda path: fastpin.plot_tractions(sample_result(nodes=21), path), 'say "so"', "caption")
+    (element,) = Page(found.markup).attributes
+    assert element[0] == "img"
+    assert element[1]["alt"] == 'say "so"'
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_run_that_goes_on_or_ended_early_has_a_page(tmp_path: Path) -> None:
+    problem, path, page = sample_result().problem, tmp_path / "a.h5", tmp_path / "a.html"
+    found: list[str] = []
+
+    def stop(done: float, total: float) -> None:
+        if done >= 3.0:
+            write_report(path, page)
+            found.append(page.read_text(encoding="utf-8"))
+            raise Interrupted
+
+    with pytest.raises(Interrupted):
+        fastpin.record(problem, [{"P": k * 1e5} for k in range(1, 9)], path, nodes=61, arc=(-3.0, -0.2), progress=stop)
+    write_report(path, page)
+    for text in (*found, page.read_text(encoding="utf-8")):
+        assert "Unfinished: corner" in Page(text).text
+        assert f"fastpin resume {path}" in Page(text).text
+    assert "interrupted" in Page(page.read_text(encoding="utf-8")).text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_result_without_states_says_what_is_missing(tmp_path: Path) -> None:
+    empty = sample_result(complete=False)
+    empty.states.clear()
+    empty.report(tmp_path / "page.html")
+    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert page.text.count("There is no state") >= 5
+    assert "Unfinished" in page.text
+
+
+def test_words_cover_all_names() -> None:
+    assert set(QUANTITY_WORDS) == set(QUANTITIES)
+    assert set(LOAD_WORDS) == set(LOADS)
+    assert set(OPTION_WORDS) == set(SolveOptions().keywords())
+    assert set(RESIDUAL_WORDS) == set(RESIDUALS)
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        ({"path": "page.txt"}, "path", "must end in .html or .htm, not 'page.txt'"),
+        ({"path": "no/page.html"}, "no/page.html", "the directory no does not exist"),
+        ({"result": "missing.h5"}, "missing.h5", "there is no such file"),
+        ({"result": "junk.h5"}, "junk.h5", "is not a whole HDF5 file"),
+        ({"result": 3.0}, "result", "must be"),
+        ({"title": 5}, "title", "must be"),
+        ({"case": "other.toml"}, "case", "other.toml is not the case of this result: friction differs"),
+        ({"convergence": 5}, "convergence", "must be a Convergence"),
+        ({"progress": 5}, "progress", "must be"),
+    ],
+)
+def test_wrong_input_is_one_sentence_and_loses_nothing(
+    change: dict[str, object], field: str, words: str, stored: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = stored.parent
+    monkeypatch.chdir(folder)
+    Path("junk.h5").write_bytes(b"junk")
+    Path("other.toml").write_text(CASE.replace("friction = 0.4", "friction = 0.3"))
+    Path("kept.html").write_text("kept")
+    given = {"result": stored, "path": "kept.html", **change}
+    with pytest.raises(InputError, match=re.escape(words)) as caught:
+        write_report(given.pop("result"), given.pop("path"), **given)  # type: ignore[arg-type]
+    assert caught.value.field == field
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+    assert Path("kept.html").read_text() == "kept"
+    assert [path.name for path in folder.glob(".*")] == []
+
+
+def test_the_result_is_never_overwritten(stored: Path) -> None:
+    odd = stored.with_name("result.html")
+    odd.write_bytes(stored.read_bytes())
+    with pytest.raises(InputError, match="won't overwrite the result"):
+        write_report(odd, odd)
+    assert odd.read_bytes() == stored.read_bytes()

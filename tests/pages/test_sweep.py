@@ -1,0 +1,113 @@
+"""The page of a sweep: plan, maps, runs, failed runs; where the plan is found."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.pages import write_sweep_report
+from fastpin.studies import read_plan, sweep
+from scripts.inline import Inline
+from tests.support.html import Page
+from tests.support.samples import JOINT
+
+CASE = f"""{JOINT}
+pin_load = "centre"
+[[load]]
+P = 1e6
+[[load]]
+M = 0.0
+[solve]
+nodes = 41
+"""
+
+PLAN = """title = "Moments & <i>friction</i>"
+case = "case.toml"
+[grid]
+"load.2.M" = [0.0, 1e7]
+"contact.friction" = [0.2, 0.4]
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of a sweep of four runs, two of which fail, beside its plan."""
+    place = tmp_path_factory.mktemp("sweep")
+    (place / "case.toml").write_text(CASE)
+    (place / "plan.toml").write_text(PLAN)
+    summary = sweep.run(read_plan(place / "plan.toml"), place / "plan", Inline())
+    assert (summary.done, len(summary.failed)) == (2, 2)
+    return place / "plan"
+
+
+@pytest.fixture(scope="module")
+def text(folder: Path) -> str:
+    """The page of the sweep."""
+    path = folder.parent / "page.html"
+    write_sweep_report(folder, path)
+    return path.read_text(encoding="utf-8")
+
+
+def test_page_is_whole_and_escapes_the_title(text: str) -> None:
+    page = Page(text)
+    assert len(page.ids) == len(set(page.ids))
+    inside = {link for link in page.links if link.startswith("#")}
+    assert {link.removeprefix("#") for link in inside} <= set(page.ids)
+    assert all(link.startswith("data:image/png;base64,") for link in set(page.links) - inside)
+    assert page.sources == []
+    assert "http" not in re.sub(r'http-equiv="[^"]*"', "", text)
+    assert "i" not in page.tags
+    assert "Moments & <i>friction</i>" in page.text
+
+
+def test_page_has_plan_figures_runs_failed_runs_and_versions(text: str, folder: Path) -> None:
+    page = Page(text)
+    assert page.tags.count("svg") == 4
+    assert "4 points: 2 done, 2 failed, 0 waiting" in page.text
+    for row in sweep.rows(read_plan(folder.parent / "plan.toml"), folder):
+        assert page.text.count(row["id"]) >= 1 + (row["status"] == "failed")
+        if row["status"] == "failed":
+            assert row["reason"] in page.text
+    assert '"contact.friction" = [0.2, 0.4]' in page.text
+    assert "SHA-256 of fields and runs" in page.text
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_runs_of_a_larger_plan_are_waiting(folder: Path, tmp_path: Path) -> None:
+    (folder.parent / "larger.toml").write_text(PLAN.replace("[0.2, 0.4]", "[0.2, 0.4, 0.6]"))
+    write_sweep_report(folder, tmp_path / "page.html", plan=folder.parent / "larger.toml")
+    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    assert "2 points are waiting" in words
+    assert "with another plan than this one" in words
+
+
+@pytest.mark.parametrize(
+    ("remove", "words"),
+    [("plan/plan.toml", "holds no copy of its plan"), ("case.toml", "its plan can't be read from here; name the plan")],
+)
+def test_a_plan_that_is_not_found_is_asked_for(remove: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "plan.toml").write_text(PLAN.replace("[0.0, 1e7]", "[0.0]").replace("[0.2, 0.4]", "[0.2]"))
+    sweep.run(read_plan(tmp_path / "plan.toml"), tmp_path / "plan", Inline())
+    (tmp_path / remove).unlink()
+    with pytest.raises(InputError, match=words):
+        write_sweep_report(tmp_path / "plan", tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_a_changed_base_case_is_seen(folder: Path, tmp_path: Path) -> None:
+    case = folder.parent / "case.toml"
+    case.write_text(CASE.replace("nodes = 41", "nodes = 43"))
+    try:
+        with pytest.raises(InputError, match="its base case has changed since the sweep was run"):
+            write_sweep_report(folder, tmp_path / "page.html")
+    finally:
+        case.write_text(CASE)
+
+
+def test_a_directory_without_a_sweep_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"holds no sweep: there is no index\.sqlite"):
+        write_sweep_report(tmp_path, tmp_path / "page.html")
