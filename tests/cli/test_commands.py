@@ -155,8 +155,8 @@ def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], needed: 
 
 
 HEAVY = (
-    "numba", "scipy", "scipy.linalg", "scipy.special", "scipy.fft", "tqdm", "matplotlib", "h5py", "jinja2", "multiprocessing",
-    "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
+    "numba", "scipy", "scipy.linalg", "scipy.special", "scipy.fft", "tqdm", "matplotlib", "h5py", "multiprocessing",
+    "jinja2", "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
 )  # fmt: skip
 """Modules that take long to import. Nothing that is loaded from disk needs them."""
 
