@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from fastpin.figures.style import (
     line,
     panels,
 )
-from fastpin.model.checks import instance
+from fastpin.model.checks import instance, number_array
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
@@ -39,11 +40,12 @@ def plot_history(
     title: str = "",
     width: float = 6.7,
     dpi: float = 200.0,
+    initial: Sequence[float] | np.ndarray | None = None,
 ) -> Figure:
     """Draw the loads of a history over its corners, with a panel for each kind of load.
 
     A repeated block is drawn once, shaded, with the number of times. The loads are those of the first time through. The
-    history starts without load at corner 0, and the loads are linear between the corners.
+    history starts at corner 0, without load unless `initial` is given. The loads are linear between the corners.
 
     Parameters
     ----------
@@ -52,6 +54,8 @@ def plot_history(
     history : LoadHistory
     path, title, width, dpi
         See :func:`fastpin.plot_tractions`.
+    initial : array_like, shape (loads,), optional
+        The load at corner 0, of a history that continues another one.
 
     Raises
     ------
@@ -62,11 +66,16 @@ def plot_history(
     instance("problem", problem, Problem, "a Problem")
     instance("history", history, LoadHistory, "a LoadHistory")
     inches = check_figure_text(title, width)
-    return draw_and_save(lambda: _draw(problem, history, title, inches), path, dpi)
+    folded = _folded(history, np.zeros(len(LOADS)) if initial is None else number_array("initial", initial))
+    return draw_and_save(lambda: _draw(problem, folded, title, inches), path, dpi)
 
 
-def _draw(problem: Problem, history: LoadHistory, title: str, width: float) -> Figure:
-    loads, numbers, repeated = _folded(history)
+Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
+"""Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
+
+
+def _draw(problem: Problem, folded: Folded, title: str, width: float) -> Figure:
+    loads, numbers, repeated = folded
     acting = [name for k, name in enumerate(LOADS) if loads[:, k].any()] or [LOADS[0]]
     kinds = list(dict.fromkeys(LOAD_KIND[name] for name in acting))
     figure, axes = panels(len(kinds), 1, 1.7, width)
@@ -93,13 +102,13 @@ def _draw(problem: Problem, history: LoadHistory, title: str, width: float) -> F
     return figure
 
 
-def _folded(history: LoadHistory) -> tuple[np.ndarray, list[int], list[tuple[int, int, int]]]:
+def _folded(history: LoadHistory, initial: np.ndarray) -> Folded:
     """Return the loads of all corners, the first time through each block, and the numbers of these corners.
 
-    The first row is the start without load, corner 0. The third list has the first row, the last row and the number of
+    The first row is the start, corner 0. The third list has the first row, the last row and the number of
     times of each repeated block.
     """
-    last, begin = np.zeros(len(LOADS)), 1
+    last, begin = initial, 1
     rows, numbers, repeated = [last[None, :]], [0], []
     for block in history.blocks:
         values = LoadHistory.from_array(block.given).values(initial=last)

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from fastpin import figures
 from fastpin.damage import Fatigue
 from fastpin.model.case import Case
@@ -34,13 +36,13 @@ class Words(NamedTuple):
     caption: str
 
 
-def history(album: Album, case: Case) -> Picture:
-    """Draw the load history."""
+def history(album: Album, case: Case, initial: np.ndarray) -> Picture:
+    """Draw the load history from the load before its first corner, shape (loads,)."""
     words = Words(
         f"Line chart of the loads over the {len(case.history):,} corners of the history.",
         "Load history. A shaded block is run through as many times as stands above it.",
     )
-    return album.picture(lambda path: figures.plot_history(case.problem, case.history, path), *words)
+    return album.picture(lambda path: figures.plot_history(case.problem, case.history, path, initial=initial), *words)
 
 
 def tractions(album: Album, states: Sequence[State]) -> Picture:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from fastpin.casefile.reader import parse_case, read_text
-from fastpin.errors import InputError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
@@ -47,7 +48,8 @@ def write_report(
     title : str
         Title of the page; that of the stored case unless given.
     case : path, optional
-        The case file of the result. Its text is shown on the page.
+        The case file of the result. Its text is shown on the page. Unless given, it is the file beside a stored result
+        that has its name with .toml, if that is a case file of the same problem and loads.
     convergence : Convergence, optional
         A study of the case, which is shown on the page.
     progress : callable, optional
@@ -73,6 +75,9 @@ def write_report(
         if target.resolve() == file.resolve():
             raise InputError("path", f"won't overwrite the result {file}")
         source = Source.of_file(file)
+        if case is None:
+            with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none
+                source = replace(source, case_text=_case_text(file.with_suffix(".toml"), source.case))
     if case is not None:
         source = replace(source, case_text=_case_text(case, source.case))
     write_source(source, target, title or source.case.title, convergence, progress)

@@ -13,9 +13,9 @@ from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOAD_KIND
+from fastpin.model.loads import named_load
 from fastpin.model.materials import Material
-from fastpin.model.units import acting_loads, units, with_unit
+from fastpin.model.units import acting_loads, named_loads, units, with_unit
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
@@ -114,7 +114,8 @@ def case(page: Pages) -> Section:
     """Return every parameter of the case in words, and the options of the solver."""
     found = page.source.case
     problem, unit = found.problem, units(found.problem)
-    rows = [row for row in case_rows(found) if row[0] not in ("pin", "plate")]
+    elsewhere = ("pin", "plate", *(["loads"] if page.source.initial.any() else []))  # they have sections of their own
+    rows = [row for row in case_rows(found) if row[0] not in elsewhere]
     if not problem.dimensionless:
         clearance = problem.assembled_clearance
         rows += [
@@ -182,8 +183,9 @@ def loads(page: Pages) -> Section:
     """Return the figure and the table of the corners."""
     found = page.source.case
     history = found.history
-    columns, hidden = corner_columns(found.problem, history)
-    names = acting_loads([dict(zip(LOAD_KIND, row, strict=True)) for row in history.distinct().tolist()])
+    initial = page.source.initial
+    columns, hidden = corner_columns(found.problem, history, initial)
+    names = acting_loads([named_load(row) for row in history.distinct(initial)])
     rows = [(name, LOAD_WORDS[name]) for name in names]
     count = len(columns[0][2])
     gaps = {min(count, MAX_ROWS) // 2: f"{hidden:,} corners not shown here"} if hidden else {}
@@ -192,7 +194,10 @@ def loads(page: Pages) -> Section:
         columns = [(name, unit, cells[:half] + cells[-half:]) for name, unit, cells in columns]
         gaps = {half: f"{hidden + count - MAX_ROWS:,} corners not shown here"}
     remarks = [Text("L_p is the load parameter (R - R_D)/(F beta*) of the force F on the pin.")]
-    parts: list[Part] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found)]
+    parts: list[Part] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found, initial)]
+    if initial.any():
+        kept = named_loads(found.problem, named_load(initial))
+        remarks.append(Text(f"The run continues another result. It begins with its loads: {kept}.", "note"))
     return Section("loads", "Loads", [*parts, Table("Corners of the load history", columns, gaps), *remarks])
 
 
@@ -393,6 +398,9 @@ def provenance(page: Pages) -> Section:
     parts: list[Part] = [Facts("Origin", rows, ("subject", "value"))]
     if source.case_text:
         parts.append(Listing("Case file", _shortened(source.case_text)))
+    elif source.path is not None:
+        words = "The text of the case file is not in a result file: fastpin report --case CASE.toml shows it."
+        parts.append(Text(words, "missing"))
     parts.append(Listing(words, _shortened(json.dumps(document, indent=1))))
     return Section("provenance", "Versions and provenance", parts)
 

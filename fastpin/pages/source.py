@@ -15,6 +15,7 @@ import numpy as np
 from fastpin import storage
 from fastpin.errors import InputError
 from fastpin.model.case import Case
+from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.table import visible_rows
 from fastpin.solver.result import Result
@@ -116,6 +117,23 @@ class Source:
         points = np.array([load_point(state) for state in result])
         return cls(case, result, points, read, origin, residuals, error, knows_options=known)
 
+    @cached_property
+    def initial(self) -> np.ndarray:
+        """The load before the first corner, shape (loads,): not zero if the result continues another one.
+
+        A load that the history gives from its first corner on counts as zero: nothing else depends on it.
+        """
+        found = np.zeros(len(LOADS))
+        if self.points.size:
+            (state,), problem = self.read([0]), self.case.problem
+            before = self.case.history[: state.step + 1].blocks
+            given = np.any([~np.isnan(block.given).all(axis=0) for block in before], axis=0)
+            reactions = {"Q": problem.driven[0], "P": problem.driven[1], "M": problem.held}
+            for place, name in enumerate(LOADS):
+                if not (given[place] or reactions.get(name)):
+                    found[place] = state.load[name]
+        return found
+
     @property
     def reached(self) -> int:
         """Number of the last corner with a state; 0 without states."""
@@ -166,7 +184,7 @@ class Source:
         """Return the place of the state with the largest force on the pin, of several; None if that is not known."""
         if len(self.case.history) > MOST_CORNERS or places.size <= MOST_DRAWN:
             return None
-        loads = self.case.history.values()[np.floor(self.points[places]).astype(int) - 1]
+        loads = self.case.history.values(self.initial)[np.floor(self.points[places]).astype(int) - 1]
         return int(places[np.argmax(np.hypot(loads[:, 0], loads[:, 1]))])
 
     @cached_property
@@ -206,7 +224,7 @@ class Source:
         """Return the latest corner with the loads of the last one, before it by two or more; 0 if there is none."""
         if not 3 <= self.reached <= len(self.case.history) <= MOST_CORNERS:
             return 0
-        loads = self.case.history.values()[: self.reached]
+        loads = self.case.history.values(self.initial)[: self.reached]
         same = np.flatnonzero((loads[:-2] == loads[-1]).all(axis=1))
         return int(same[-1]) + 1 if same.size else 0
 

@@ -181,13 +181,16 @@ def _drive(problem: Problem) -> str:
     return words
 
 
-def corner_columns(problem: Problem, history: LoadHistory) -> tuple[list[Column], int]:
+def corner_columns(
+    problem: Problem, history: LoadHistory, initial: np.ndarray | None = None
+) -> tuple[list[Column], int]:
     """Return the columns of the table of the corners, and the number of corners that it leaves out.
 
-    Of a repeated block it shows the first cycle, and the number of cycles.
+    Of a repeated block it shows the first cycle, and the number of cycles. `initial`, shape (loads,), is the load
+    before the first corner; zero unless given.
     """
     numbers, counts, loads = [], [], []
-    last = np.zeros(len(LOADS))
+    last = np.zeros(len(LOADS)) if initial is None else initial
     begin = 1
     for block in history.blocks:
         visible = visible_rows(len(block.given))

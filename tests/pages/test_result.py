@@ -137,7 +137,7 @@ def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
     assert (len(states), gaps) == (MAX_ROWS, {MAX_ROWS // 2: "160 states not shown here"})
     assert len(source.drawn) == MOST_DRAWN
     assert 199 in read
-    assert len(read) == MAX_ROWS + MOST_DRAWN
+    assert len(read) == MAX_ROWS + MOST_DRAWN + 1  # one tells the load at the beginning
 
 
 def test_the_largest_force_of_a_long_history_is_drawn() -> None:
@@ -180,6 +180,34 @@ def test_a_convergence_study_is_shown(tmp_path: Path) -> None:
     assert "Corner 1, path solver" in words
     assert "Distance to the limit" in words
     assert "There is no convergence study" not in words
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_case_file_beside_a_result_is_shown_if_it_is_that_of_the_result(stored: Path, tmp_path: Path) -> None:
+    file, page = tmp_path / "result.h5", tmp_path / "page.html"
+    file.write_bytes(stored.read_bytes())
+    for text, shown in ((CASE, True), (CASE.replace("0.4", "0.3"), False), ("[pin", False), (None, False)):
+        file.with_suffix(".toml").unlink(missing_ok=True)
+        if text is not None:
+            file.with_suffix(".toml").write_text(text)
+        write_report(file, page)
+        words = Page(page.read_text(encoding="utf-8")).text
+        assert (CASE in words) == shown
+        assert ("--case CASE.toml shows it" in words) != shown
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_branch_begins_with_the_loads_of_its_start(tmp_path: Path) -> None:
+    problem, page = sample_result().problem, tmp_path / "page.html"
+    first = fastpin.solve(problem, [{"P": 1e6}], nodes=61, arc=(-3.0, -0.2))
+    branch = fastpin.solve(problem, [{"Q": 1e5}, {"Q": -1e5}], start=first)
+    source = Source.of_result(branch)
+    assert source.initial == pytest.approx([1e6 if name == "P" else 0.0 for name in LOADS], rel=1e-12)
+    assert not Source.of_result(first).initial.any()
+    branch.report(page)
+    words = Page(page.read_text(encoding="utf-8")).text
+    assert "It begins with its loads: P = 1 MN/m." in words
+    assert "from no load" not in words
 
 
 def test_a_figure_has_the_same_markup_each_time() -> None:
