@@ -84,6 +84,9 @@ def overview(page: Pages) -> Section:
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         if cycle is not None and source.last_cycle is not None:
             sentences.append(fatigue_line(cycle.states, source.last_cycle))
+        if len(states) < source.points.size:
+            words = f"The sentences on states are on the {len(states)} states in the table of key figures."
+            parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not read."))
         parts.append(Items([_sentence(line) for line in sentences if line]))
         notes = note_lines(source.case, source.result, states)
         parts += [Text(f"Note: {note}.", "note") for note in notes]

@@ -60,8 +60,8 @@ def write_sweep_report(
     Raises
     ------
     InputError
-        If an argument is of another class, the directory holds no sweep, its plan or base case is not found, or the
-        page can't be written.
+        If an argument is of another class, the directory holds no sweep or one of another version, its plan or base
+        case is not found, or the page can't be written.
     CaseFileError
         If the plan has faults.
     """
@@ -69,7 +69,10 @@ def write_sweep_report(
     check_callable("progress", progress)
     report = progress or (lambda done, total: None)
     with Index(folder) as index:
-        digest = index.read_note("plan")
+        digest, version = index.read_note("plan"), index.read_note("version")
+    if version != __version__:
+        words = f"was made by fastpin {version}, which names its runs differently: write its page with that version"
+        raise InputError(str(folder), words)
     found = _plan_of(folder, digest) if plan is None else read_plan(plan)
     runs, album, sections = rows(found, folder), Album(), []
     for number, make in enumerate(SECTIONS):
