@@ -22,6 +22,13 @@ _SIZE = ("width", "height", "version")
 """Attributes of the element ``svg`` that are left out. The style sheet of the page sets the size."""
 
 
+_LINK = re.compile(r"(?<=^#).+")
+"""The id in a value of ``href``."""
+
+_PAINT = re.compile(r"(?<=url\(#)[^)]+")
+"""The id in a value of any other attribute. A colour such as #a8d8f0 is no id."""
+
+
 class Album:
     """The figures of one page. It numbers them, and keeps the ids of their elements apart."""
 
@@ -81,15 +88,17 @@ def _svg(text: str, words: str, prefix: str) -> str:
     root.attrib = {name: value for name, value in root.attrib.items() if name not in _SIZE}
     width = root.attrib["viewBox"].split()[2]  # in points; the style sheet makes the element as wide
     root.attrib |= {"role": "img", "aria-label": words, "style": f"--width: {width}"}
-    values = [value for element in root.iter() for value in element.attrib.values()]
-    used = dict.fromkeys(name for value in values for name in re.findall(r"^#(.+)$|url\(#([^)]+)\)", value))
-    names = {a or b: f"{prefix}{number}" for number, (a, b) in enumerate(used, start=1)}
+    used: dict[str, str] = {}  # ids that are referred to, and their new names
+    for element in root.iter():
+        for name, value in element.attrib.items():
+            for found in (_LINK if name == "href" else _PAINT).findall(value):
+                used.setdefault(found, f"{prefix}{len(used) + 1}")
     for element in root.iter():
         identity = element.attrib.pop("id", None)
         for name, value in element.attrib.items():
-            element.set(name, re.sub(r"^#(.+)$|(?<=url\()#([^)]+)", lambda f: f"#{names[f[1] or f[2]]}", value))
-        if identity in names:
-            element.set("id", names[identity])
+            element.set(name, (_LINK if name == "href" else _PAINT).sub(lambda found: used[found[0]], value))
+        if identity in used:
+            element.set("id", used[identity])
     return ElementTree.tostring(root, encoding="unicode")
 
 

@@ -74,6 +74,20 @@ def test_references_inside_figures_lead_to_elements(text: str) -> None:
     assert used <= set(page.ids)
 
 
+def test_figures_keep_their_colours_and_lose_ids_that_nothing_refers_to(tmp_path: Path) -> None:
+    figure = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="9" height="9"
+     viewBox="0 0 9 9"><metadata>of no use</metadata><defs><style>* {fill: red}</style><pattern id="h"/></defs>
+     <g id="unused"><path id="p" fill="#a8d8f0" style="stroke: url(#h)"/><use xlink:href="#p" clip-path="url(#h)"/></g>
+     </svg>"""
+    found = Album().picture(lambda path: path.write_text(figure), "words", "caption").markup
+    _, *elements = Page(found).attributes
+    assert elements == [
+        ("defs", {}), ("pattern", {"id": "f1-1"}), ("g", {}),
+        ("path", {"id": "f1-2", "fill": "#a8d8f0", "style": "stroke: url(#f1-1)"}),
+        ("use", {"href": "#f1-2", "clip-path": "url(#f1-1)"}),
+    ]  # fmt: skip
+
+
 def test_page_can_be_read_without_seeing_it(text: str) -> None:
     page = Page(text)
     elements = page.attributes
