@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from fastpin import damage
 from fastpin.errors import InputError
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
@@ -23,7 +21,7 @@ from fastpin.pages.source import Source
 from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
 from fastpin.report.case import case_rows, corner_columns, hole_body
 from fastpin.report.convergence import heading, reported_series, series_columns
-from fastpin.report.cycle import MOST_STOPS, cycle_line, fatigue_line
+from fastpin.report.cycle import cycle_line, hot_spot_line
 from fastpin.report.notes import note_lines, solver_line
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
 from fastpin.report.table import MAX_ROWS, Column
@@ -34,9 +32,6 @@ from fastpin.states.state import State
 from fastpin.states.zones import is_all_round
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
-
-CRITERION: Any = "smith-watson-topper"
-"""The criterion of fatigue of a page: without constants of a material it still finds the hot spot."""
 
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line."""
@@ -82,8 +77,7 @@ def overview(page: Pages) -> Section:
         sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
         sentences += cycle_lines(problem, source.result.cycles)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
-        if cycle is not None and source.last_cycle is not None:
-            sentences.append(fatigue_line(cycle.states, source.last_cycle))
+        sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue)]
         if len(states) < source.points.size:
             words = f"The sentences on states are on the {len(states)} states in the table of key figures."
             parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not read."))
@@ -325,32 +319,14 @@ def stresses(page: Pages) -> Section:
 
 def fatigue(page: Pages) -> Section:
     """Return the hot spot over the last cycle, with the life if the material has constants for it."""
-    return Section("fatigue", "Fatigue", _fatigue(page))
-
-
-def _fatigue(page: Pages) -> list[Part]:
-    source, cycle = page.source, page.source.cycle
-    plate = source.case.problem.surfaces.plate
-    body = hole_body(source.case.problem)
-    if plate.is_rigid:
-        return [Text(f"The {body} is rigid: it has no stress and no fatigue.", "missing")]
-    if cycle is None:
-        return [Text(f"Fatigue needs a cycle: {source.why_no_cycle}.", "missing")]
-    if len(cycle.states) > MOST_STOPS:
-        how = f"fastpin plot {source.path} fatigue" if source.path else 'result.fatigue("smith-watson-topper")'
-        words = f"The last cycle has {len(cycle.states):,} states; fatigue of more than {MOST_STOPS} takes long"
-        return [Text(f"{words}. It is left to: {how}", "missing")]
-    try:
-        found = damage.fatigue(cycle.states, CRITERION)
-    except InputError as error:
-        return [Text(f"There is no fatigue: {error.field} {error.reason}.", "missing")]
-    parts: list[Part] = [drawings.fatigue(page.album, found)]
+    found = page.source.fatigue
+    if isinstance(found, str):
+        return Section("fatigue", "Fatigue", [Text(found, "missing")])
+    parts: list[Part] = [drawings.fatigue(page.album, found), Text(_sentence(hot_spot_line(found)))]
     if found.life is None:
-        words = f"There is no life: the material of the {body} lacks constants for it."
+        words = f"There is no life: the material of the {hole_body(found.problem)} lacks constants for it."
         parts.append(Text(f"{words} The key fatigue of a case file gives them; see docs/fatigue.md.", "missing"))
-    elif source.last_cycle is not None and (line := fatigue_line(cycle.states, source.last_cycle)):
-        parts.append(Text(_sentence(line)))
-    return parts
+    return Section("fatigue", "Fatigue", parts)
 
 
 def convergence(page: Pages) -> Section:

@@ -13,10 +13,13 @@ from typing import Any
 import numpy as np
 
 from fastpin import storage
+from fastpin.damage import Fatigue, fatigue
 from fastpin.errors import InputError
 from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
+from fastpin.report.case import hole_body
+from fastpin.report.cycle import MOST_STOPS
 from fastpin.report.table import visible_rows
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
@@ -24,6 +27,9 @@ from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.storage.layout import versions
+
+CRITERION: Any = "smith-watson-topper"
+"""The criterion of fatigue of a page. It finds the hot spot without constants of the material."""
 
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
@@ -214,6 +220,23 @@ class Source:
     def why_no_cycle(self) -> str:
         """Why there is no last cycle; empty if there is one."""
         return self._cycle if isinstance(self._cycle, str) else ""
+
+    @cached_property
+    def fatigue(self) -> Fatigue | str:
+        """Fatigue of plate or bush over the last cycle; or a sentence that says why it is not known."""
+        body = hole_body(self.case.problem)
+        if self.case.problem.surfaces.plate.is_rigid:
+            return f"The {body} is rigid: it has no stress and no fatigue."
+        if self.cycle is None:
+            return f"Fatigue needs a cycle: {self.why_no_cycle}."
+        count = len(self.cycle.states)
+        if count > MOST_STOPS:
+            how = f"fastpin plot {self.path} fatigue" if self.path else f'result.fatigue("{CRITERION}")'
+            return f"The last cycle has {count:,} states; fatigue of more than {MOST_STOPS} takes long. Left to: {how}"
+        try:
+            return fatigue(self.cycle.states, CRITERION)
+        except InputError as error:
+            return f"There is no fatigue: {error.field} {error.reason}."
 
     @property
     def last_cycle(self) -> Cycle | None:

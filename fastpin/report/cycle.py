@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.damage import cycle_states, fatigue
+from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units, with_unit
@@ -53,7 +53,15 @@ def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
     problem = stops[0].problem
     if problem.surfaces.plate.is_rigid or problem.surfaces.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
         return ""
-    spot = fatigue(stops, "smith-watson-topper").hot_spot
+    return hot_spot_line(fatigue(stops, "smith-watson-topper"))
+
+
+def hot_spot_line(found: Fatigue) -> str:
+    """Return a line of text: the hot spot of plate or bush over the last cycle, its plane, and its life if known.
+
+    The criterion of `found` is "smith-watson-topper".
+    """
+    spot, problem = found.hot_spot, found.problem
     parts = [
         f"{with_unit(spot.parameter, units(problem)['stress times strain'], 4)} at {from_bottom(spot.theta):z.2f} deg"
     ]
