@@ -11,6 +11,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
 from fastpin.solver.unknowns import DenseUnknowns
+from fastpin.states.marks import Marks
 
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""
@@ -68,6 +69,7 @@ class Configuration:
     dissipation: float = 0.0
     work: float = 0.0
     slip_tally: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    marks: Marks = field(default_factory=Marks)
 
     def copy(self) -> Configuration:
         """A copy that shares no array with this one."""
@@ -79,7 +81,9 @@ class Configuration:
     def part(self, nodes: np.ndarray) -> Configuration:
         """A copy with some `nodes` only, indices of shape (k,)."""
         tally = self.slip_tally.take(nodes, axis=1) if self.slip_tally.size else self.slip_tally
-        return replace(self.copy(), slip_tally=tally, **{name: getattr(self, name)[nodes] for name in NODAL})
+        return replace(
+            self.copy(), slip_tally=tally, marks=Marks(), **{name: getattr(self, name)[nodes] for name in NODAL}
+        )
 
     @property
     def closed(self) -> np.ndarray:
@@ -230,6 +234,13 @@ def elastic_energy(system: System, configuration: Configuration) -> float:
     weights = np.concatenate([system.weights, system.weights])
     energy = float(np.sum(weights * tractions * elastic))
     return energy if system.drive is None else energy + system.drive.energy(weights, tractions, configuration.motion)
+
+
+def marks_left(before: Configuration, now: Configuration) -> Marks:
+    """The marks of the last corner, the configuration `before`, over which no slip zone has passed until `now`."""
+    if not np.array_equal(now.rest, before.rest):  # the pin was released: slip counts from another position
+        return Marks()
+    return before.marks.left(now.status, now.slip, before.slip)
 
 
 def worst_residual(system: System, configuration: Configuration) -> float:

@@ -133,16 +133,12 @@ def _on_wider_grid(old: System, new: System, now: Configuration) -> Configuratio
         "rest_gap": rest_gap,
         "rest_slip": _rest_slip_at(old, now, new.loads[total + fresh]),
     }
-    nodal: dict[str, Any] = {}
-    for name in NODAL:
-        values = getattr(now, name)
-        nothing = np.nan if values.dtype.kind == "f" else 0  # marks of the past, which new nodes do not have
-        nodal[name] = widened(values, outside.get(name, nothing))
+    nodal: dict[str, Any] = {name: widened(getattr(now, name), outside[name]) for name in NODAL}
     tally = now.slip_tally
     if tally.size:
         tally = empty_slip_tally(total)
         tally[:, nodes] = now.slip_tally
-    return replace(now, slip_tally=tally, **nodal)
+    return replace(now, slip_tally=tally, marks=now.marks.at(nodes), **nodal)
 
 
 def rest_gap_at(system: System, now: Configuration, theta: np.ndarray) -> np.ndarray:

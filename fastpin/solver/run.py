@@ -23,6 +23,7 @@ from fastpin.solver.configuration import (
     elastic_energy,
     empty_slip_tally,
     joined_slip_tallies,
+    marks_left,
     slip_tally_with,
 )
 from fastpin.solver.driven import force_on_pin
@@ -249,6 +250,7 @@ class Run:
             for piece in pieces(before, target):
                 self._follow_piece(piece, step)
             self._check_resolution()
+            self._mark_borders()
             known = self.repeats.recall(self.now, ends_cycle, step)
             if known is not None:
                 sums = {name: getattr(self.now, name) for name in ("dissipation", "work", "slip_tally")}
@@ -264,6 +266,14 @@ class Run:
             error.args = (f"{where}: {error}",)
             raise
         return known
+
+    def _mark_borders(self) -> None:
+        """Mark the borders at a corner, beside the old borders that are left."""
+        system, now = self.system, self.now
+        marks = marks_left(self.last_corner, now)
+        if not system.problem.frictionless:
+            marks = marks.with_borders(system.problem, system.grid, (now.pressure, now.shear), now.status)
+        self.position.now = replace(now, marks=marks)
 
     def _check_resolution(self) -> None:
         """Check that the contact at a corner has enough nodes. A contact that carries next to nothing is left alone."""
@@ -491,6 +501,7 @@ class Run:
             residuals=residuals,
             problem=system.problem,
             grid=system.grid,
+            marks=now.marks if fraction == 1.0 else marks_left(self.last_corner, now),  # corners are marked already
             **self._slip_fields(self._slip_since_kept()),
         )
         for array in (state.pressure, state.shear, state.gap, state.slip, state.status):

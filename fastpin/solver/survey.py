@@ -33,6 +33,7 @@ from fastpin.solver.rest import climb_angle, hole_gap, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Progress, Run
 from fastpin.solver.settling import FiniteStep
+from fastpin.states.marks import Marks
 from fastpin.states.zones import runs
 
 log = logging.getLogger(__name__)
@@ -268,6 +269,7 @@ def _carry(old: System, now: Configuration, system: System) -> Configuration | N
         status=status,
         rest_gap=system.rest_clearance - length + 2.0 * length * np.sin(0.5 * away) ** 2,
         rest_slip=at_nodes(now.rest_slip),
+        marks=Marks(),
     )
     if not now.closed.any():
         return new

@@ -11,6 +11,7 @@ import numpy as np
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.states import fits
+from fastpin.states.cusps import ShearNodes
 from fastpin.states.zones import Interval, is_all_round, runs, unrolled
 
 NEAR = 12
@@ -24,6 +25,9 @@ RIVAL = 0.8
 
 With less, the cusp at the border is no candidate for the peak.
 """
+
+CUSP_ERROR = 2e-3
+"""Largest standard error of a cusp that is read with the solutions of the half line, in parts of it."""
 
 STEEPEST_RISE = 1.25
 """Largest height of a cusp above the largest nodal value.
@@ -79,15 +83,7 @@ def pressure_peak(grid: Grid, pressure: np.ndarray, coupled: bool = False) -> tu
     return best[1:] if best is not None else (value, place)
 
 
-def shear_peak(
-    grid: Grid,
-    pressure: np.ndarray,
-    shear: np.ndarray,
-    sticking: np.ndarray,
-    friction: float,
-    stick: list[Interval],
-    tilt: float = 0.0,
-) -> tuple[float, float]:
+def shear_peak(contact: ShearNodes, stick: list[Interval]) -> tuple[float, float]:
     """Shear traction of largest magnitude, with its sign, and its angle (rad), read between the nodes.
 
     The peak has one of three forms. It is smooth inside a zone. Or it is a cusp at a stick-slip border, where |T| is
@@ -95,25 +91,22 @@ def shear_peak(
 
     Parameters
     ----------
-    grid : Grid
-    pressure, shear : ndarray, shape (n,)
-        Nodal tractions N >= 0 and T, in one unit; the peak has the same unit.
-    sticking : ndarray of bool, shape (n,)
-        Nodes that stick.
-    friction : float
-        The coefficient mu.
+    contact : ShearNodes
     stick : list of (float, float)
         Stick intervals (start, stop), rad.
-    tilt : float
-        arctan(mu beta_D)/pi, see (T26); 0 for like bodies.
     """
+    grid, pressure, shear, sticking = contact.grid, contact.pressure, contact.shear, contact.sticking
     top = _top(grid, np.abs(shear))
-    peaks, fitted_here, border_nearby = _peaks_at_borders(grid, pressure, shear, sticking, friction, stick, tilt, top)
+    peaks, fitted_here, border_nearby = _peaks_at_borders(contact, stick, top)
+    for cusp in contact.old_cusps(RIVAL * float(abs(shear[top]))):
+        if cusp.error <= CUSP_ERROR * cusp.value and _likely(grid, np.abs(shear), cusp.node, cusp.value):
+            peaks.append((cusp.value, cusp.angle, cusp.node))
+            fitted_here = fitted_here or abs((cusp.node - top + 2) % grid.size - 2) <= 2
     if not fitted_here:
-        upright, bent = (shear, tilt) if shear[top] >= 0.0 else (-shear, -tilt)
+        upright, bent = (shear, contact.tilt) if shear[top] >= 0.0 else (-shear, -contact.tilt)
         value, place, _ = _peak_of_nodes(grid, upright, sticking, top, border_nearby, bent)
         if sticking[top]:  # Coulomb's law also holds between the nodes
-            value = min(value, friction * float(pressure[[top - 1, top, (top + 1) % grid.size]].max()))
+            value = min(value, contact.friction * float(pressure[[top - 1, top, (top + 1) % grid.size]].max()))
         peaks.append((value, place, top))
     highest = max(value for value, _, _ in peaks)
     equal = [peak for peak in peaks if peak[0] >= (1.0 - TIE) * highest]
@@ -122,14 +115,7 @@ def shear_peak(
 
 
 def _peaks_at_borders(
-    grid: Grid,
-    pressure: np.ndarray,
-    shear: np.ndarray,
-    sticking: np.ndarray,
-    friction: float,
-    stick: list[Interval],
-    tilt: float,
-    top: int,
+    contact: ShearNodes, stick: list[Interval], top: int
 ) -> tuple[list[tuple[float, float, int]], bool, bool]:
     """Peaks at stick-slip borders, as candidates for the largest one.
 
@@ -142,6 +128,8 @@ def _peaks_at_borders(
     border_nearby : bool
         Whether a border lies within two node distances of the node `top`.
     """
+    grid, pressure, shear, tilt = contact.grid, contact.pressure, contact.shear, contact.tilt
+    sticking, friction = contact.sticking, contact.friction
     magnitude, slipping = np.abs(shear), (pressure > 0.0) & ~sticking
     peaks, fitted_here, border_nearby = [], False, False
     bound = friction * pressure
@@ -160,6 +148,12 @@ def _peaks_at_borders(
         if peak is not None and _likely(grid, magnitude, highest, peak[0]):
             fitted_here = fitted_here or highest == top
             peaks.append((*peak, highest))
+            continue
+        read = contact.border_cusp(nodes, outwards, border) if tilt == 0.0 else None
+        fits_nodes = read is not None and _likely(grid, magnitude, highest, read.value)
+        if read is not None and fits_nodes and read.error <= CUSP_ERROR * read.value:
+            fitted_here = fitted_here or highest == top
+            peaks.append((read.value, border, highest))
             continue
         at_border = friction * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):

@@ -11,13 +11,17 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 
 from fastpin import states
-from fastpin.kernels.status import OPEN, STICK
+from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
+from fastpin.states.cusps import ShearNodes
+from fastpin.states.half_line import HalfLine, half_line
+from fastpin.states.marks import Marks
+from fastpin.states.old_borders import truly_sticking
 from fastpin.states.zones import Interval, runs
 
 if TYPE_CHECKING:
@@ -87,6 +91,8 @@ class State:
         Materials, geometry, friction and the way in which the pin is held.
     grid : Grid
         The nodes.
+    marks : Marks or None
+        Old borders, see :mod:`fastpin.states.marks`. None in a result from a file of an earlier version.
     error_bars : Mapping of str to float, or None
         Largest likely error of each quantity and of each end of a zone, by name, see
         :func:`fastpin.states.error_bars.bars`. None unless ``solve(..., error_bars=True)``.
@@ -118,6 +124,7 @@ class State:
     residuals: dict[str, float]
     problem: Problem
     grid: Grid
+    marks: Marks | None = None
     error_bars: Mapping[str, float] | None = None
     slip_distance: np.ndarray | None = None
     friction_energy: np.ndarray | None = None
@@ -173,7 +180,7 @@ class State:
     @cached_property
     def contact_in_runs(self) -> list[Interval]:
         """The contact intervals of the runs of closed nodes, in their order and in the turns of the grid."""
-        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self.contact_exponents, self._sticking)
+        return zones.intervals(self.grid, self.status != OPEN, self.pressure, self._contact_lines, self._sticking)
 
     @cached_property
     def stick(self) -> list[Interval]:
@@ -187,9 +194,9 @@ class State:
     @cached_property
     def _stick(self) -> list[Interval]:
         """The stick intervals of the runs of sticking nodes, in their order; inside the contact."""
-        closed = self.status != OPEN
+        closed, reserve = self.status != OPEN, self._reserve_beside
         return zones.stick_intervals(
-            self.grid, self._sticking, self._reserve_beside, closed, self.contact_in_runs, self.stick_exponents
+            self.grid, self._sticking, reserve, closed, self.contact_in_runs, self._stick_lines, self._nodes.old_borders
         )
 
     @cached_property
@@ -233,21 +240,32 @@ class State:
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
-        peak, place = peaks.shear_peak(
-            self.grid, self.pressure, self.shear, self._sticking, self.problem.friction, self._stick, self.tilt
-        )
+        peak, place = peaks.shear_peak(self._nodes, self._stick)
         most = self.problem.friction * self.peak_pressure
         return min(max(peak, -most), most), near_bottom(place)
 
     @cached_property
     def tilt(self) -> float:
         """Shift of the exponents of edges and borders away from 1/2, arctan(mu beta_D)/pi, (T26); 0 for like bodies."""
-        return math.atan(self.problem.friction * self.problem.surfaces.dundurs()[1]) / math.pi
+        return math.atan(self.problem.friction * self.coupling) / math.pi
+
+    @cached_property
+    def coupling(self) -> float:
+        """Dundurs' parameter beta_D of the surfaces."""
+        return self.problem.surfaces.dundurs()[1]
 
     def contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
         first, last = self.status[run[[0, -1]]]
         return 0.5 - self.tilt * float(first), 0.5 + self.tilt * float(last)
+
+    def _contact_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
+        start, stop = self.contact_exponents(run)
+        return half_line(start), half_line(stop)
+
+    def _stick_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
+        start, stop = self.stick_exponents(run)
+        return half_line(start, self.coupling), half_line(stop, self.coupling)
 
     def stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
         """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26)."""
@@ -283,7 +301,25 @@ class State:
 
     @cached_property
     def _sticking(self) -> np.ndarray:
-        return (self.status == STICK) & (self._reserve > 1e-9 * self._reserve.max())
+        return truly_sticking(self.status, self._reserve)
+
+    @property
+    def old_borders(self) -> np.ndarray | None:
+        """Marks of the nodes beside old borders, int8, shape (n,), see :mod:`fastpin.states.old_borders`; or None."""
+        return None if self.marks is None else self.marks.arrays(self.grid.size)[0]
+
+    @property
+    def old_places(self) -> np.ndarray | None:
+        """Places of the old borders, shape (n,), in node distances inwards from their nodes; or None.
+
+        They are NaN where unknown.
+        """
+        return None if self.marks is None else self.marks.arrays(self.grid.size)[1]
+
+    @cached_property
+    def _nodes(self) -> ShearNodes:
+        marks, places = (self.marks or Marks()).arrays(self.grid.size)
+        return ShearNodes.of(self.problem, self.grid, (self.pressure, self.shear), self.status, marks, places)
 
     @cached_property
     def resultants(self) -> dict[str, float]:

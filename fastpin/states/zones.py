@@ -11,6 +11,9 @@ import numpy as np
 from fastpin.model.angles import BOTTOM, angle_between, interval_near_bottom
 from fastpin.model.grid import Grid
 from fastpin.states import fits
+from fastpin.states.ends import end_place
+from fastpin.states.half_line import HalfLine, half_line
+from fastpin.states.old_borders import OldBorder
 
 Interval = tuple[float, float]
 """Start and stop angle of an interval round the hole, rad, start < stop."""
@@ -21,9 +24,22 @@ ALL_ROUND = BOTTOM - math.pi, BOTTOM + math.pi
 Zone = TypeVar("Zone", bound=tuple[Any, ...])
 
 
-def square_root(run: np.ndarray) -> tuple[float, float]:
-    """Exponents of the zeros of a quantity at both ends of a zone, for like bodies: 1/2 for any nodes `run`."""
-    return 0.5, 0.5
+Lines = Callable[[np.ndarray], tuple[HalfLine, HalfLine]]
+"""Gives for the node indices of a zone the half lines at its start and stop."""
+
+
+Cusps = Callable[[np.ndarray], list[OldBorder]]
+"""Gives for the node indices of a zone the old borders in it."""
+
+
+def no_cusps(run: np.ndarray) -> list[OldBorder]:
+    """No old borders in the zone of any nodes `run`."""
+    return []
+
+
+def square_root(run: np.ndarray) -> tuple[HalfLine, HalfLine]:
+    """The half lines at both ends of a zone for like bodies: those of the exponent 1/2 for any nodes `run`."""
+    return half_line(0.5), half_line(0.5)
 
 
 def is_all_round(length: float) -> bool:
@@ -64,8 +80,9 @@ def intervals(
     grid: Grid,
     mask: np.ndarray,
     quantity: np.ndarray,
-    exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
+    lines: Lines = square_root,
     kinds: np.ndarray | None = None,
+    cusps: Cusps = no_cusps,
 ) -> list[Interval]:
     """Intervals of the zones in `mask`. A quantity falls to zero at their ends.
 
@@ -77,10 +94,12 @@ def intervals(
     quantity : ndarray, shape (n,) or (2, n)
         Nodal values, >= 0 inside the zones; the values beside the start and beside the stop of each zone, if these
         differ.
-    exponents : callable
-        Gives for the node indices of a zone the exponents of the zeros at its start and stop.
+    lines : callable
+        Gives for the node indices of a zone the half lines at its start and stop.
     kinds : ndarray, shape (n,), optional
         The quantity may have a kink inside a zone where `kinds` changes.
+    cusps : callable
+        Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp.
 
     Returns
     -------
@@ -97,12 +116,29 @@ def intervals(
     for run in runs(grid, mask):
         theta = unrolled(grid, run)
         outside = theta[0] - (grid.theta[run[0]] - left[run[0]]), theta[-1] + (right[run[-1]] - grid.theta[run[-1]])
-        at_start, at_stop = exponents(run)
+        at_start, at_stop = lines(run)
         back = run[::-1]
-        start = fits.edge(theta, at_starts[run], at_start, outside[0], _alike(kinds[run]))
-        stop = fits.edge(theta[::-1], at_stops[back], at_stop, outside[1], _alike(kinds[back]))
-        zones.append((float(start), float(stop)))
+        inside = cusps(run)
+        start = _end(theta, at_starts[run], at_start, outside[0], _alike(kinds[run]), inside)
+        inside = [cusp.mirrored(run.size) for cusp in inside]
+        stop = _end(theta[::-1], at_stops[back], at_stop, outside[1], _alike(kinds[back]), inside)
+        zones.append((start, stop))
     return zones
+
+
+def _end(
+    theta: np.ndarray, quantity: np.ndarray, line: HalfLine, outside: float, alike: int, cusps: list[OldBorder]
+) -> float:
+    """Angle of an end of a zone, rad: see :func:`fastpin.states.fits.edge`.
+
+    `cusps` are the old borders in the zone.
+    """
+    place = end_place(quantity, line, cusps)
+    if math.isnan(place):
+        return float(fits.edge(theta, quantity, line.exponent, outside, alike))
+    if place < 0.0:
+        return float(theta[0] - max(place, -1.0) * (outside - theta[0]))
+    return float(theta[0] + place * (theta[1] - theta[0]))
 
 
 def _alike(kinds: np.ndarray) -> int:
@@ -117,7 +153,8 @@ def stick_intervals(
     reserve: np.ndarray,
     closed: np.ndarray,
     contact: list[Interval],
-    exponents: Callable[[np.ndarray], tuple[float, float]] = square_root,
+    lines: Lines = square_root,
+    cusps: Cusps = no_cusps,
 ) -> list[Interval]:
     """Intervals of the stick zones. A stick zone ends where mu N - |T| falls to zero, or with the contact.
 
@@ -133,7 +170,8 @@ def stick_intervals(
         there.
     contact : list of (float, float)
         Contact intervals of the closed nodes, rad.
-    exponents : callable
+    lines : callable
+    cusps : callable
         As for :func:`intervals`.
 
     Returns
@@ -142,10 +180,11 @@ def stick_intervals(
         Start and stop, rad.
     """
     if closed.all() and grid.closed:
-        return intervals(grid, sticking, reserve, exponents)
+        return intervals(grid, sticking, reserve, lines, cusps=cusps)
     zones = []
     outer = list(zip(runs(grid, closed), contact, strict=True))
-    for run, (start, stop) in zip(runs(grid, sticking), intervals(grid, sticking, reserve, exponents), strict=True):
+    found = intervals(grid, sticking, reserve, lines, cusps=cusps)
+    for run, (start, stop) in zip(runs(grid, sticking), found, strict=True):
         for nodes, (first, last) in outer:
             if run[0] in nodes:
                 turn = 2.0 * math.pi * round((0.5 * (first + last) - 0.5 * (start + stop)) / (2.0 * math.pi))

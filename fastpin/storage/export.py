@@ -15,6 +15,7 @@ from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.storage.damage import as_python
 from fastpin.storage.layout import (
+    BORDER_FIELDS,
     FIELD_KINDS,
     NODE_FIELDS,
     RESIDUALS,
@@ -97,7 +98,7 @@ def _dimensions(name: str) -> list[str]:
         return [name]
     second = (
         "theta"
-        if name in (*NODE_FIELDS, *SLIP_FIELDS)
+        if name in (*NODE_FIELDS, *BORDER_FIELDS, *SLIP_FIELDS)
         else {"loads": "load_name", "residuals": "residual_name"}.get(name)
     )
     return ["state"] if second is None else ["state", second]

@@ -36,6 +36,9 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
+from fastpin.states.half_line import LEAST_PLACE, MOST_PLACE
+from fastpin.states.marks import Marks
+from fastpin.states.old_borders import BITS
 from fastpin.states.state import State
 from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
@@ -70,6 +73,9 @@ SLIP_FIELDS = {
 }
 """Kind of quantity of each field, shape (n,), that a state has with the option ``slip_sums`` only."""
 
+BORDER_FIELDS = {"old_borders": "", "old_places": ""}
+"""Kind of quantity of each field, shape (n,), with the old borders of a state. Files of earlier versions lack them."""
+
 NUMBER_FIELDS = {
     "step": "",
     "fraction": "",
@@ -82,10 +88,10 @@ NUMBER_FIELDS = {
 }
 """Kind of quantity of each field of a state with one number."""
 
-OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars")
+OTHER_FIELDS = ("load", "theta", "residuals", "problem", "grid", "error_bars", "marks")
 """Fields of a state that are stored in another form, or not at all."""
 
-FIELD_KINDS = {**NODE_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
+FIELD_KINDS = {**NODE_FIELDS, **BORDER_FIELDS, **SLIP_FIELDS, **NUMBER_FIELDS}
 """Kind of quantity of each array of node values or numbers in ``/states``."""
 
 RESIDUALS = ("gap", "slip", "cone", "equilibrium")
@@ -105,6 +111,9 @@ CYCLE_FIELDS = {
 
 WHOLE_NUMBERS = ("step", "corner", "length", "number")
 """Fields of states and cycles that are whole numbers."""
+
+SMALL_NUMBERS = ("status", "old_borders")
+"""Fields of states that are whole numbers of one byte."""
 
 _PROBLEM_FIELDS = (
     "hole_radius",
@@ -130,7 +139,8 @@ Rows = dict[str, np.ndarray]
 
 def node_fields(group: h5py.Group) -> dict[str, str]:
     """Return the kind of quantity of each field with node values that ``/states`` holds, ``group``."""
-    return NODE_FIELDS | (SLIP_FIELDS if "slip_distance" in group else {})
+    borders = BORDER_FIELDS if "old_borders" in group else {}
+    return NODE_FIELDS | borders | (SLIP_FIELDS if "slip_distance" in group else {})
 
 
 def state_rows(group: h5py.Group) -> tuple[str, ...]:
@@ -161,7 +171,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     solver = file.create_group("solver")
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
-    _make_states(file, problem, grid, NODE_FIELDS | (SLIP_FIELDS if options.get("slip_sums") else {}))
+    _make_states(file, problem, grid, NODE_FIELDS | BORDER_FIELDS | (SLIP_FIELDS if options.get("slip_sums") else {}))
     cycles, unit = file.create_group("cycles"), units(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
@@ -262,7 +272,9 @@ _PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffl
 
 
 def _dtype(name: str) -> type:
-    return np.int64 if name in WHOLE_NUMBERS else bool if name == "solved" else np.int8 if name == "status" else float
+    if name in SMALL_NUMBERS:
+        return np.int8
+    return np.int64 if name in WHOLE_NUMBERS else bool if name == "solved" else float
 
 
 def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, unit: str | list[str]) -> h5py.Dataset:
@@ -270,7 +282,7 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
 
     Each row of node values is a chunk, compressed, and never written again.
     """
-    nodes = name in NODE_FIELDS or name in SLIP_FIELDS
+    nodes = name in NODE_FIELDS or name in BORDER_FIELDS or name in SLIP_FIELDS
     chunks = (1 if nodes else _ROWS, *shape)
     dataset = group.create_dataset(
         name, (0, *shape), maxshape=(None, *shape), chunks=chunks, dtype=dtype, **(_PACKED if nodes else {})
@@ -331,9 +343,12 @@ def has_slip_sums(states: Sequence[State]) -> bool:
 
 
 def rows_of(states: Sequence[State]) -> Rows:
-    """Return the rows of some states. The residuals of a state may be missing: NaN stands for them."""
+    """Return the rows of some states. The residuals or the old borders of a state may be missing."""
     names = [*NODE_FIELDS, *(SLIP_FIELDS if has_slip_sums(states) else {}), *NUMBER_FIELDS]
     rows: Rows = {name: np.array([getattr(state, name) for state in states], dtype=_dtype(name)) for name in names}
+    marks = [(state.marks or Marks()).arrays(state.grid.size) for state in states]
+    for k, name in enumerate(BORDER_FIELDS):
+        rows[name] = np.array([arrays[k] for arrays in marks], dtype=_dtype(name))
     rows["loads"] = np.array([[state.load[name] for name in LOADS] for state in states], dtype=float)
     rows["residuals"] = np.array(
         [[state.residuals.get(name, np.nan) for name in RESIDUALS] for state in states], dtype=float
@@ -441,18 +456,20 @@ def read_states(
     check_states(file, grid.size)
     rows = read_rows(group, state_rows(group), picked)
     for name in (*node_fields(group), *NUMBER_FIELDS, "loads"):
-        if name not in EXTREMES:
+        if name not in (*EXTREMES, "old_places"):
             check_finite(f"states/{name}", rows[name])
     if EXTREMES[0] in rows:
         lowest, highest = (rows[name] for name in EXTREMES)
         check_extremes("states/slip_lowest", lowest, highest, np.isnan(lowest) & np.isnan(highest))
     check_between("states/status", rows["status"], *STATUS_LIMITS)
+    if "old_borders" in rows:
+        check_old_borders("states", rows["old_borders"], rows["old_places"])
     check_between("states/step", rows["step"], 0, corners - 1)
     check_between("states/fraction", rows["fraction"], 0.0, 1.0)
     loads = all_loads(rows["loads"], 0.0)
     states = []
     for k in range(len(rows["step"])):
-        per_node = {name: rows[name][k] for name in node_fields(group)}
+        per_node = {name: rows[name][k] for name in node_fields(group) if name not in BORDER_FIELDS}
         for array in per_node.values():
             array.setflags(write=False)
         residuals = zip(RESIDUALS, rows["residuals"][k].tolist(), strict=True)
@@ -465,9 +482,16 @@ def read_states(
                 residuals={name: value for name, value in residuals if not np.isnan(value)},
                 problem=problem,
                 grid=grid,
+                marks=Marks.stored(rows["old_borders"][k], rows["old_places"][k]) if "old_borders" in rows else None,
             )
         )
     return states
+
+
+def check_old_borders(label: str, marks: np.ndarray, places: np.ndarray) -> None:
+    """Raise :class:`ValueError` if marks or places of old borders are out of range. Unknown places are NaN."""
+    check_between(f"{label}/old_borders", marks, 0, sum(BITS.values()))
+    check_between(f"{label}/old_places", places[~np.isnan(places)], LEAST_PLACE, MOST_PLACE)
 
 
 def read_cycles(file: h5py.File) -> list[Cycle]:

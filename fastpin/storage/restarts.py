@@ -12,14 +12,15 @@ from fastpin.model.loads import LOADS
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
+from fastpin.states.marks import Marks
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
-from fastpin.storage.layout import STATUS_LIMITS, all_loads
+from fastpin.storage.layout import BORDER_FIELDS, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
 
 LEAST_FORCE = 1e-145
 """Least reference force in a file, N/m; the largest is its inverse. The limits of units and loads imply it."""
 
 _SUMS = ("dissipation", "work", "slip_tally")  # they begin anew at a corner
-_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in _SUMS]
+_ARRAYS = [field.name for field in dataclasses.fields(Configuration) if field.name not in (*_SUMS, "marks")]
 
 
 def write_restart(group: h5py.Group, restart: Restart) -> None:
@@ -53,6 +54,9 @@ def write_restart(group: h5py.Group, restart: Restart) -> None:
     group["marks_dissipation"] = np.array([mark.dissipation for _, mark in marks])
     for name in _ARRAYS:
         group[f"configurations/{name}"] = np.array([getattr(item, name) for item in configurations])
+    borders = zip(*(item.marks.arrays(item.status.size) for item in configurations), strict=True)
+    for name, values in zip(BORDER_FIELDS, borders, strict=True):
+        group[f"configurations/{name}"] = np.array(values)
     group.create_group("statistics").attrs.update(restart.statistics)
 
 
@@ -64,11 +68,15 @@ def read_restart(group: h5py.Group, nodes: int) -> Restart:
     ValueError
         If a number is not finite or out of range, or the arrays don't fit each other.
     """
-    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in _ARRAYS}
+    arrays = {name: _read_configurations(group["configurations"], name, nodes) for name in (*_ARRAYS, *BORDER_FIELDS)}
     size = len(arrays["load"])
     if any(len(array) != size for array in arrays.values()):
         raise ValueError(f"{group.name[1:]}/configurations has arrays of different lengths")
-    configurations = [Configuration(**{name: arrays[name][k] for name in _ARRAYS}) for k in range(size)]
+    check_old_borders("configurations", arrays["old_borders"], arrays["old_places"])
+    all_marks = [Marks.stored(*(arrays[name][k] for name in BORDER_FIELDS)) for k in range(size)]
+    configurations = [
+        Configuration(**{name: arrays[name][k] for name in _ARRAYS}, marks=all_marks[k]) for k in range(size)
+    ]
     met, marks = (dataset_of(group, name, np.int64, (5,))[()] for name in ("met", "marks"))
     dissipations = dataset_of(group, "marks_dissipation", float, ())[()]
     check_between("met", met[:, 0], 0, size - 1)
@@ -117,16 +125,19 @@ def _read_slip_tally(group: h5py.Group, nodes: int) -> np.ndarray:
 def _read_configurations(group: h5py.Group, name: str, nodes: int) -> np.ndarray:
     """Read one array of all configurations of a restart, shape (configurations, ...)."""
     size = {"motion": 3, "origin": 2, "rest": 2}.get(name, nodes)
+    if name in BORDER_FIELDS and name not in group:  # a file of an earlier version
+        value, dtype = (0, np.int8) if name == "old_borders" else (np.nan, float)
+        return np.full((len(group["status"]), nodes), value, dtype=dtype)
     if name == "load":
         array = all_loads(dataset_of(group, name, float)[()], 0.0)
         size = len(LOADS)
     else:
-        array = dataset_of(group, name, np.int8 if name == "status" else float, (size,))[()]
+        array = dataset_of(group, name, np.int8 if name in SMALL_NUMBERS else float, (size,))[()]
     label = f"configurations/{name}"
     if array.shape[1:] != (size,):
         raise ValueError(f"{label} has the shape {array.shape}")
     if name == "status":
         check_between(label, array, *STATUS_LIMITS)
-    elif name != "origin":  # The origin is NaN before the pin has come to rest.
+    elif name not in ("origin", "old_places"):  # The origin is NaN before the pin has come to rest.
         check_finite(label, array)
     return array

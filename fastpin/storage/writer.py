@@ -192,7 +192,8 @@ class FileRecorder:
     def add(self, state: State) -> None:
         """Take a state. It is in the file after the next commit."""
         self._copied = None
-        self._put(rows_of([state]))
+        rows = rows_of([state])
+        self._put({name: rows[name] for name in state_rows(self._h5["states"])})
 
     def add_cycle(self, cycle: Cycle) -> None:
         """Take a cycle, unless the file has it already."""

@@ -40,9 +40,9 @@ The largest shear then stays at the place of the border at full Q.
 """
 
 TOLERANCES: dict[str, dict[str, float]] = {
-    "like": {"peak N": 1e-5, "half-angle": 3e-5},
-    "alpha* = 0": {"peak N": 8e-6, "half-angle": 3.5e-5},
-    "coupled": {"peak N": 1e-5, "half-angle": 6.5e-4},
+    "like": {"peak N": 1e-5, "half-angle": 2e-6},
+    "alpha* = 0": {"peak N": 8e-6, "half-angle": 2.5e-6},
+    "coupled": {"peak N": 1e-5, "half-angle": 1.2e-5},
     "elements, frictionless": {"int |dN|": STATED * 5e-4, "peak N": 2e-5},
     "elements, monotonic": {"int |dN|": STATED * 1e-4, "int |dT|": STATED * 1e-3, "peak N": STATED * 5e-5},
     "elements, fretting": {
@@ -53,12 +53,12 @@ TOLERANCES: dict[str, dict[str, float]] = {
     },
     "half-plane": {
         "peak N": 5e-6,
-        "peak T": 1e-3,
-        "peak T, back to 0.4 Q": 3e-3,
+        "peak T": 9.5e-4,
+        "peak T, back to 0.4 Q": 2.2e-3,
         "int |dT|": 2e-3,
-        "stick ratio": 1e-5,
+        "stick ratio": 1e-7,
     },
-    "sliding": {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-5, "end, unlike bodies": 9e-5},
+    "sliding": {"peak N": 8e-6, "peak T": 8e-6, "moment": 7e-6, "end": 4e-6, "end, unlike bodies": 5e-6},
     "equations": {"(46)": 2e-5, "(47)": 2e-6, "(47), Q and remote stress": 1.5e-6},
     "stresses": {
         "Kirsch": 3e-15,
@@ -80,10 +80,10 @@ TOLERANCES: dict[str, dict[str, float]] = {
     "bodies": {
         "peak N": 1.6e-5,
         "int N": 1e-5,
-        "half-angle": 5e-4,
+        "half-angle": 1.2e-4,
         "peak N, elements": 7e-5,  # the finite elements themselves: 5e-5
         "peak N, (58)": 9e-6,
-        "half-angle, (58)": 1.6e-4,
+        "half-angle, (58)": 3.5e-6,
         "N, stuck": 8e-6,
         "T, stuck": 5e-6,
     },

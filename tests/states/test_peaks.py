@@ -10,6 +10,7 @@ from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.states import peaks
+from fastpin.states.cusps import ShearNodes
 
 GRID = Grid.arc(-1.0, 1.0, 81)
 X = np.arange(-40.0, 41.0)
@@ -22,7 +23,10 @@ def nodal(values: np.ndarray) -> float:
 
 def read(shear: np.ndarray, pressure: np.ndarray, sticking: np.ndarray = ALL, ends=(-1.0, 1.0), tilt=0.0) -> float:
     """The peak with mu = 1."""
-    return abs(peaks.shear_peak(GRID, pressure, shear, sticking, 1.0, [ends] if sticking.any() else [], tilt)[0])
+    no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
+    coupling = np.tan(np.pi * tilt)
+    contact = ShearNodes(GRID, pressure, shear, sticking, no_marks, no_places, 1.0, tilt, coupling)
+    return abs(peaks.shear_peak(contact, [ends] if sticking.any() else [])[0])
 
 
 @pytest.mark.parametrize("sign", [-1, 1])

@@ -11,6 +11,7 @@ from fastpin.model.loads import LOADS, named_load
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
+from fastpin.states.marks import Marks
 from fastpin.states.state import State
 
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
@@ -71,6 +72,7 @@ def sample_result(
                 residuals={"gap": 1e-12, "slip": 2e-13, "cone": 0.0, "equilibrium": 1e-14},
                 problem=problem,
                 grid=grid,
+                marks=Marks(),
             )
         )
     assert set(states[0].load) == set(LOADS)

@@ -1,0 +1,279 @@
+"""Cusps of the shear traction at present and old borders, read with the solutions of the half-line problem.
+
+The outermost sticking node of each border is known: from the statuses, or from the marks of old borders. So a cusp is
+read by linear fits (:mod:`fastpin.states.half_line`), also where borders and contact edges lie a few nodes apart.
+
+Near a slip zone the fitted quantity is mu N - s T, where s T = mu N in the slip zone. It is zero there, so the edge of
+the contact just beyond does not matter. N itself is fitted from the edge of the contact inwards.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.model.grid import Grid
+from fastpin.model.problem import Problem
+from fastpin.states.ends import end_place
+from fastpin.states.half_line import End, Fit, half_line
+from fastpin.states.old_borders import OldBorder, old_borders, truly_sticking
+from fastpin.states.zones import runs, unrolled
+
+HALF_WIDTHS = (5, 7, 10, 14, 20)
+"""Windows to try about a place: the number of nodes on either side."""
+
+DEGREES = (3, 4, 5)
+"""Degrees of the polynomial to try where no end of the zone is in the window."""
+
+END_TERMS = (4, 5)
+"""Terms to try at an end of the zone."""
+
+CUSP_TERMS = 3
+"""Terms at an old border."""
+
+SAME_PLACE = 0.01
+"""Largest difference of two readings of one border that agree, in node distances."""
+
+GOOD_ENOUGH = 5e-5
+"""Relative standard error of a value from which on no wider window is tried.
+
+The standard error of a wide window misses a part of its error: its terms are too few for all places in it.
+"""
+
+SPARE = 2
+"""Least number of nodes of a window beyond the number of unknowns."""
+
+
+class Cusp(NamedTuple):
+    """A cusp of the shear traction.
+
+    Attributes
+    ----------
+    value, error : float
+        |T| there, and its standard error.
+    angle : float
+        rad.
+    node : int
+        The node with the largest shear beside it.
+    """
+
+    value: float
+    error: float
+    angle: float
+    node: int
+
+
+@dataclass(frozen=True, eq=False)
+class ShearNodes:
+    """Nodal tractions of a state, and the marks of its borders.
+
+    Attributes
+    ----------
+    grid : Grid
+    pressure, shear : ndarray, shape (n,)
+    sticking : ndarray of bool, shape (n,)
+    marks, places : ndarray, shape (n,)
+        Old borders, see :mod:`fastpin.states.old_borders`.
+    friction, tilt, coupling : float
+        mu, arctan(mu beta_D)/pi of (T26), and beta_D.
+    """
+
+    grid: Grid
+    pressure: np.ndarray
+    shear: np.ndarray
+    sticking: np.ndarray
+    marks: np.ndarray
+    places: np.ndarray
+    friction: float
+    tilt: float
+    coupling: float
+
+    @classmethod
+    def of(
+        cls, problem: Problem, grid: Grid, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray,
+        marks: np.ndarray, places: np.ndarray,
+    ) -> ShearNodes:  # fmt: skip
+        """The nodes of a problem with their pressure and shear `tractions`, status, marks and places, shape (n,)."""
+        pressure, shear = tractions
+        coupling = problem.surfaces.dundurs()[1]
+        tilt = math.atan(problem.friction * coupling) / math.pi
+        sticking = truly_sticking(status, problem.friction * pressure - np.abs(shear))
+        return cls(grid, pressure, shear, sticking, marks, places, problem.friction, tilt, coupling)
+
+    @cached_property
+    def _patches(self) -> list[np.ndarray]:
+        return runs(self.grid, self.pressure > 0.0)
+
+    def old_cusps(self, least: float) -> Iterator[Cusp]:
+        """Read the cusps at old borders beside which a node has the shear `least` or more."""
+        size = np.abs(self.shear)
+        for run in runs(self.grid, self.sticking):
+            borders = self.old_borders(run)
+            for border in borders:
+                beside = run[max(border.at - 2, 0) : border.at + 3]
+                if border.sign == 0 or border.is_end(run.size) or size[beside].max() < least:
+                    continue
+                if np.sign(self.shear[run[border.at]]) != border.sign:
+                    continue  # this cusp points towards T = 0
+                cusp = self._old_cusp(run, border, borders)
+                if cusp is not None:
+                    yield cusp
+
+    def _border_place(self, run: np.ndarray, inwards: int) -> float:
+        """Place of the border at an end of the stick zone of the nodes `run`; NaN if no fit is good enough."""
+        sign, nodes = self._end_sign(run, inwards), run[::inwards]
+        borders = self.old_borders(run)
+        inside = borders if inwards > 0 else [border.mirrored(run.size) for border in borders]
+        reserve = self.friction * self.pressure[nodes] - sign * self.shear[nodes]
+        return end_place(reserve, half_line(0.5 - self.tilt * sign * inwards, self.coupling), inside)
+
+    def border_cusp(self, nodes: np.ndarray, outwards: int, angle: float) -> Cusp | None:
+        """mu N at an end of the stick zone of some `nodes`, which begin there, at an `angle`, rad.
+
+        None if the solutions of the half line do not show the border at this angle.
+        """
+        node, offset = int(nodes[0]), self._index(int(nodes[0]), angle)
+        place = self._border_place(nodes[::-outwards], -outwards)
+        if not abs(-outwards * place - offset) <= SAME_PLACE:
+            return None
+        read = self._pressure_at(node, offset, -outwards)
+        return None if read is None else Cusp(self.friction * read[0], self.friction * read[1], angle, node)
+
+    def old_borders(self, run: np.ndarray) -> list[OldBorder]:
+        """The marked borders in the stick zone of the nodes `run`."""
+        return old_borders(self.marks[run], self.places[run])
+
+    def _end_sign(self, run: np.ndarray, inwards: int) -> int:
+        """Sign of the shear in the slip zone at an end of a stick zone; 0 if the contact ends there."""
+        outside = int(run[0] - 1) if inwards > 0 else int((run[-1] + 1) % self.grid.size)
+        return int(np.sign(self.shear[outside]))
+
+    def _old_cusp(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder]) -> Cusp | None:
+        """Read the cusp at an old border; None if no fit has it near its node."""
+        best: Cusp | None = None
+        beside = run[max(border.at - 2, 0) : border.at + 3]
+        highest = beside[np.argmax(np.abs(self.shear[beside]))]
+        for half in HALF_WIDTHS:
+            first, last = max(border.at - half, 0), min(border.at + half + 1, run.size)
+            if best is not None and (best.error <= GOOD_ENOUGH * best.value or last - first == run.size):
+                break
+            nodes = run[first:last]
+            signs = [self._end_sign(run, side) for side, met in ((1, first == 0), (-1, last == run.size)) if met]
+            sign = signs[0] if len(signs) == 1 else 0
+            wanted = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
+            for ends, degree in self._shapes(run, border, borders, first, last):
+                unknowns = degree + 1 + sum(end.unknowns for end in ends)
+                if nodes.size < unknowns + SPARE:
+                    continue
+                fit = Fit(wanted, ends, degree)
+                place = fit.places[0]
+                if math.isnan(place):
+                    continue
+                value, error = fit.value(place), fit.value_error(place)
+                beyond = [fit.value(place - border.inwards * step) for step in (0.0, 0.1)]
+                slope = abs(beyond[1] - beyond[0]) / 0.1
+                if sign:
+                    read = self._pressure_at(int(run[border.at]), place + first - border.at, border.inwards)
+                    if read is None:
+                        continue
+                    value, error = sign * (self.friction * read[0] - value), error + self.friction * read[1]
+                error += slope * fit.place_errors[0]
+                if best is None or error < best.error:
+                    angle = self._angle(int(run[border.at]), place + first - border.at)
+                    best = Cusp(abs(value), error, angle, int(highest))
+        return best
+
+    def _shapes(
+        self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int
+    ) -> Iterator[tuple[tuple[End, ...], int]]:
+        """Ends and degrees to try for the nodes first : last of a zone. The border itself is the first end."""
+        own = self._end(border, first, CUSP_TERMS)
+        others = {(other.at, other.inwards): other for other in borders if first <= other.at < last}
+        others.pop((border.at, border.inwards), None)
+        others = {key: other for key, other in others.items() if not other.is_end(run.size)}
+        inside = [self._end(other, first, CUSP_TERMS) for other in others.values()]
+        met = [side for side, is_met in ((1, first == 0), (-1, last == run.size)) if is_met]
+        if not met:
+            yield from (((own, *inside), degree) for degree in DEGREES)
+        for terms in END_TERMS if met else ():
+            outer = []
+            for side in met:
+                at = 0 if side > 0 else run.size - 1
+                outer.append(self._end(OldBorder(at, side, self._end_sign(run, side)), first, terms))
+            yield (own, *inside, *outer), -1
+
+    def _end(self, border: OldBorder, first: int, terms: int) -> End:
+        exponent = 0.5 - self.tilt * border.sign * border.inwards
+        line = half_line(exponent, self.coupling if border.sign else None)
+        return End(line, border.at - first, border.inwards, terms, border.place)
+
+    def _pressure_at(self, node: int, offset: float, inwards: int) -> tuple[float, float] | None:
+        """The pressure at a border, `offset` node distances from its outermost node, and its standard error."""
+        for patch in self._patches:
+            found = np.flatnonzero(patch == node)
+            if not found.size:
+                continue
+            at, best = int(found[0]), None
+            for half in HALF_WIDTHS:
+                first, last = max(at - half, 0), min(at + half + 1, patch.size)
+                if best is not None and best[1] <= 0.1 * GOOD_ENOUGH * best[0]:
+                    break
+                met = [side for side, is_met in ((1, first == 0), (-1, last == patch.size)) if is_met]
+                turned = self._turned(patch[first:last], met)
+                values = self.pressure[patch[first:last]] - turned
+                for terms in END_TERMS if met else DEGREES:
+                    ends = tuple(End(half_line(0.5), 0 if side > 0 else values.size - 1, side, terms) for side in met)
+                    if values.size < (terms * len(ends) or terms + 1) + SPARE:
+                        continue
+                    fit = Fit(values, ends, -1 if met else terms)
+                    value, error = fit.value(at - first + offset), fit.value_error(at - first + offset)
+                    value += self._turned_until(patch[first:last], turned, at - first, inwards, offset)
+                    if best is None or error < best[1]:
+                        best = value, error
+            return best
+        return None
+
+    def _turned(self, nodes: np.ndarray, met: list[int]) -> np.ndarray:
+        """The integral of the shear over the angle at some neighbouring nodes, shape (nodes,).
+
+        Where the shear has a cusp, the pressure less this integral is smooth: on the curved surface the two turn into
+        each other. The integral begins at the end of the contact, which the nodes have `met` at their start (1) or stop
+        (-1), for the difference must be zero there. It is left out between two ends.
+        """
+        if len(met) == 2:
+            return np.zeros(nodes.size)
+        theta, shear = unrolled(self.grid, nodes), self.shear[nodes]
+        steps = np.diff(theta)
+        integral = np.r_[0.0, np.cumsum(0.5 * (shear[1:] + shear[:-1]) * steps)]
+        if met == [1]:
+            return integral + 0.5 * shear[0] * steps[0]
+        return integral - integral[-1] - 0.5 * shear[-1] * steps[-1] if met else integral
+
+    def _turned_until(self, nodes: np.ndarray, turned: np.ndarray, at: int, inwards: int, offset: float) -> float:
+        """The integral `turned` up to a border, from the node beyond it, where the shear is smooth."""
+        outer = at - inwards
+        if not turned.any() or not 0 <= outer < nodes.size:
+            return float(turned[at])
+        before = outer - inwards
+        shear = float(self.shear[nodes[outer]])
+        change = shear - float(self.shear[nodes[before]]) if 0 <= before < nodes.size else 0.0
+        steps, spacing = inwards * offset + 1.0, float(self.grid.weights[nodes[outer]])
+        return float(turned[outer]) + inwards * spacing * (shear * steps + 0.5 * change * steps**2)
+
+    def _index(self, node: int, angle: float) -> float:
+        """Distance of an angle from a node, in node distances."""
+        left, right = self.grid.knots()
+        theta = float(self.grid.theta[node])
+        offset = math.remainder(angle - theta, 2.0 * math.pi)
+        return offset / float(right[node] - theta if offset > 0.0 else theta - left[node])
+
+    def _angle(self, node: int, offset: float) -> float:
+        """Angle of a place `offset` node distances from a node, rad."""
+        left, right = self.grid.knots()
+        theta = float(self.grid.theta[node])
+        return theta + offset * float(right[node] - theta if offset > 0.0 else theta - left[node])
