@@ -45,6 +45,12 @@ GOOD_ENOUGH = 5e-5
 The standard error of a wide window misses a part of its error: its terms are too few for all places in it.
 """
 
+BEYOND, TRIED = 6.0, 81
+"""Reach on the slip side of a border of unlike bodies, in node distances, and the number of places tried there.
+
+The largest shear lies a little beyond the border. The places gather at the border.
+"""
+
 SPARE = 2
 """Least number of nodes of a window beyond the number of unknowns."""
 
@@ -66,6 +72,18 @@ class Cusp(NamedTuple):
     error: float
     angle: float
     node: int
+
+
+class _Reading(NamedTuple):
+    """A fit of the nodes of a zone from the node number `first` on, and its error at a border.
+
+    It is a fit of the reserve beside a slip zone with the `sign`, or of the traction itself if this is 0.
+    """
+
+    fit: Fit
+    error: float
+    first: int
+    sign: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,8 +159,31 @@ class ShearNodes:
         place = self._border_place(nodes[::-outwards], -outwards)
         if not abs(-outwards * place - offset) <= SAME_PLACE:
             return None
-        read = self._pressure_at(node, offset, -outwards)
-        return None if read is None else Cusp(self.friction * read[0], self.friction * read[1], angle, node)
+        offsets = offset + outwards * self._beyond
+        read = self._pressure_at(node, offsets, -outwards)
+        if read is None:
+            return None
+        top = _top(read[0])
+        angle += self._angle(node, float(offsets[top])) - self._angle(node, offset)
+        return Cusp(self.friction * float(read[0][top]), self.friction * read[1], angle, node)
+
+    @cached_property
+    def _beyond(self) -> np.ndarray:
+        """Distances from a border, outwards, at which the largest shear may lie, in node distances."""
+        return np.zeros(1) if self.tilt == 0.0 else BEYOND * np.linspace(0.0, 1.0, TRIED) ** 2
+
+    @cached_property
+    def _coupled_borders(self) -> list[tuple[int, OldBorder]]:
+        """The node and the rest of all borders of unlike bodies, old ones and present ones: N has a cusp at each."""
+        found = []
+        for run in runs(self.grid, self.sticking) if self.tilt else []:
+            inside = [border for border in self.old_borders(run) if border.sign and not border.is_end(run.size)]
+            found += [(int(run[border.at]), border) for border in inside]
+            for inwards, at in ((1, 0), (-1, run.size - 1)):
+                sign, place = self._end_sign(run, inwards), self._border_place(run, inwards)
+                if sign and not math.isnan(place):
+                    found.append((int(run[at]), OldBorder(at, inwards, sign, place)))
+        return found
 
     def old_borders(self, run: np.ndarray) -> list[OldBorder]:
         """The marked borders in the stick zone of the nodes `run`."""
@@ -155,48 +196,57 @@ class ShearNodes:
 
     def _old_cusp(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder]) -> Cusp | None:
         """Read the cusp at an old border; None if no fit has it near its node."""
-        best: Cusp | None = None
-        beside = run[max(border.at - 2, 0) : border.at + 3]
-        highest = beside[np.argmax(np.abs(self.shear[beside]))]
+        best: _Reading | None = None
+        around = run[max(border.at - 2, 0) : border.at + 3]
+        highest = around[np.argmax(np.abs(self.shear[around]))]
+        enough = GOOD_ENOUGH * abs(float(self.shear[highest]))
         for half in HALF_WIDTHS:
             first, last = max(border.at - half, 0), min(border.at + half + 1, run.size)
-            if best is not None and (best.error <= GOOD_ENOUGH * best.value or last - first == run.size):
+            if best is not None and (best.error <= enough or last - first == run.size):
                 break
             nodes = run[first:last]
             signs = [self._end_sign(run, side) for side, met in ((1, first == 0), (-1, last == run.size)) if met]
             sign = signs[0] if len(signs) == 1 else 0
             wanted = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
-            for ends, degree in self._shapes(run, border, borders, first, last):
+            for ends, degree in self._shapes(run, border, borders, first, last, sign):
                 unknowns = degree + 1 + sum(end.unknowns for end in ends)
                 if nodes.size < unknowns + SPARE:
                     continue
                 fit = Fit(wanted, ends, degree)
-                place = fit.places[0]
+                place = fit.place(0)
                 if math.isnan(place):
                     continue
-                value, error = fit.value(place), fit.value_error(place)
-                beyond = [fit.value(place - border.inwards * step) for step in (0.0, 0.1)]
-                slope = abs(beyond[1] - beyond[0]) / 0.1
-                if sign:
-                    read = self._pressure_at(int(run[border.at]), place + first - border.at, border.inwards)
-                    if read is None:
-                        continue
-                    value, error = sign * (self.friction * read[0] - value), error + self.friction * read[1]
-                error += slope * fit.place_errors[0]
+                beside = fit.values(place - border.inwards * np.array([0.0, 0.1]))
+                slope = abs(float(beside[1] - beside[0])) / 0.1
+                error = fit.value_error(place) + slope * fit.place_error(0)
                 if best is None or error < best.error:
-                    angle = self._angle(int(run[border.at]), place + first - border.at)
-                    best = Cusp(abs(value), error, angle, int(highest))
-        return best
+                    best = _Reading(fit, error, first, sign)
+        return None if best is None else self._read(best, int(run[border.at]), border, int(highest))
+
+    def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
+        """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""
+        fit, error = reading.fit, reading.error
+        places = fit.place(0) - border.inwards * (self._beyond if border.sign else np.zeros(1))
+        offsets = places + reading.first - border.at
+        values = fit.values(places)
+        if reading.sign:
+            read = self._pressure_at(node, offsets, border.inwards)
+            if read is None:
+                return None
+            values, error = self.friction * read[0] - values, error + self.friction * read[1]
+        values = np.abs(values)
+        top = _top(values)
+        return Cusp(float(values[top]), error, self._angle(node, float(offsets[top])), highest)
 
     def _shapes(
-        self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int
+        self, run: np.ndarray, border: OldBorder, borders: list[OldBorder], first: int, last: int, sign: int
     ) -> Iterator[tuple[tuple[End, ...], int]]:
         """Ends and degrees to try for the nodes first : last of a zone. The border itself is the first end."""
-        own = self._end(border, first, CUSP_TERMS)
+        own = self._end(border, first, CUSP_TERMS, sign)
         others = {(other.at, other.inwards): other for other in borders if first <= other.at < last}
         others.pop((border.at, border.inwards), None)
         others = {key: other for key, other in others.items() if not other.is_end(run.size)}
-        inside = [self._end(other, first, CUSP_TERMS) for other in others.values()]
+        inside = [self._end(other, first, CUSP_TERMS, sign) for other in others.values()]
         met = [side for side, is_met in ((1, first == 0), (-1, last == run.size)) if is_met]
         if not met:
             yield from (((own, *inside), degree) for degree in DEGREES)
@@ -204,39 +254,63 @@ class ShearNodes:
             outer = []
             for side in met:
                 at = 0 if side > 0 else run.size - 1
-                outer.append(self._end(OldBorder(at, side, self._end_sign(run, side)), first, terms))
+                own_sign = self._end_sign(run, side)
+                outer.append(self._end(OldBorder(at, side, own_sign), first, terms, own_sign))
             yield (own, *inside, *outer), -1
 
-    def _end(self, border: OldBorder, first: int, terms: int) -> End:
+    def _end(self, border: OldBorder, first: int, terms: int, sign: int) -> End:
+        """A border as a part of a fit: of the reserve beside slip with the `sign`, or of the shear if this is 0."""
         exponent = 0.5 - self.tilt * border.sign * border.inwards
         line = half_line(exponent, self.coupling if border.sign else None)
-        return End(line, border.at - first, border.inwards, terms, border.place)
+        parts = 1.0, 0.0
+        if self.tilt and border.sign not in (0, sign):
+            parts = (1.0, -2.0) if sign else (0.0, 1.0)
+        return End(line, border.at - first, border.inwards, terms, border.place, parts)
 
-    def _pressure_at(self, node: int, offset: float, inwards: int) -> tuple[float, float] | None:
-        """The pressure at a border, `offset` node distances from its outermost node, and its standard error."""
+    def _pressure_at(self, node: int, offsets: np.ndarray, inwards: int) -> tuple[np.ndarray, float] | None:
+        """The pressure beside a border, and its standard error at the first place.
+
+        The `offsets` (k,) are node distances from the outermost `node` of the border.
+        """
         for patch in self._patches:
             found = np.flatnonzero(patch == node)
             if not found.size:
                 continue
-            at, best = int(found[0]), None
+            at, best, start = int(found[0]), None, float(offsets[0])
             for half in HALF_WIDTHS:
                 first, last = max(at - half, 0), min(at + half + 1, patch.size)
-                if best is not None and best[1] <= 0.1 * GOOD_ENOUGH * best[0]:
+                if best is not None and best.error <= 0.1 * GOOD_ENOUGH * float(self.pressure[node]):
                     break
                 met = [side for side, is_met in ((1, first == 0), (-1, last == patch.size)) if is_met]
-                turned = self._turned(patch[first:last], met)
-                values = self.pressure[patch[first:last]] - turned
+                nodes = patch[first:last]
+                turned, inside = self._turned(nodes, met), self._pressure_cusps(nodes)
                 for terms in END_TERMS if met else DEGREES:
-                    ends = tuple(End(half_line(0.5), 0 if side > 0 else values.size - 1, side, terms) for side in met)
-                    if values.size < (terms * len(ends) or terms + 1) + SPARE:
+                    ends = [End(half_line(0.5), 0 if side > 0 else nodes.size - 1, side, terms) for side in met]
+                    unknowns = (terms * len(ends) or terms + 1) + sum(end.unknowns for end in inside)
+                    if nodes.size < unknowns + SPARE:
                         continue
-                    fit = Fit(values, ends, -1 if met else terms)
-                    value, error = fit.value(at - first + offset), fit.value_error(at - first + offset)
-                    value += self._turned_until(patch[first:last], turned, at - first, inwards, offset)
-                    if best is None or error < best[1]:
-                        best = value, error
-            return best
+                    fit = Fit(self.pressure[nodes] - turned, (*ends, *inside), -1 if met else terms)
+                    error = fit.value_error(at - first + start)
+                    if best is None or error < best.error:
+                        best = _Reading(fit, error, first, 0)
+                        beside = nodes, turned, at - first
+            if best is None:
+                return None
+            nodes, turned, place = beside
+            return best.fit.values(place + offsets) + self._turned_until(
+                nodes, turned, place, inwards, offsets
+            ), best.error
         return None
+
+    def _pressure_cusps(self, nodes: np.ndarray) -> list[End]:
+        """The cusps of the pressure of unlike bodies at some neighbouring nodes, as parts of a fit."""
+        found = []
+        for node, border in self._coupled_borders:
+            at = np.flatnonzero(nodes == node)
+            if at.size:
+                end = self._end(border._replace(at=int(at[0])), 0, CUSP_TERMS, border.sign)
+                found.append(end._replace(parts=(1.0, -1.0)))
+        return found
 
     def _turned(self, nodes: np.ndarray, met: list[int]) -> np.ndarray:
         """The integral of the shear over the angle at some neighbouring nodes, shape (nodes,).
@@ -254,16 +328,18 @@ class ShearNodes:
             return integral + 0.5 * shear[0] * steps[0]
         return integral - integral[-1] - 0.5 * shear[-1] * steps[-1] if met else integral
 
-    def _turned_until(self, nodes: np.ndarray, turned: np.ndarray, at: int, inwards: int, offset: float) -> float:
+    def _turned_until(
+        self, nodes: np.ndarray, turned: np.ndarray, at: int, inwards: int, offsets: np.ndarray
+    ) -> np.ndarray:
         """The integral `turned` up to a border, from the node beyond it, where the shear is smooth."""
         outer = at - inwards
         if not turned.any() or not 0 <= outer < nodes.size:
-            return float(turned[at])
+            return np.full(offsets.size, turned[at])
         before = outer - inwards
         shear = float(self.shear[nodes[outer]])
         change = shear - float(self.shear[nodes[before]]) if 0 <= before < nodes.size else 0.0
-        steps, spacing = inwards * offset + 1.0, float(self.grid.weights[nodes[outer]])
-        return float(turned[outer]) + inwards * spacing * (shear * steps + 0.5 * change * steps**2)
+        steps, spacing = inwards * offsets + 1.0, float(self.grid.weights[nodes[outer]])
+        return np.asarray(turned[outer] + inwards * spacing * (shear * steps + 0.5 * change * steps**2))
 
     def _index(self, node: int, angle: float) -> float:
         """Distance of an angle from a node, in node distances."""
@@ -277,3 +353,9 @@ class ShearNodes:
         left, right = self.grid.knots()
         theta = float(self.grid.theta[node])
         return theta + offset * float(right[node] - theta if offset > 0.0 else theta - left[node])
+
+
+def _top(values: np.ndarray) -> int:
+    """Place of the largest of some values; the first one if they rise to the last one."""
+    top = int(np.argmax(values))
+    return top if top < values.size - 1 else 0

@@ -37,7 +37,16 @@ the standard error shows in part only.
 
 
 def end_place(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = ()) -> float:
-    """Place at which a quantity falls to zero at the end of a zone.
+    """Place at which a quantity falls to zero at the end of a zone: that of :func:`end_fit`.
+
+    It is in node distances inwards from the outermost node; NaN if no fit is good enough.
+    """
+    found = end_fit(values, line, cusps)
+    return math.nan if found is None else found.place(0)
+
+
+def end_fit(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = ()) -> Fit | None:
+    """The best fit of a quantity that falls to zero at the end of a zone. This is the end number 0 of the fit.
 
     Parameters
     ----------
@@ -49,10 +58,11 @@ def end_place(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = (
 
     Returns
     -------
-    float
-        In node distances inwards from the outermost node; NaN if no fit is good enough.
+    Fit or None
+        None if no fit is good enough.
     """
-    best, least = math.nan, LARGEST_COUPLED if line.coupled else LARGEST_ERROR
+    best: Fit | None = None
+    least = LARGEST_COUPLED if line.coupling else LARGEST_ERROR
     others = [
         End(line, cusp.at, cusp.inwards, CUSP_TERMS, cusp.place) for cusp in cusps if (cusp.at, cusp.inwards) != (0, 1)
     ]
@@ -65,8 +75,9 @@ def end_place(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = (
         if count < sum(end.unknowns for end in ends) + 1:
             continue
         fit = Fit(values[:count], ends)
-        if fit.place_errors[0] < least:
-            best, least = fit.places[0], fit.place_errors[0]
+        error = fit.place_error(0)
+        if error < least:
+            best, least = fit, error
         if least <= GOOD_ENOUGH and not crowded:
             break
-    return best
+    return None if best is None or math.isnan(best.place(0)) else best

@@ -1,6 +1,6 @@
 """Marks of old borders at the nodes of a contact, and the places of these borders, which are read on demand.
 
-At a corner only the nodes of the present borders are marked, and the nodal values beside them are kept. That takes some
+At a corner only the nodes of the present borders are marked, and the nodal values are kept. That takes some
 microseconds. The place of a border is read from these values when it is first asked for. So it does not depend on the
 time at which it is read.
 """
@@ -8,7 +8,7 @@ time at which it is read.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,20 +19,12 @@ from fastpin.states.ends import MOST_VALUES, end_place
 from fastpin.states.half_line import half_line
 from fastpin.states.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
 
-DEEPEST = 8
-"""Largest number of unread places that follow from each other. The next one is read at once: it keeps no more memory.
+DEEPEST = 64
+"""Largest number of corners whose unread places follow from each other.
 
-A place is read with the places of older borders nearby.
+The places of the next corner are read at once, and the nodal values of all these corners are given free. A place is
+read with the places of older borders nearby.
 """
-
-
-class Cusp(NamedTuple):
-    """An older border near a border: its outermost node, counted from the border, and the rest as for an OldBorder."""
-
-    at: int
-    inwards: int
-    sign: int
-    place: Place | float
 
 
 class Place:
@@ -40,30 +32,27 @@ class Place:
 
     Parameters
     ----------
-    reserve : ndarray, shape (k,)
-        mu N - |T| from the outermost node inwards.
-    exponent, coupling : float
-        Those of the half line, see :func:`fastpin.states.half_line.half_line`.
-    cusps : list of Cusp
-        The older borders nearby.
+    corner : _Corner
+        The corner at which it was marked.
+    node, inwards : int
+        Its outermost node, and the direction into its stick zone, 1 or -1.
     """
 
-    __slots__ = ("_beside", "_value", "depth")
+    __slots__ = ("_corner", "_inwards", "_node", "_value")
 
-    def __init__(self, reserve: np.ndarray, exponent: float, coupling: float, cusps: list[Cusp]) -> None:
-        self._beside: tuple[np.ndarray, float, float, list[Cusp]] | None = reserve, exponent, coupling, cusps
-        self._value = math.nan
-        self.depth: int = 1 + max((cusp.place.depth for cusp in cusps if isinstance(cusp.place, Place)), default=0)
-        if self.depth > DEEPEST:
-            self.read()
+    def __init__(self, corner: _Corner, node: int, inwards: int) -> None:
+        self._corner: _Corner | None = corner
+        self._node, self._inwards, self._value = node, inwards, math.nan
+
+    @property
+    def depth(self) -> int:
+        """Number of corners whose nodal values are kept for this place."""
+        return 0 if self._corner is None else self._corner.depth
 
     def read(self) -> float:
         """The place."""
-        if self._beside is not None:
-            reserve, exponent, coupling, cusps = self._beside
-            found = [OldBorder(at, inwards, sign, _known(place)) for at, inwards, sign, place in cusps]
-            self._value = end_place(reserve, half_line(exponent, coupling), found)
-            self._beside, self.depth = None, 0
+        if self._corner is not None:
+            self._value, self._corner = self._corner.place(self._node, self._inwards), None
         return self._value
 
 
@@ -127,35 +116,39 @@ class Marks:
         """
         fresh: dict[int, int] = {}
         places: dict[int, Place | float] = {}
-        beside: _Beside | None = None
+        corner: _Corner | None = None
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
-                beside = beside or _Beside.of(problem, grid, tractions, status)
-                place = beside.place(node, inwards, self)
-                if place is not None:
-                    places[node] = place
+                corner = corner or _Corner(problem, grid.closed, tractions, status, self)
+                place = Place(corner, node, inwards)
+                places[node] = place.read() if corner.depth > DEEPEST else place
         if not fresh:
             return self
         bits = self._bits | {node: mark | self._bits.get(node, 0) for node, mark in fresh.items()}
         places = {node: place for node, place in self._places.items() if node not in fresh} | places
         return Marks(bits, {node: place for node, place in places.items() if not is_ambiguous(bits[node])})
 
-    def near(self, nodes: list[int], inwards: int) -> list[Cusp]:
+    @property
+    def depth(self) -> int:
+        """Largest number of corners whose nodal values are kept for a place."""
+        return max((place.depth for place in self._places.values() if isinstance(place, Place)), default=0)
+
+    def near(self, nodes: list[int], inwards: int) -> list[OldBorder]:
         """The marked borders at some neighbouring `nodes`, which lie `inwards` from the first one, in their order.
 
-        Their directions count from there too.
+        Their nodes and directions count from there too.
         """
         found = []
         for at, node in enumerate(nodes):
             bits = self._bits.get(node)
             if bits is None:
                 continue
-            place, directions = self._places.get(node, math.nan), set()
+            place, directions = _known(self._places.get(node, math.nan)), set()
             for (direction, sign), bit in BITS.items():
                 if bits & bit and direction not in directions:
                     directions.add(direction)
-                    found.append(Cusp(at, direction * inwards, sign, place))
+                    found.append(OldBorder(at, direction * inwards, sign, place))
         return found
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -170,36 +163,42 @@ def _known(place: Place | float) -> float | None:
     return None if math.isnan(value) else value
 
 
-class _Beside(NamedTuple):
-    """The nodal values beside the borders at a corner."""
+class _Corner:
+    """The nodal values of a corner, from which the places of its borders are read.
 
-    closed: bool
-    bound: np.ndarray
-    shear: np.ndarray
-    sticking: np.ndarray
-    tilt: float
-    coupling: float
+    Parameters
+    ----------
+    problem : Problem
+    closed : bool
+        Whether the last node is joined to the first node.
+    tractions : (ndarray, ndarray)
+        Pressure and shear, shape (n,).
+    status : ndarray, shape (n,)
+    older : Marks
+        The old borders.
+    """
 
-    @classmethod
-    def of(cls, problem: Problem, grid: Grid, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray) -> _Beside:
-        """The values of a problem with the pressure and shear `tractions` (n,) and the status (n,)."""
-        pressure, shear = tractions
-        bound, coupling = problem.friction * pressure, problem.surfaces.dundurs()[1]
-        tilt = math.atan(problem.friction * coupling) / math.pi
-        return cls(grid.closed, bound, shear, truly_sticking(status, bound - np.abs(shear)), tilt, coupling)
+    __slots__ = ("_closed", "_older", "_problem", "_status", "_tractions", "depth")
 
-    def place(self, node: int, inwards: int, older: Marks) -> Place | None:
-        """The place of the border at a sticking `node`; None if the node or the one beyond it carries no shear."""
-        n = self.shear.size
-        outside, sign = (node - inwards) % n, 0.0
-        if self.sticking[node]:
-            sign = float(np.sign(self.shear[outside]))
+    def __init__(
+        self, problem: Problem, closed: bool, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray, older: Marks
+    ) -> None:
+        self._problem, self._closed, self._tractions = problem, closed, tractions
+        self._status, self._older = status, older
+        self.depth: int = 1 + older.depth
+
+    def place(self, node: int, inwards: int) -> float:
+        """The place of the border at a sticking `node`; NaN if the node or the one beyond it carries no shear."""
+        (pressure, shear), n = self._tractions, self._status.size
+        bound, coupling = self._problem.friction * pressure, self._problem.surfaces.dundurs()[1]
+        tilt = math.atan(self._problem.friction * coupling) / math.pi
+        sticking = truly_sticking(self._status, bound - np.abs(shear))
+        sign = float(np.sign(shear[(node - inwards) % n])) if sticking[node] else 0.0
         if sign == 0.0:
-            return None
+            return math.nan
         nodes = node + inwards * np.arange(min(MOST_VALUES, n))
-        nodes = nodes % n if self.closed else nodes[(nodes >= 0) & (nodes < n)]
-        slipping = np.flatnonzero(~self.sticking[nodes])
+        nodes = nodes % n if self._closed else nodes[(nodes >= 0) & (nodes < n)]
+        slipping = np.flatnonzero(~sticking[nodes])
         zone = nodes[: slipping[0]] if slipping.size else nodes
-        reserve = self.bound[zone] - sign * self.shear[zone]
-        cusps = older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
-        return Place(reserve, 0.5 - self.tilt * sign * inwards, self.coupling, cusps)
+        cusps = self._older.near(zone[: MOST_VALUES // 2].tolist(), inwards)
+        return end_place(bound[zone] - sign * shear[zone], half_line(0.5 - tilt * sign * inwards, coupling), cusps)

@@ -144,16 +144,16 @@ def _peaks_at_borders(
         if magnitude[highest] < RIVAL * magnitude[top]:
             continue
         exponent = 0.5 + (outwards * tilt if shear[highest] >= 0.0 else -outwards * tilt)
+        read = contact.border_cusp(nodes, outwards, border)
+        fits_nodes = read is not None and _likely(grid, magnitude, highest, read.value)
+        if read is not None and fits_nodes and read.error <= CUSP_ERROR * read.value:
+            fitted_here = fitted_here or highest == top
+            peaks.append((read.value, read.angle, highest))
+            continue
         peak = _border_peak(grid, bound, border, outwards, exponent, highest) if tilt != 0.0 else None
         if peak is not None and _likely(grid, magnitude, highest, peak[0]):
             fitted_here = fitted_here or highest == top
             peaks.append((*peak, highest))
-            continue
-        read = contact.border_cusp(nodes, outwards, border) if tilt == 0.0 else None
-        fits_nodes = read is not None and _likely(grid, magnitude, highest, read.value)
-        if read is not None and fits_nodes and read.error <= CUSP_ERROR * read.value:
-            fitted_here = fitted_here or highest == top
-            peaks.append((read.value, border, highest))
             continue
         at_border = friction * _interpolated(grid, pressure, border)
         if _likely(grid, magnitude, highest, at_border):

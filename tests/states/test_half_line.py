@@ -9,7 +9,7 @@ import pytest
 from scipy.special import zeta
 
 from fastpin.states.ends import end_place
-from fastpin.states.half_line import TERMS, End, Fit, half_line, zeta_3
+from fastpin.states.half_line import MOST_NODES, SHEAR_TERMS, TERMS, End, Fit, half_line, shear_columns, zeta_3
 from fastpin.states.old_borders import OldBorder
 
 
@@ -57,17 +57,44 @@ def test_values_between_the_nodes_beside_an_edge() -> None:
         exact = math.sqrt(half_width**2 - x**2) / math.pi
         assert fit.value(x + 30.0 - inside[0]) == pytest.approx(exact, rel=3e-3)
         assert fit.value_error(x + 30.0 - inside[0]) < 1e-3 * exact
-    assert fit.value(fit.places[0] - 0.1) == 0.0
+    assert fit.value(fit.place(0) - 0.1) == 0.0
 
 
 @pytest.mark.parametrize(("exponent", "coupling"), [(0.5, None), (0.46, None), (0.53, 0.2)])
 def test_solutions_are_powers_far_from_the_end(exponent: float, coupling: float | None) -> None:
     line = half_line(exponent, coupling)
     for m, bound in enumerate((5e-3, 3e-5, 1e-6, 1e-6)):
-        far = line.matching[: m + 1, m] @ line.powers(60.0, m + 1)
+        far = line.powers(np.array([60.0]), m + 1)[0] @ line.matching[: m + 1, m]
         assert line.nodal[60, m] == pytest.approx(far, rel=bound)
     assert np.array_equal(np.cumsum(line.nodal[:, 1]), line.nodal[:, 2])
     assert line.matching.shape == (TERMS, TERMS)
+
+
+@pytest.mark.parametrize(("exponent", "coupling"), [(0.47, 0.2), (0.54, -0.15), (0.5, 1e-9)])
+def test_the_shear_beside_a_border_of_unlike_bodies(exponent: float, coupling: float) -> None:
+    """Powers far from the border on both sides. Beside it the errors of the nodes change their sign."""
+    line, columns, x = half_line(exponent, coupling), shear_columns(exponent, coupling), np.array([50.0])
+    for m, bound in enumerate((8e-3, 6e-5, 2e-5)):
+        far = line.powers(x, m + 1)[0]
+        assert columns[MOST_NODES - 1 + 50, m] == pytest.approx(far @ line.matching[: m + 1, m], rel=bound)
+        beyond = math.cos(math.pi * exponent) * (-1.0) ** (np.arange(m + 1) - 1.0) * far
+        assert columns[MOST_NODES - 1 - 50, m] == pytest.approx(beyond @ line.matching[: m + 1, m], rel=bound, abs=1e-9)
+    errors = columns[MOST_NODES - 1 :, 0] - line.nodal[:, 0]
+    assert np.all(errors[:4] * errors[1:5] < 0.0) or exponent == 0.5
+    assert np.all(np.abs(errors[8:]) < 2e-6)
+    assert np.allclose(np.diff(columns, axis=0)[:, 1:], columns[1:, : SHEAR_TERMS - 1], atol=1e-11)
+
+
+def test_the_largest_shear_lies_beyond_an_old_border_of_unlike_bodies() -> None:
+    """The fitted function has its power on the slip side too."""
+    line = half_line(0.47, 0.2)
+    end = End(line, 12, 1, 3, -0.3, (0.0, 1.0))
+    fit = Fit(2.0 + 0.5 * end.columns(31) @ [1.0, 0.01], (end._replace(place=None),), 2)
+    place = fit.place(0)
+    assert place == pytest.approx(11.7, abs=1e-6)
+    near = fit.values(place + np.array([-0.01, 0.0, 0.01])) - fit.value(place)
+    assert fit.place_error(0) < 1e-6
+    assert near[0] / near[2] == pytest.approx(math.cos(math.pi * 0.47), rel=0.01)
 
 
 @pytest.mark.parametrize("inwards", [1, -1])
@@ -78,9 +105,9 @@ def test_a_place_between_nodes_and_a_known_one(inwards: int) -> None:
     x = np.arange(float(nodes))
     values = 1.0 + 0.02 * x + 3.0 * first.columns(nodes) @ [1.0, 0.1] - second.columns(nodes) @ [1.0, -0.05]
     fit = Fit(values, (first._replace(place=None), second), 1)
-    assert fit.places[0] == pytest.approx(10.0 - 0.3 * inwards, abs=1e-6)
-    assert fit.places[1] == pytest.approx(10.0 + 3.2 * inwards, abs=1e-12)
-    assert fit.value(fit.places[0]) == pytest.approx(1.0 + 0.02 * fit.places[0], abs=1e-6)
+    assert fit.place(0) == pytest.approx(10.0 - 0.3 * inwards, abs=1e-6)
+    assert fit.place(1) == pytest.approx(10.0 + 3.2 * inwards, abs=1e-12)
+    assert fit.value(fit.place(0)) == pytest.approx(1.0 + 0.02 * fit.place(0), abs=1e-6)
 
 
 def test_the_end_of_a_zone_beside_an_old_border() -> None:
