@@ -17,11 +17,15 @@ import bisect
 import functools
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fastpin import kernels
+from fastpin.states.ends import end_fit
+from fastpin.states.half_line import HalfLine
+from fastpin.states.old_borders import OldBorder
 
 SPARE = 4
 """Least number of nodes of a window beyond the number of unknowns."""
@@ -131,6 +135,9 @@ LAW_REACH = 9.0
 
 LAW_ERROR = 0.02
 """Largest standard error of the leading coefficient of a power law, in parts of it."""
+
+LAW_EQUAL = 1e-6
+"""Largest difference of two places that are the same, in node distances."""
 
 LAW_OFF = np.array([0.25, 0.11, 0.03, 0.03])
 """Largest difference of a power law and the values at the four outermost nodes, in parts of the leading coefficient.
@@ -417,6 +424,41 @@ class Law:
         power = np.exp(self.exponent * np.log(np.maximum(x, 1e-300)))
         series = np.polynomial.polynomial.polyval(x, self.coefficients)
         return np.where(x > 0.0, np.real(power * series), 0.0)
+
+
+def law_of_nodes(
+    place: float, line: HalfLine, theta: np.ndarray, values: np.ndarray, cusps: Sequence[OldBorder] = ()
+) -> Law | None:
+    """The power law at the end of a zone, by the solutions of the half line if they show the end at this place.
+
+    Otherwise it is fitted as in :func:`law`.
+
+    Parameters
+    ----------
+    place : float
+        Angle of the end, rad.
+    line : HalfLine
+    theta, values : ndarray, shape (n,)
+        Angles of the nodes of the zone, from this end on, rad; and the values there.
+    cusps : sequence of OldBorder
+        Old borders in the zone.
+
+    Returns
+    -------
+    Law or None
+        None if no fit is good enough.
+    """
+    fit = end_fit(values, line, cusps) if theta.size > 1 else None
+    if fit is not None:
+        spacing, last = float(theta[1] - theta[0]), int(fit.last)
+        equal = abs(float(theta[last] - theta[0]) - last * spacing) <= LAW_EQUAL * abs(spacing)
+        if equal and abs(float(theta[0]) + fit.place(0) * spacing - place) <= LAW_EQUAL * abs(spacing):
+            series, error = fit.series(0)
+            free = min((cusp.at for cusp in cusps if cusp.at > 0), default=last)
+            if error <= LAW_ERROR * abs(series[0]):
+                reach = abs(spacing) * min(LAW_REACH, last, free)
+                return Law(place, int(np.sign(spacing)), line.exponent, series.astype(complex), abs(spacing), reach)
+    return law(place, line.exponent, theta, values)
 
 
 def law(place: float, exponent: complex, theta: np.ndarray, values: np.ndarray) -> Law | None:

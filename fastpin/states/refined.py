@@ -24,6 +24,8 @@ from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
 from fastpin.states import fits
 from fastpin.states.fits import Law
+from fastpin.states.half_line import half_line
+from fastpin.states.old_borders import OldBorder
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round, runs, unrolled
 
@@ -54,6 +56,13 @@ RIVAL = 0.6
 CUSP_ERROR = 0.01
 """Largest standard error of T at a cusp, in parts of the cusp at a node distance."""
 
+BORDER_NEAR, BORDER_FAR, BORDER_LEAST = 2.5, 9.0, 4
+"""Beside a border of unlike bodies the pressure is fitted.
+
+Within BORDER_NEAR node distances it is taken from a fit of the nodes up to BORDER_FAR. The fit needs BORDER_LEAST nodes
+on either side.
+"""
+
 BOTH_ENDS = (slice(None), slice(None, None, -1))
 """Order of the nodes of a zone, from its start and from its stop."""
 
@@ -72,12 +81,15 @@ class Zone:
         Sign of T in the slip zone beside each end; 0 at the edge of the contact.
     exponents : (float, float)
         Of mu N - |T|, (T26).
+    cusps : list of OldBorder
+        The old borders in it.
     """
 
     ends: tuple[float, float]
     nodes: np.ndarray
     signs: tuple[int, int]
     exponents: tuple[float, float]
+    cusps: list[OldBorder]
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +189,7 @@ def refined_tractions(state: State) -> RefinedTractions:
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
         laws, cusps = _laws(replace(patch, stick=zones), pressure), _old_cusps(patch)
-        arrays.append(_refined(replace(patch, stick=zones), laws, cusps))
+        arrays.append(_refined(replace(patch, pressure=_pressure_at_borders(patch, laws), stick=zones), laws, cusps))
         resolved += [*(law.place for law in laws.all), *(cusp.place for cusp in cusps)]
         unresolved += laws.unresolved + hidden
     moment = float(state.grid.weights @ state.shear)
@@ -192,7 +204,7 @@ def _pressure_laws(patch: Patch) -> tuple[Law | None, ...]:
     if patch.exponents is None:
         return ()
     return tuple(
-        fits.law(edge, exponent, patch.theta[order], patch.pressure[order])
+        fits.law_of_nodes(edge, half_line(exponent), patch.theta[order], patch.pressure[order])
         for edge, exponent, order in zip(patch.edges, patch.exponents, BOTH_ENDS, strict=True)
     )
 
@@ -228,7 +240,9 @@ def _laws(patch: Patch, pressure: tuple[Law | None, ...]) -> Laws:
             nodes, place, sign = zone.nodes[order], zone.ends[k], zone.signs[k]
             if sign != 0:
                 reserve = patch.friction * patch.pressure[nodes] - sign * patch.shear[nodes]
-                found = fits.law(place, zone.exponents[k], patch.theta[nodes], reserve)
+                line, cusps = half_line(zone.exponents[k], patch.beta), zone.cusps
+                inside = cusps if k == 0 else [cusp.mirrored(nodes.size) for cusp in cusps]
+                found = fits.law_of_nodes(place, line, patch.theta[nodes], reserve, inside)
                 if found is not None:
                     laws.borders.append((found, sign))
             elif patch.exponents is not None:
@@ -339,14 +353,41 @@ def _with_ends(patch: Patch, pressure: tuple[Law | None, ...]) -> tuple[np.ndarr
     return np.r_[start, patch.theta[inside], stop], np.pad(values[:, inside], ((0, 0), (1, 1)))
 
 
+def _pressure_at_borders(patch: Patch, laws: Laws) -> np.ndarray:
+    """The nodal pressure of a patch, shape (n,), with better values beside the borders of unlike bodies.
+
+    The nodal values beside a cusp of N have errors of alternating sign. So they are taken from a fit of the nodes
+    beyond: a cubic, the cusp of (T26) and its next power.
+    """
+    pressure = patch.pressure.copy()
+    for law, sign in laws.borders if patch.beta != 0.0 else ():
+        x = law.inwards * (patch.theta - law.place) / law.spacing
+        others = [other.place for other in laws.all if other is not law] + laws.unresolved + list(patch.edges)
+        room = min(abs(place - law.place) for place in others) / law.spacing - BORDER_NEAR
+        used = (np.abs(x) > BORDER_NEAR) & (np.abs(x) < min(room, BORDER_FAR))
+        if min(np.count_nonzero(used & (x < 0.0)), np.count_nonzero(used & (x > 0.0))) < BORDER_LEAST:
+            continue
+        beyond = np.maximum(-x, 0.0)
+        cusp = _cusp_height(law, sign * patch.beta) * beyond**law.exponent.real
+        columns = np.column_stack([np.vander(x / BORDER_FAR, 4), (beyond / BORDER_FAR) ** (law.exponent.real + 1.0)])
+        coefficients = np.linalg.lstsq(columns[used], (patch.pressure - cusp)[used], rcond=None)[0]
+        near = np.abs(x) <= BORDER_NEAR
+        pressure[near] = columns[near] @ coefficients + cusp[near]
+    return pressure
+
+
+def _cusp_height(law: Law, coupling: float) -> float:
+    """Coefficient of the power x^a in N on the slip side of a border, with x in node distances, see _pressure_cusp."""
+    return -law.inwards * coupling * float(law.coefficients[0].real) * math.sin(math.pi * law.exponent.real)
+
+
 def _pressure_cusp(law: Law, coupling: float, theta: np.ndarray, nodes: np.ndarray) -> np.ndarray:
     """The part of a cusp of N that straight lines between the `nodes` miss, on the slip side of a border.
 
     Of unlike bodies N has the cusp -+ s beta c0 sin(pi a) x^a there, if mu N - s T begins with c0 x^a (T26). The
     `coupling` is s beta. The upper sign holds where the stick zone lies at larger angles.
     """
-    exponent = law.exponent.real
-    height = -law.inwards * coupling * float(law.coefficients[0].real) * math.sin(math.pi * exponent)
+    exponent, height = law.exponent.real, _cusp_height(law, coupling)
 
     def cusp(angles: np.ndarray) -> np.ndarray:
         beyond = np.maximum(-law.inwards * (angles - law.place), 0.0) / law.spacing
@@ -401,5 +442,6 @@ def _zones(state: State, run: np.ndarray, theta: np.ndarray) -> tuple[Zone, ...]
         if places[nodes[0]] >= 0:
             turn = 2.0 * math.pi * round((theta[places[nodes[0]]] - ends[0]) / (2.0 * math.pi))
             moved = ends[0] + turn, ends[1] + turn
-            zones.append(Zone(moved, places[nodes], state.signs_beside(nodes), state.stick_exponents(nodes)))
+            signs, exponents = state.signs_beside(nodes), state.stick_exponents(nodes)
+            zones.append(Zone(moved, places[nodes], signs, exponents, state.nodes.old_borders(nodes)))
     return tuple(zones)

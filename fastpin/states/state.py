@@ -196,7 +196,7 @@ class State:
         """The stick intervals of the runs of sticking nodes, in their order; inside the contact."""
         closed, reserve = self.status != OPEN, self._reserve_beside
         return zones.stick_intervals(
-            self.grid, self._sticking, reserve, closed, self.contact_in_runs, self._stick_lines, self._nodes.old_borders
+            self.grid, self._sticking, reserve, closed, self.contact_in_runs, self._stick_lines, self.nodes.old_borders
         )
 
     @cached_property
@@ -240,7 +240,7 @@ class State:
     def _shear_peak(self) -> tuple[float, float]:
         if not self.shear.any():
             return 0.0, math.nan
-        peak, place = peaks.shear_peak(self._nodes, self._stick)
+        peak, place = peaks.shear_peak(self.nodes, self._stick)
         most = self.problem.friction * self.peak_pressure
         return min(max(peak, -most), most), near_bottom(place)
 
@@ -317,7 +317,8 @@ class State:
         return None if self.marks is None else self.marks.arrays(self.grid.size)[1]
 
     @cached_property
-    def _nodes(self) -> ShearNodes:
+    def nodes(self) -> ShearNodes:
+        """The nodal tractions with the marks of old borders."""
         marks, places = (self.marks or Marks()).arrays(self.grid.size)
         return ShearNodes.of(self.problem, self.grid, (self.pressure, self.shear), self.status, marks, places)
 

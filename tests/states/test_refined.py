@@ -9,6 +9,7 @@ import pytest
 from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, solve
 from fastpin.kernels.status import OPEN
 from fastpin.states import fits
+from fastpin.states.half_line import End, half_line
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(Material(3.0, 0.3), Material(1.0, 0.33))
@@ -112,6 +113,29 @@ def test_peaks_of_random_states_converge():
             errors.append(abs(found.value / reference.value - 1.0))
     assert len(errors) >= 6
     assert max(errors) < 1e-3
+
+
+def test_a_peak_at_a_border_of_unlike_bodies_beside_an_earlier_edge():
+    """An earlier contact edge lies 0.7 node distances beyond the border. The reference has 3,201 nodes."""
+    case = problem(UNLIKE, 0.0721422, 0.356967)
+    state = solve(case, [{"P": 1.0}, {"Q": 0.223351, "sxx": 0.2}, {"Q": -0.178681, "sxx": 0.0}], nodes=401)[-1]
+    assert state.peak_hoop_stress().value == pytest.approx(0.62851, rel=4e-4)
+
+
+def test_a_law_of_the_half_line_and_of_other_nodes():
+    """Equally spaced nodes and a place that the solutions of the half line show; otherwise powers at the nodes."""
+    line = half_line(0.5)
+    values = End(line, 0, 1, 3, -0.3).columns(30) @ [1.0, 0.05]
+    theta = 0.2 + 0.01 * np.arange(30)
+    between = 0.2 + 0.01 * np.array([0.4, 1.5, 3.5])
+    x = (between - 0.2) / 0.01 + 0.3
+    exact = line.powers(x, 3)[:, 1:] @ [1.0, 0.05]
+    assert fits.law_of_nodes(0.197, line, theta, values).values(between) == pytest.approx(exact, rel=1e-6)
+    for place, angles in ((0.1975, theta), (0.197, theta + 1e-4 * np.arange(30) ** 2)):
+        other = fits.law_of_nodes(place, line, angles, values)
+        plain = fits.law(place, 0.5, angles, values)
+        assert (other is None) == (plain is None)
+        assert other is None or np.array_equal(other.coefficients, plain.coefficients)
 
 
 # --- what holds for all states --------------------------------------------------------------------------------
