@@ -1,0 +1,50 @@
+"""The choice of the arc of nodes: the quick coarse run finds the arc of the careful ones, within one of their nodes."""
+
+from __future__ import annotations
+
+import pytest
+
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import REMOTE
+from fastpin.model.problem import Problem
+from fastpin.solver import arc
+from fastpin.solver.task import reference_force
+from scripts.histories import random_case
+from tests.support.slip_cases import LIKE
+
+
+def touched_arc(problem: Problem, history: LoadHistory) -> tuple[float, float] | None:
+    values = history.distinct()
+    return arc._touched_arc(problem, values, reference_force(problem, values), 101, None)
+
+
+def is_simple(seed: int) -> bool:
+    problem, history = random_case(seed)
+    values = history.distinct()
+    return not values[:, REMOTE].any() and arc._estimated_arc(problem, values) is not None
+
+
+@pytest.mark.parametrize("seed", [seed for seed in range(12) if is_simple(seed)])
+def test_the_quick_run_finds_the_arc_of_the_careful_ones(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, history = random_case(seed)
+    estimated = arc._estimated_arc(problem, history.distinct())
+    quick = touched_arc(problem, history)
+    monkeypatch.setattr(arc, "_quick_arc", lambda *_: None)
+    careful = touched_arc(problem, history)
+    assert estimated is not None
+    assert quick is not None
+    assert careful is not None
+    spacing = (estimated[1] - estimated[0]) / (arc.COARSE_NODES - 1)
+    assert quick == pytest.approx(careful, abs=1.001 * spacing)
+
+
+@pytest.mark.parametrize("corner", [{"P": 1.0, "sxx": 0.01}, {"P": 1e-3}], ids=["remote stress", "little contact"])
+def test_the_quick_run_leaves_the_others_to_the_careful_ones(corner: dict[str, float]) -> None:
+    problem, history = Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory([{"P": 1.0}, corner])
+    if "sxx" not in corner:
+        history = LoadHistory([corner])
+    values = history.distinct()
+    estimated = arc._estimated_arc(problem, values)
+    assert estimated is not None
+    wide = estimated if "sxx" in corner else (estimated[0] - 1.0, estimated[1] + 1.0)
+    assert arc._quick_arc(problem, history, wide, reference_force(problem, values), None) is None
