@@ -467,32 +467,26 @@ class LoadHistory:
 
 def check_loads(problem: Problem, history: LoadHistory) -> None:
     """Raise :class:`InputError` if a load of `history` can't act in `problem`, or is beyond :data:`MOST_LOAD`."""
-    natural = problem.natural_loads()
-    for place, (name, kind) in enumerate(LOAD_KIND.items()):
-        for block in history.blocks:
-            column = block.given[:, place]
-            if (given := column[~np.isnan(column)]).size:
-                largest = float(given[np.argmax(np.abs(given))])
-                number(name, largest, -MOST_LOAD * natural[kind], MOST_LOAD * natural[kind])
-    _check_remote(problem, history)
-    moments = [block.given[:, LOADS.index("M")] for block in history.blocks]
-    rotations = [block.given[:, LOADS.index("rotation")] for block in history.blocks]
-    if problem.pin_load == "body" and any(np.any(np.nan_to_num(moment) != 0.0) for moment in moments):
+    natural, largest = problem.natural_loads(), _largest_given(history)
+    for name, value in largest.items():
+        most = MOST_LOAD * natural[LOAD_KIND[name]]
+        number(name, value, -most, most)
+    _check_remote(problem, largest)
+    if problem.pin_load == "body" and largest.get("M", 0.0) != 0.0:
         raise InputError(
             "M",
             "a body-loaded pin can't carry a moment: uniform body forces leave the moment's singularity at the centre "
             '(section 4 of the paper); use pin_load = "centre"',
         )
-    if problem.held and not all(np.all(np.isnan(moment)) for moment in moments):
+    if problem.held and "M" in largest:
         raise InputError(
             "M", f'the moment is a reaction where rotation = "{problem.rotation}"; leave it out or let the pin rotate'
         )
-    if not problem.held and not all(np.all(np.isnan(rotation)) for rotation in rotations):
+    if not problem.held and "rotation" in largest:
         raise InputError("rotation", 'a rotation can be prescribed only where rotation = "fixed" or "spring"')
     for place, is_driven in enumerate(problem.driven):
         force, displacement = ("Q", "P")[place], ("ux", "uy")[place]
-        refused = force if is_driven else displacement
-        if all(np.all(np.isnan(block.given[:, LOADS.index(refused)])) for block in history.blocks):
+        if (force if is_driven else displacement) not in largest:
             continue
         if is_driven:
             raise InputError(force, f'the force is a reaction where drive = "{problem.drive}"; give {displacement}')
@@ -500,12 +494,26 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
         raise InputError(displacement, words)
 
 
-def _check_remote(problem: Problem, history: LoadHistory) -> None:
-    """Raise :class:`InputError` if a remote stress other than 0 can't act on the plate's body."""
+def _largest_given(history: LoadHistory) -> dict[str, float]:
+    """The largest value in size of every load that is given anywhere in a history, by name."""
+    lowest: np.ndarray = np.fmin.reduce(
+        [np.fmin.reduce(block.given, axis=0, initial=np.nan) for block in history.blocks]
+    )
+    highest: np.ndarray = np.fmax.reduce(
+        [np.fmax.reduce(block.given, axis=0, initial=np.nan) for block in history.blocks]
+    )
+    largest = np.where(-lowest > highest, lowest, highest)
+    return {name: value for name, value in zip(LOADS, largest.tolist(), strict=True) if not math.isnan(value)}
+
+
+def _check_remote(problem: Problem, largest: dict[str, float]) -> None:
+    """Raise :class:`InputError` if a remote stress other than 0 can't act on the plate's body.
+
+    `largest` has the largest value of every load that is given.
+    """
     body = problem.joint.lug
-    for place in REMOTE:
-        name = LOADS[place]
-        if all(np.all(np.nan_to_num(block.given[:, place]) == 0.0) for block in history.blocks):
+    for name in (LOADS[place] for place in REMOTE):
+        if largest.get(name, 0.0) == 0.0:
             continue
         if isinstance(body, Ring) and body.held:
             raise InputError(
