@@ -20,6 +20,9 @@ MAX_RESIDUAL = 1e-9
 NODAL = ("pressure", "shear", "gap", "slip", "status", "rest_gap", "rest_slip")
 """Arrays of a configuration with one number for each node."""
 
+AT_REST = ("origin", "rest", "rest_gap", "rest_slip")
+"""Arrays that nothing changes in place: copies of a configuration share them."""
+
 
 @dataclass(eq=False)
 class Configuration:
@@ -72,9 +75,10 @@ class Configuration:
     marks: Marks = field(default_factory=Marks)
 
     def copy(self) -> Configuration:
-        """A copy that shares no array with this one."""
+        """A copy that shares no array with this one, except those of :data:`AT_REST`."""
         copied: dict[str, Any] = {
-            name: value.copy() if isinstance(value, np.ndarray) else value for name, value in vars(self).items()
+            name: value.copy() if isinstance(value, np.ndarray) and name not in AT_REST else value
+            for name, value in vars(self).items()
         }
         return Configuration(**copied)
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fastpin.elasticity.operator import Operator
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import Contact, Queue
@@ -129,16 +130,16 @@ class PathStep:
         self._queue.sums[exchange.DISSIPATION] = configuration.dissipation
         self._queue.sums[exchange.WORK] = configuration.work
         self._all_at_once = max(32, n // 20)
-        if n <= FEW_NODES:
-            self._sample, self._sampled = np.arange(2 * n), np.asarray(system.operator)
-        else:
+        self._sample: slice | np.ndarray = slice(None)
+        self._sampled: Operator | np.ndarray = system.operator
+        if n > FEW_NODES:
             nodes = np.unique(np.linspace(0, n - 1, SAMPLED_NODES).astype(int))
-            self._sample = np.r_[nodes, n + nodes]
-            self._sampled = system.operator.entries(rows=self._sample)
+            rows = np.r_[nodes, n + nodes]
+            self._sample, self._sampled = rows, system.operator.entries(rows=rows)
         self.rebuilds = 0
         self.resettled = 0
         self._room: int | None = None
-        self._remember()
+        self._checked = configuration, self._queue.sums.copy()
         self._columns: Columns | HeldColumns
         self._first_status: np.ndarray | None = None  # while a held contact gets the statuses of the start
         if not self._begin_held():
@@ -211,13 +212,18 @@ class PathStep:
                 self._book()
                 self._resettle()
                 checked = 0
-            elif self._drift() > SEVERE_DRIFT and self._go_back():
-                checked = 0
+            elif code != exchange.REACHED:
+                if self._drift() > SEVERE_DRIFT and self._go_back():
+                    checked = 0
+                    continue
+                self._book()
+                raise StepLostError(code, self.fraction)
             else:
                 self._book()
-                if code != exchange.REACHED:
-                    raise StepLostError(code, self.fraction)
                 solution = self._correct()
+                if solution is None:
+                    checked = 0
+                    continue
                 settled = _snap_to_bounds(system, self.now, solution)
                 if not _exceeds_bounds(settled, solution):
                     return settled
@@ -335,13 +341,20 @@ class PathStep:
 
     def _drift(self) -> float:
         """Largest relative error of gap and slip at a sample of the nodes, from the matrices."""
-        system, now = self.system, self.now
-        rows, load = self._sample, self.before + self.fraction * self.rate
+        system, now, rows = self.system, self.now, self._sample
+        load = self.before + self.fraction * self.rate
         elastic = self._sampled @ np.concatenate([now.pressure, now.shear])
         true = elastic + system.motion[rows] @ now.motion + system.load_displacement(load, rows)
-        true[: rows.size // 2] += now.rest_gap[rows[: rows.size // 2]]
+        half = true.size // 2
+        true[:half] += now.rest_gap[rows if isinstance(rows, slice) else rows[:half]]
+        return self._error_of(elastic, true)
+
+    def _error_of(self, elastic: np.ndarray, true: np.ndarray) -> float:
+        """Largest relative error of gap and slip at the sample, whose elastic part and `true` values are given."""
+        now = self.now
+        error = true - np.concatenate([now.gap, now.slip])[self._sample]
         length = max(float(np.abs(elastic).max()), float(np.abs(now.motion).max()), 1e-4 * float(now.gap.max()))
-        return float(np.abs(true - np.concatenate([now.gap, now.slip])[rows]).max()) / max(length, 1e-300)
+        return float(np.abs(error).max()) / max(length, 1e-300)
 
     def _remember(self) -> None:
         """Remember the present configuration, which was checked."""
@@ -389,7 +402,10 @@ class PathStep:
             return False
         self._book()
         before = self.rebuilds
-        self._take(_snap_to_bounds(self.system, self.now, self._correct()))
+        solution = self._correct()
+        if solution is None:
+            return False
+        self._take(_snap_to_bounds(self.system, self.now, solution))
         if self.rebuilds > before:
             return False
         self._columns.refine_rates(self._contact, self.rate, int(self._queue.counts[exchange.UPDATES]))
@@ -400,10 +416,11 @@ class PathStep:
         for name in ("pressure", "shear", "gap", "slip", "motion", "slip_tally"):
             getattr(self.now, name)[:] = getattr(better, name)
 
-    def _correct(self) -> Solution:
+    def _correct(self) -> Solution | None:
         """Correct the present tractions and motion until statuses, held slip and load hold to rounding.
 
-        If the corrections leave more than MOST_ERROR, a factorisation computes the solution.
+        If the corrections leave more than MOST_ERROR, a factorisation computes the solution. None after a severe drift,
+        if the step could go back.
         """
         system, now, n = self.system, self.now, self.system.grid.size
         pressure, shear, motion = now.pressure.copy(), now.shear.copy(), now.motion.copy()
@@ -415,6 +432,10 @@ class PathStep:
             tractions = np.concatenate([pressure, shear])
             elastic = system.operator @ tractions
             true = system.total_displacement(elastic, motion, now.load, now.rest_gap)
+            if last == np.inf:
+                drift = self._error_of(elastic[self._sample], true[self._sample])
+                if drift > SEVERE_DRIFT and self._go_back():
+                    return None
             balance = system.load_forces(now.load) - system.equilibrium @ tractions - system.motion_rows @ motion
             missing = np.concatenate([-true[:n] * closed, (now.slip - true[n:]) * stick, balance])
             # The scales are the present elastic part and force, even where an unloading has left little of them.

@@ -299,6 +299,11 @@ class KnownConfiguration:
     def __post_init__(self) -> None:
         self.load = self.configuration.load.tobytes()
 
+    def copy(self, same_history: bool) -> KnownConfiguration:
+        """A copy that changes independently; it remembers its corners only with `same_history`."""
+        last, period = (self.last, self.period) if same_history else (-1, 0)
+        return KnownConfiguration(self.configuration, self.ends_cycle, last, period, self.since)
+
 
 class Repeats:
     """The remembered configurations, with the latest one at the end."""
@@ -314,7 +319,7 @@ class Repeats:
 
         The copy remembers the corners of the configurations only with `same_history`.
         """
-        return Repeats([replace(known) if same_history else replace(known, last=-1, period=0) for known in self._known])
+        return Repeats([known.copy(same_history) for known in self._known])
 
     def recall(self, now: Configuration, ends_cycle: bool, corner: int) -> KnownConfiguration | None:
         """Return the remembered configuration equal to `now` up to rounding, or remember `now` and return None.
@@ -355,7 +360,8 @@ def _same(known: Configuration, now: Configuration) -> bool:
     motion = max(float(np.abs(now.motion).max()), float(np.abs(now.slip).max()))
     gap = float(np.abs(now.gap).max())
     scales = {"motion": motion, "slip": motion, "rest_slip": motion, "gap": gap, "rest_gap": gap, "rest": gap}
-    return all(
-        bool(np.all(np.abs(getattr(known, name) - getattr(now, name)) <= SAME * scale))
-        for name, scale in scales.items()
-    ) and np.array_equal(known.origin, now.origin, equal_nan=True)
+    for name, scale in scales.items():
+        one, other = getattr(known, name), getattr(now, name)
+        if one is not other and not np.all(np.abs(one - other) <= SAME * scale):
+            return False
+    return known.origin is now.origin or np.array_equal(known.origin, now.origin, equal_nan=True)

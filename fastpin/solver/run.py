@@ -289,12 +289,12 @@ class Run:
     def _follow_piece(self, piece: Piece, step: int) -> None:
         """Follow one straight piece of a step, from stop to stop."""
         self.stepper.begin_piece()
-        kept = self.fractions[(self.fractions > piece.begin) & (self.fractions <= piece.end)]
-        for stop in np.unique(np.r_[kept, piece.end]):
-            self._advance(piece, float(stop), step)
+        kept = {stop for stop in self.fractions.tolist() if piece.begin < stop <= piece.end}
+        for stop in sorted({*kept, piece.end}):
+            self._advance(piece, stop, step)
             if stop in kept and stop < 1.0 and self.recorder is not None:
-                self._keep(step, float(stop))
-            self._report(step, float(stop))
+                self._keep(step, stop)
+            self._report(step, stop)
         self.stepper.leave(self.position)
 
     def _advance(self, piece: Piece, stop: float, step: int) -> None:
@@ -350,12 +350,15 @@ class Run:
         self.dissipation += now.dissipation
         self.work += now.work
         self.slip_tally, self._counted = self._no_slip if kept else self._slip_since_kept(), self._no_slip
-        self.position.now = self.last_corner = replace(self._at_corner(now), dissipation=0.0, work=0.0)
+        self.position.now = self.last_corner = self._at_corner(now)
         self.load = load
 
     def _at_corner(self, configuration: Configuration) -> Configuration:
-        """The configuration at a corner, with the slip tally of a step that begins there."""
-        return replace(configuration, slip_tally=slip_tally_with(replace(configuration, slip_tally=self._no_slip)))
+        """The configuration at a corner, with the sums and the slip tally of a step that begins there."""
+        begun = replace(configuration, dissipation=0.0, work=0.0, slip_tally=self._no_slip)
+        if self._no_slip.size:
+            begun.slip_tally = slip_tally_with(begun)
+        return begun
 
     @property
     def _keeps_all(self) -> bool:
