@@ -12,7 +12,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.extensions import optimize
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
-from fastpin.model.loads import ROTATION, UX, UY, M, P, Q
+from fastpin.model.loads import REMOTE, ROTATION, UX, UY, M, P, Q
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,
@@ -241,7 +241,8 @@ def rest_position(system: System, load: np.ndarray, angle: float) -> tuple[np.nd
     """
     cos, sin = math.cos(angle), math.sin(angle)
     gap, slope, _ = hole_gap(system, load, angle)
-    fine = np.linspace(-math.pi, math.pi, 1441)
+    is_round = system.bodies is None and not load[list(REMOTE)].any()  # then the gap is the same everywhere
+    fine = np.linspace(-math.pi, math.pi, 1 if is_round else 1441)
     values, _, curvature = hole_gap(system, load, fine)
     if np.all(values + curvature >= 0.0):  # the pin touches at one point, with its normal at `angle`
         widened = gap - system.rest_clearance

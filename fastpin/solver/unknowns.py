@@ -40,8 +40,6 @@ class Unknowns:
     ----------
     rows : ndarray of int, shape (count,)
         Rows of the unknowns among (N, T). The same rows among (h, s) are their equations.
-    others : ndarray of int, shape (2n-count,)
-        All other rows.
     normal, tangential : ndarray of int
         Nodes with an unknown N, and nodes with an unknown T.
     count : int
@@ -53,10 +51,16 @@ class Unknowns:
         self._system = system
         self.normal = np.flatnonzero(status != OPEN)
         self.tangential = np.flatnonzero(status == STICK)
-        self.rows = np.r_[self.normal, n + self.tangential]
-        self.others = np.setdiff1d(np.arange(2 * n), self.rows)
+        self.rows = np.concatenate([self.normal, n + self.tangential])
         self.count = self.rows.size
         self._coupling = np.where(np.abs(status) == 1, -system.friction * status, 0.0)  # T = coupling N where it slips
+
+    @cached_property
+    def others(self) -> np.ndarray:
+        """All rows without an unknown, ndarray of int, shape (2n-count,)."""
+        is_other = np.ones(2 * self._coupling.size, dtype=bool)
+        is_other[self.rows] = False
+        return np.flatnonzero(is_other)
 
     def fill_columns(self, rows: np.ndarray, out: np.ndarray) -> None:
         """Fill `out` with the `rows` of the operator, one column for each unknown traction, friction eliminated."""
