@@ -21,7 +21,7 @@ from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
 from fastpin.kernels.extensions import blas
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.solver.tableau import TableauMemory, expected_ties
+from fastpin.solver.tableau import TableauMemory, expected_ties, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, entries_by_distance, have_toeplitz_matrix
 
 FEW_NODES = 512
@@ -232,11 +232,9 @@ class HeldColumns:
         given[: 2 * n] *= -1.0 * both
         rates = (table.matrix @ given[table.stack])[table.order]
         rates[: 2 * n] += displaced * ~both
-        slipping = np.abs(contact.status) == 1
-        resists = -contact.status * rates[n : 2 * n] > system.friction * rates[:n]
-        self.turned = np.count_nonzero(resists & slipping) <= np.count_nonzero(slipping) // 2
+        self.turned = has_turned(contact.status, rates[:n], rates[n : 2 * n], system.friction)
         ties = expected_ties(contact, rates)
-        contact.tie[:] = ties if self.turned else np.where(slipping, contact.status, ties)
+        contact.tie[:] = ties if self.turned else np.where(np.abs(contact.status) == 1, contact.status, ties)
         coupling = system.friction * contact.tie
         tied = np.where(closed, coupling, 0.0)
         rates[n : 2 * n] += tied * rates[:n]

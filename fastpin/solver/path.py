@@ -22,7 +22,7 @@ from fastpin.solver.configuration import Configuration, Solution, solve_unknowns
 from fastpin.solver.driven import load_terms
 from fastpin.solver.held import FEW_NODES, HeldColumns, HeldContacts
 from fastpin.solver.settling import settle
-from fastpin.solver.tableau import Columns, TableauMemory
+from fastpin.solver.tableau import Columns, TableauMemory, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, StickingRun
 
 MOST_REBUILDS = 400
@@ -252,11 +252,7 @@ class PathStep:
             return None
         rates = unknowns.rates(self.rate)
         normal, shear = rates[: unknowns.normal.size], rates[unknowns.normal.size : -3]
-        slipping = np.abs(status[unknowns.normal]) == 1
-        growth = -status[unknowns.normal] * shear - self.system.friction * normal
-        if np.count_nonzero(growth[slipping] > 0.0) > np.count_nonzero(slipping) // 2:
-            return None
-        return unknowns
+        return unknowns if has_turned(status[unknowns.normal], normal, shear, self.system.friction) else None
 
     def _begin_held(self) -> bool:
         """Begin with all closed nodes held, if there are few nodes. Nodes that go on slipping are then let go.

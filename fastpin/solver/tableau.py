@@ -228,3 +228,13 @@ def expected_ties(contact: Contact, rates: np.ndarray) -> np.ndarray:
     tangential = rates[n : 2 * n]
     forward = np.where(contact.status == OPEN, tangential < 0.0, contact.shear + tangential > 0.0)
     return np.where(forward, -1, 1)
+
+
+def has_turned(status: np.ndarray, pressure_rate: np.ndarray, shear_rate: np.ndarray, friction: float) -> bool:
+    """Whether the load has turned: most slipping nodes stick when the load goes on.
+
+    Statuses and rates have the shape (k,). The rates are those while all closed nodes stick.
+    """
+    slipping = np.abs(status) == 1
+    slips_on = slipping & (-status * shear_rate > friction * pressure_rate)
+    return bool(np.count_nonzero(slips_on) <= np.count_nonzero(slipping) // 2)
