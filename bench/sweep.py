@@ -3,7 +3,7 @@
     python bench/sweep.py                                  1,000 runs with 101 nodes, 1 and 2 workers
     python bench/sweep.py --runs 100 --nodes 201 --workers 4
     python bench/sweep.py --against ../before              a sweep here against a loop over ``solve`` of a checkout
-    python bench/sweep.py --parts ../before                a run in parts, here and in a checkout
+    python bench/sweep.py --parts ../before                a run in parts, here and in a checkout, and its compiled loop
     python bench/sweep.py --dask                           the same on a dask cluster, one of whose workers is killed
 
 Friction and clearance of the built-in case are varied. Efficiency is t(1) / (n t(n)). The time of a sweep includes the
@@ -27,11 +27,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 import fastpin
+from fastpin.kernels import exchange
 from fastpin.kernels.threads import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
@@ -68,8 +70,20 @@ def loop(plan: Plan) -> float:
 
 
 def parts(plan: Plan) -> dict[str, float]:
-    """Return the processor time of the parts of a run, ms: those of every run of a sweep, in this process."""
+    """Return the processor time of the parts of a run, ms: those of every run of a sweep, in this process.
+
+    The compiled loop is the part of "solve" inside the kernel that follows the load, coarse runs included.
+    """
     times = dict.fromkeys(("plan", "case", "solve", "key figures", "store"), 0.0)
+    loops = 0.0
+    kernel = exchange.follow
+
+    def follow(*arguments: Any) -> Any:
+        nonlocal loops
+        began = time.process_time()
+        code = kernel(*arguments)
+        loops += 1e3 * (time.process_time() - began) / len(plan.runs)
+        return code
 
     def timed(name: str, work: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
         began = time.process_time()
@@ -78,7 +92,12 @@ def parts(plan: Plan) -> dict[str, float]:
         return found
 
     pack = getattr(store, "pack", None)  # earlier checkouts have files only
-    with tempfile.TemporaryDirectory() as directory, threadpool_limits(limits=1), in_one_thread():
+    with (
+        tempfile.TemporaryDirectory() as directory,
+        threadpool_limits(limits=1),
+        in_one_thread(),
+        mock.patch.object(exchange, "follow", follow),
+    ):
         timed("plan", parse_plan, plan.text)
         for run, point in plan.runs.items():
             case = timed("case", plan.case, point)
@@ -88,7 +107,8 @@ def parts(plan: Plan) -> dict[str, float]:
                 timed("store", store.save, result, Path(directory) / f"{run}.h5", restart=False)
             else:
                 timed("store", pack, result, None, 10**6)
-    return times | {"all": sum(times.values())}
+    whole = sum(times.values())
+    return times | {"all": whole, "compiled loop": loops, "all / loop": whole / loops}
 
 
 def elsewhere(checkout: Path, what: str, options: argparse.Namespace) -> Any:
