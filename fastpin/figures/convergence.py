@@ -9,11 +9,14 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from fastpin.errors import InputError
-from fastpin.figures.style import Line, add_legend, line, panels, save_drawing
-from fastpin.model.checks import as_toml, instance, string, whole_number
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import Line, line
+from fastpin.figures.words import caption, quantity
+from fastpin.model.checks import as_toml, instance, whole_number
 from fastpin.model.units import named_loads, scaled
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES
@@ -41,9 +44,16 @@ TITLE_WIDTH = 90
 
 
 def plot_convergence(
-    convergence: Convergence, path: str | Path, corner: int | None = None, title: str = "", dpi: float = 160.0
-) -> None:
-    """Save a figure of the convergence at one corner, with up to nine panels, one for each outcome or quantity.
+    convergence: Convergence,
+    path: str | Path | None = None,
+    corner: int | None = None,
+    title: str = "",
+    dpi: float = 300.0,
+    *,
+    width: float = 7.6,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the convergence at one corner, with up to nine panels, one for each outcome or quantity.
 
     A panel shows the distance of the values to the limit of their sequence, against the number of nodes or of
     increments. Marks are filled if an order is observed; the panel names it. Else the marks are open, and the distance
@@ -53,13 +63,17 @@ def plot_convergence(
     Parameters
     ----------
     convergence : Convergence
-    path : path
-        The suffix chooses the format.
+    path : path, optional
+        Also save the figure; the suffix chooses the format.
     corner : int, optional
         From 1; the last corner of the study unless given.
-    title : str
-    dpi : float
-        Dots per inch of a bitmap.
+    title, dpi, width, ax
+        See :func:`fastpin.plot_tractions`.
+
+    Returns
+    -------
+    Figure
+        The new figure, or the figure of `ax`.
 
     Raises
     ------
@@ -67,15 +81,15 @@ def plot_convergence(
         If an argument is out of range, the figure's format is unknown, or the file can't be written.
     """
     instance("convergence", convergence, Convergence, "a Convergence")
-    string("title", title)
+    look = Look(path, title, width, dpi, ax)
     chosen = max(convergence.loads) if corner is None else whole_number("corner", corner, 1)
     if chosen not in convergence.loads:
         studied = ", ".join(map(str, convergence.loads))
         raise InputError("corner", f"must be a studied corner: {studied}, not {as_toml(chosen)}")
-    save_drawing(lambda study: _draw(study, chosen, title), convergence, path, dpi)
+    return look.drawn(lambda: _draw(convergence, chosen, look))
 
 
-def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
+def _draw(convergence: Convergence, corner: int, look: Look) -> Sheet:
     found: dict[str, dict[str, tuple[tuple[int, ...], ReportedSeries]]] = {}
     for study in convergence.studies:
         for row in reported_series(study, convergence.problem, corner):
@@ -85,7 +99,9 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     names = [name for name in (*chosen, *ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
     names = list(dict.fromkeys(names))[:MOST_PANELS]
     rows = max(1, math.ceil(len(names) / COLUMNS))
-    figure, axes = panels(rows, COLUMNS, height=2.0, width=7.6)
+    sheet = look.sheet([2.0] * rows, columns=COLUMNS)
+    axes = sheet.axes
+    sheet.grid()
     for index, panel in enumerate(axes.flat):
         panel.set_visible(index < len(names))
         if index + COLUMNS >= len(names):
@@ -98,28 +114,23 @@ def _draw(convergence: Convergence, corner: int, title: str) -> Figure:
     guides: list[tuple[str, Line]] = [(f"order {order}", style) for order, style in _GUIDES.items()]
     open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"}
     bar: Line = {"color": "0.3", "linestyle": "none", "marker": "_", "markersize": 9.0, "markeredgewidth": 1.6}
-    add_legend(
-        figure,
-        [
-            (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 4.0})
-            for study in convergence.studies
-            if study.method in methods
-        ],
-        [("no order observed: to the last value", open_marks), ("error bar of the last value", bar)],
-        guides,
-    )
-    loads = named_loads(convergence.problem, convergence.loads[corner])
-    lines = [*textwrap.wrap(title, TITLE_WIDTH), f"corner {corner}: {loads}"]
-    figure.suptitle("\n".join(lines), fontsize=9.5, parse_math=False)
-    return figure
+    entries: list[tuple[str, Line]] = [
+        (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 4.0})
+        for study in convergence.studies
+        if study.method in methods
+    ]
+    entries += [("no order observed: to the last value", open_marks), ("error bar of the last value", bar), *guides]
+    sheet.legend([Line2D([], [], label=label, **style) for label, style in entries], 2)
+    heading = f"corner {corner}: {named_loads(convergence.problem, convergence.loads[corner])}"
+    sheet.head(*textwrap.wrap(look.title, TITLE_WIDTH), heading, caption=caption(convergence.problem))
+    return sheet
 
 
 def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], ReportedSeries]]) -> None:
     rows = [row for _, row in sequences.values()]
     largest = max(float(np.ptp(row.values)) for row in rows)
     factor, unit = scaled([largest], rows[0].unit)
-    title = f"{rows[0].label}{f'  [{unit}]' if unit else ''}"
-    panel.set_title(title.replace("beta*", "β*"), fontsize=8.5, parse_math=False)
+    panel.set_title(quantity(rows[0].label, unit), fontsize=8.5, parse_math=False)
     panel.set_xscale("log")
     panel.set_yscale("log")
     words = []

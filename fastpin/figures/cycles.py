@@ -23,8 +23,14 @@ from fastpin.model.units import scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+"""Marks of cycles of different lengths, which differ without colour."""
+
 FEW = 60
-"""Most cycles of a block that have a dot each."""
+"""Most cycles of one length that have a mark each."""
+
+SPARSE = 0.12
+"""Distance of the marks of more cycles, in parts of the diagonal of the panel."""
 
 LONG = 50
 """Ratio of the last and the first corner from which the axis of corners is logarithmic: transients are short."""
@@ -86,19 +92,19 @@ def _draw_cycles(result: Result, look: Look) -> Sheet:
     angle, unit_of_angle = scaled(np.concatenate(list(turns.values())).tolist(), kind["rotation"])
     changes = [np.array([getattr(cycle, name) for cycle in cycles]) for name in CHANGES]
     floors = [_floor(np.concatenate(changes)), _floor(energy * np.array([cycle.dissipation for cycle in cycles]))]
-    for colour, length in enumerate(lengths):
+    for kind_of_length, length in enumerate(lengths):
         mine = [cycle for cycle in cycles if cycle.length == length]
         done = 0
         for part in _parts(mine):  # the blocks of one length stand apart where other blocks lie between them
             where = [cycle.corner + 1 for cycle in part]
             turn = angle * turns[length][done : done + len(part) + 1]
             done += len(part)
-            panels[2].plot([where[0] - length, *where], turn, **_style(colour, 0, len(mine)))
+            panels[2].plot([where[0] - length, *where], turn, **_style(kind_of_length, 0, len(mine)))
             for dashes, name in enumerate(CHANGES):
                 drawn = _above(np.array([getattr(cycle, name) for cycle in part]), floors[0])
-                panels[0].plot(where, drawn, **_style(colour, dashes, len(mine)))
+                panels[0].plot(where, drawn, **_style(kind_of_length, dashes, len(mine)))
             lost = energy * np.array([cycle.dissipation for cycle in part])
-            panels[1].plot(where, _above(lost, floors[1]), **_style(colour, 0, len(mine)))
+            panels[1].plot(where, _above(lost, floors[1]), **_style(kind_of_length, 0, len(mine)))
     for panel, floor in zip(panels, floors, strict=False):
         _log_axis_with_zero(panel, floor)
     marked = _mark_periodic(panels, cycles)
@@ -130,12 +136,14 @@ def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
     return parts
 
 
-def _style(colour: int, dashes: int, count: int) -> dict[str, Any]:
-    """A line, with a dot for each cycle if they are few. Dots of shear are open."""
-    marker: dict[str, Any] = {"marker": "o", "markersize": 3.6, "clip_on": False} if count <= FEW else {}
-    if marker and dashes:
-        marker["markerfacecolor"] = "white"
-    return {**line(colour, dashes), **marker, "zorder": 3}
+def _style(kind: int, dashes: int, count: int) -> dict[str, Any]:
+    """A line with marks, also of a shape of its own for each length of cycles. Marks of shear are open."""
+    marks: dict[str, Any] = {"marker": MARKERS[kind], "markersize": 3.8, "clip_on": False, "zorder": 3}
+    if count > FEW:
+        marks["markevery"] = SPARSE
+    if dashes:
+        marks["markerfacecolor"] = "white"
+    return {**line(kind, dashes), **marks}
 
 
 def _floor(values: np.ndarray) -> float:
@@ -202,8 +210,8 @@ def _counts(cycles: Sequence[Cycle]) -> str:
 
 def _handles(lengths: Sequence[int], marked: bool) -> list[Artist]:
     handles: list[Artist] = [
-        Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **line(colour))
-        for colour, length in enumerate(lengths)
+        Line2D([], [], label=f"cycles of {length} corner{'s' if length > 1 else ''}", **_style(kind, 0, 1))
+        for kind, length in enumerate(lengths)
     ]
     for dashes, name in enumerate(CHANGES.values()):
         style = {**_style(0, dashes, 1), "color": "0.3"}

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from fastpin.figures.style import COLOURS, add_heading, add_legend, check_figure_text, draw_and_save, line
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import COLOURS, line
+from fastpin.figures.words import quantity
 from fastpin.model.checks import instance
 from fastpin.model.lug import Lug, Part, PartLoad
 
@@ -28,7 +30,13 @@ ARROW = 0.08
 
 
 def plot_lug(
-    lug: Lug, path: str | Path | None = None, title: str = "", width: float = 5.0, dpi: float = 160.0
+    lug: Lug,
+    path: str | Path | None = None,
+    title: str = "",
+    width: float = 5.0,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the outline with names of its parts, all holes, supports and loads. Lengths are in millimetres.
 
@@ -42,6 +50,8 @@ def plot_lug(
         Width of the figure, inches.
     dpi : float
         Dots per inch of a bitmap.
+    ax : matplotlib axes, optional
+        Axes to draw in, instead of a new figure.
 
     Raises
     ------
@@ -49,14 +59,13 @@ def plot_lug(
         If an argument is out of range, or the file can't be written.
     """
     instance("lug", lug, Lug, "fastpin.model.Lug")
-    inches = check_figure_text(title, width)
-    return draw_and_save(lambda: _draw(lug, title, inches), path, dpi)
+    look = Look(path, title, width, dpi, ax)
+    return look.drawn(lambda: _draw(lug, look))
 
 
-def _draw(lug: Lug, title: str, width: float) -> Figure:
-    figure = Figure(figsize=(width, 1.1 * width), layout="constrained")
-    FigureCanvasAgg(figure)
-    panel = figure.subplots()
+def _draw(lug: Lug, look: Look) -> Sheet:
+    sheet = look.sheet([1.1 * look.width], extra=0.0)
+    panel = sheet.axes[0, 0]
     kinds = {}
     for part in (*lug.contact_edge, *lug.edges):
         hold = lug.supports.get(part.name) if part.name else None
@@ -70,11 +79,12 @@ def _draw(lug: Lug, title: str, width: float) -> Figure:
         _draw_load(panel, lug, load)
     panel.set_aspect("equal")
     panel.margins(0.12)
-    panel.set_xlabel("x, mm")
-    panel.set_ylabel("y, mm")
-    add_legend(figure, [kinds[place] for place in sorted(kinds)])
-    add_heading(figure, title)
-    return figure
+    panel.set_xlabel(quantity("x", "mm"))
+    panel.set_ylabel(quantity("y", "mm"))
+    entries = [kinds[place] for place in sorted(kinds)]
+    sheet.legend([Line2D([], [], label=label, **style) for label, style in entries], len(entries))
+    sheet.head(look.title)
+    return sheet
 
 
 def _write_names(panel: Axes, lug: Lug) -> None:

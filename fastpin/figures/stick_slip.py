@@ -93,8 +93,7 @@ def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[
     """Yield the zones of the states, degrees from the bottom. A column reaches halfway to the load points beside it."""
     axis = Frame(states) if frame is None else frame
     points = np.array([load_point(state) for state in states])
-    middles = 0.5 * (points[1:] + points[:-1])
-    ends = np.r_[points[0] - _half(points, 0), middles, points[-1] + _half(points, -1)]
+    ends = column_ends(points)
     for state, point, left, right in zip(states, points.tolist(), ends[:-1].tolist(), ends[1:].tolist(), strict=True):
         zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
         for start, stop, status in zones:
@@ -102,10 +101,12 @@ def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[
                 yield ZoneBox(point, left, right, first, first + length, int(status))
 
 
-def _half(points: np.ndarray, end: int) -> float:
-    """Half the width of the first or the last column."""
-    steps = np.diff(points)
-    return 0.5 * float(steps[end]) if steps.size else 0.5
+def column_ends(points: np.ndarray) -> np.ndarray:
+    """The sides of all columns, shape (k + 1,): halfway between the load points, and as far beyond the outer ones."""
+    if points.size == 1:
+        return np.array([points[0] - 0.5, points[0] + 0.5])
+    middles = 0.5 * (points[1:] + points[:-1])
+    return np.r_[2.0 * points[0] - middles[0], middles, 2.0 * points[-1] - middles[-1]]
 
 
 def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
@@ -125,7 +126,7 @@ def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
             shape = PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch)
             panel.add_collection(shape)
     marked = _draw_marks(panel, boxes, len(states), frame.limits)
-    panel.set_xlim(min(box.left for box in boxes) if boxes else 0.5, max((box.right for box in boxes), default=1.5))
+    panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
     panel.set_ylim(*frame.limits)
     panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
     panel.set_xlabel(LOAD_POINT)

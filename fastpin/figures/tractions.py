@@ -27,8 +27,8 @@ ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
 
 _SHADE = "0.9"
 
-_PANEL, _ROW = 1.9, 0.19
-"""Heights of a panel of curves and of a row of zones, inches."""
+_PANEL, _ROW, _LEAST = 1.9, 0.19, 0.75
+"""Heights of a panel of curves and of a row of zones, inches, and of the words beside the rows."""
 
 _STROKE: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
 
@@ -96,7 +96,8 @@ def _draw(states: DrawnStates, look: Look) -> Sheet:
     lines = state_lines(states)
     zones = not frictionless and len(states) > 1
     panels = [_PANEL] if frictionless else [_PANEL, _PANEL]
-    sheet = look.sheet([*panels, _ROW * len(states) + 0.15] if zones else panels, extra=1.6, sharex=True)
+    strip = max(_ROW * len(states) + 0.15, _LEAST)
+    sheet = look.sheet([*panels, strip] if zones else panels, extra=1.6, sharex=True)
     axes, frame = sheet.axes[:, 0], Frame(states)
     _draw_curves(list(axes), states, lines, frame)
     if len(states) == 1:
