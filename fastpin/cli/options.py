@@ -28,7 +28,7 @@ STATES_HELP = "last, cycle (the last one), all, or load points such as 2,3.5"
 """Help on the choice of states."""
 
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
-    "tractions": ("states", "csv"),
+    "tractions": ("states", "csv", "sketch"),
     "polar": ("states", "csv"),
     "stick-slip": ("states", "csv"),
     "sketch": ("states",),
@@ -190,6 +190,9 @@ def add_plot(commands: Any) -> None:
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
     plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
+    plot.add_argument(
+        "--sketch", action="store_const", const=True, help="of tractions: with a small sketch of the joint"
+    )
     plot.add_argument("--rate", metavar="N", type=literal, help="of an animation: states a second (default 4)")
     plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
     plot.add_argument("--component", help="of a map: von_mises (default), largest, hoop, radial, shear, sxx, ...")

@@ -106,7 +106,8 @@ def _drawn(draw: Callable[[figures.Look], figures.Sheet], title: str, **options:
 def _tractions(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
     curves = report.stress.traction_curves(states)
-    return lambda path: figures.plot_tractions(states, path, title), _curves(curves)
+    sketch = options.sketch is not None
+    return _drawn(lambda look: figures.draw_tractions(states, look, sketch), title), _curves(curves)
 
 
 def _polar(options: argparse.Namespace, title: str) -> Made:

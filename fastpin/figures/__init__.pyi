@@ -32,4 +32,5 @@ from .stress import plot_hoop_stress as plot_hoop_stress
 from .stress import plot_stress_field as plot_stress_field
 from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep
+from .tractions import draw_tractions as draw_tractions
 from .tractions import plot_tractions as plot_tractions

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import HEADING, Look
-from fastpin.figures.sketch import draw_sketch
+from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states
 from fastpin.figures.stick_slip import LOOKS
 from fastpin.figures.style import COLOURS, STYLE, line, new_figure
@@ -177,8 +177,7 @@ class _Scene:
         self.panels[-1].set_xlim(*self.frame.limits)
         self.panels[-1].set_xlabel(ANGLE)
         self.joint.clear()
-        ranges = {name: (state.load[name],) * 2 for name in self.names if state.load[name] != 0.0}
-        draw_sketch(state.problem, ranges, Look(ax=self.joint), state, words=False, largest=self.force)
+        draw_sketch(state.problem, load_ranges([state]), Look(ax=self.joint), state, words=False, largest=self.force)
 
     def _shade(self, state: State) -> None:
         """Shade stick and slip in the colours of the sketch."""

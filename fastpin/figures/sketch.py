@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,11 +62,16 @@ FORCE, STRESS = "#B2182B", "#2166AC"
 
 
 class Scale(NamedTuple):
-    """Half the size of the drawn plate, whether arrows of shear lie along its sides, and the force of a long arrow."""
+    """What the arrows of a sketch have in common.
+
+    Half the size of the drawn plate, whether arrows of shear lie along its sides, the force of a long arrow, and the
+    side of the words on Q: 1 above the hole, -1 below it, where P does not point.
+    """
 
     half: float
     sheared: bool
     force: float
+    beside: float
 
 
 def plot_sketch(
@@ -100,8 +105,7 @@ def plot_sketch(
     """
     look = Look(path, title, width, dpi, ax)
     if isinstance(joint, State):
-        ranges = {name: (load, load) for name, load in joint.load.items() if load != 0.0}
-        return look.drawn(lambda: draw_sketch(joint.problem, ranges, look, joint))
+        return look.drawn(lambda: draw_sketch(joint.problem, load_ranges([joint]), look, joint))
     if isinstance(joint, Problem):
         ranges = {} if history is None else load_ranges(history)
         return look.drawn(lambda: draw_sketch(joint, ranges, look))
@@ -110,15 +114,17 @@ def plot_sketch(
     raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
 
 
-def load_ranges(history: LoadHistory) -> dict[str, Range]:
-    """The smallest and the largest value of each load of a history at its corners; no loads that are always 0."""
-    found = {}
-    for k, name in enumerate(LOADS):
-        values = [block.given[:, k][~np.isnan(block.given[:, k])] for block in history.blocks]
-        given = np.concatenate(values)
-        if given.any():
-            found[name] = float(given.min()), float(given.max())
-    return found
+def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, Range]:
+    """The smallest and the largest value of each load at the corners of a history, or in some states.
+
+    Loads that are always 0 are left out.
+    """
+    if isinstance(loads, LoadHistory):
+        given = np.concatenate([block.given for block in loads.blocks])
+        columns = {name: given[:, k][~np.isnan(given[:, k])] for k, name in enumerate(LOADS)}
+    else:
+        columns = {name: np.array([state.load[name] for state in loads]) for name in LOADS}
+    return {name: (float(values.min()), float(values.max())) for name, values in columns.items() if values.any()}
 
 
 def draw_sketch(
@@ -141,7 +147,7 @@ def draw_sketch(
     _draw_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
-    _draw_loads(panel, problem, ranges, Scale(outside, "sxy" in ranges, largest or _largest_force(ranges)))
+    _draw_loads(panel, problem, ranges, _scale(ranges, outside, largest))
     room = MARGIN if any(LOAD_KIND[name] not in ("force", "moment") for name in ranges) else 0.15
     panel.set_xlim(-outside - room, outside + room)
     panel.set_ylim(-outside - room, outside + room)
@@ -222,8 +228,9 @@ def _draw_contact(panel: Axes, state: State) -> None:
         )
 
 
-def _largest_force(ranges: Mapping[str, Range]) -> float:
-    return max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
+def _scale(ranges: Mapping[str, Range], outside: float, largest: float) -> Scale:
+    found = max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
+    return Scale(outside, "sxy" in ranges, largest or found, -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0)
 
 
 def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], scale: Scale) -> None:
@@ -236,7 +243,7 @@ def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], scal
             continue
         words = _words(problem, name, span)
         if name in ("P", "Q"):
-            _draw_force(panel, name, span, words, LONG * max(_size(span) / scale.force, SHORTEST))
+            _draw_force(panel, name, span, words, scale)
         elif name == "M":
             _draw_moment(panel, span, words)
         elif LOAD_KIND[name] == "traction":
@@ -270,14 +277,15 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) 
     )
 
 
-def _draw_force(panel: Axes, name: str, span: Range, words: str, length: float) -> None:
+def _draw_force(panel: Axes, name: str, span: Range, words: str, scale: Scale) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
+    length = LONG * max(_size(span) / scale.force, SHORTEST)
     along = -1j if name == "P" else 1.0
     both = span[0] < 0.0 < span[1]
     if span[1] <= 0.0:
         along, span = -along, (-span[1], -span[0])
     _arrow(panel, -length * along if both else 0j, length * along, span, FORCE)
-    place = (length + 0.22) * along if name == "P" else max(length, 0.9) * along + 0.28j
+    place = (length + 0.22) * along if name == "P" else scale.beside * 1.3j
     panel.text(place.real, place.imag, words, color=FORCE, bbox=BOX, **LETTERS)
 
 

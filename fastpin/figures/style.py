@@ -131,7 +131,12 @@ def spread(count: int, most: int) -> list[int]:
 
 
 class Drawing(Figure):
-    """A figure that notebooks show as a picture, whether pyplot is loaded or not."""
+    """A figure in the house style, also if it is saved later, and a picture in notebooks with and without pyplot."""
+
+    def savefig(self, *arguments: Any, **options: Any) -> None:
+        """As :meth:`matplotlib.figure.Figure.savefig`, in the house style: it embeds fonts in PDF files."""
+        with mpl.rc_context(STYLE):
+            super().savefig(*arguments, **options)
 
     def _repr_png_(self) -> bytes:
         picture = io.BytesIO()

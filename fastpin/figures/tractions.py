@@ -14,13 +14,18 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
 from fastpin.figures.style import Line
 from fastpin.figures.words import ANGLE, point_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
+from fastpin.model.checks import true_or_false
 from fastpin.model.units import scaled, units
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
+
+_BESIDE = (1.02, -0.05, 0.36, 1.1)
+"""Place of the sketch beside the panel of the pressure, in parts of the panel."""
 
 ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
 """The direction in which the pin slips over the plate."""
@@ -44,6 +49,7 @@ def plot_tractions(
     dpi: float = 300.0,
     *,
     states: StateChoice = None,
+    sketch: bool = False,
     ax: Axes | None = None,
 ) -> Figure:
     """Draw pressure and shear traction round the hole.
@@ -72,6 +78,8 @@ def plot_tractions(
         "last", "cycle" (the last one), "all", or load points, which count from 1 as in tables: 2, [2, 3.5] or "2,3.5".
         A slice chooses places in the result. Unless given, all states of a short history, or the last cycle of a long
         one.
+    sketch : bool
+        Whether a small sketch of the joint with its loads stands beside the pressure.
     ax : matplotlib axes, optional
         Axes to draw in, instead of a new figure. Several panels divide them.
 
@@ -87,11 +95,12 @@ def plot_tractions(
         written.
     """
     look = Look(path, title, width, dpi, ax)
-    drawn = drawn_states(result, states)
-    return look.drawn(lambda: _draw(drawn, look))
+    drawn, beside = drawn_states(result, states), true_or_false("sketch", sketch)
+    return look.drawn(lambda: draw_tractions(drawn, look, beside))
 
 
-def _draw(states: DrawnStates, look: Look) -> Sheet:
+def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> Sheet:
+    """Draw the tractions of these states on a new sheet, with or without a sketch beside the pressure."""
     frictionless = states[0].problem.frictionless
     lines = state_lines(states)
     zones = not frictionless and len(states) > 1
@@ -111,6 +120,9 @@ def _draw(states: DrawnStates, look: Look) -> Sheet:
     for panel in axes[:-1]:
         panel.tick_params(labelbottom=False)
     sheet.figure.align_ylabels(list(axes))
+    if sketch:
+        ranges = load_ranges(states)
+        draw_sketch(states[0].problem, ranges, Look(ax=axes[0].inset_axes(_BESIDE)), words=False)
     name_states(sheet, states, [look.title], _styles(states))
     return sheet
 

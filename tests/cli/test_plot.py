@@ -40,6 +40,8 @@ def test_a_figure_and_its_numbers(stored, kind, tmp_path, capsys):
 def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
     assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png")]) == 0
     assert capsys.readouterr().out.startswith("the figure shows 5 of 10 states: load points 3, 3.5, 4, 4.5, 5\n")
+    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "b.png"), "--sketch"]) == 0
+    assert (tmp_path / "a.png").read_bytes() != (tmp_path / "b.png").read_bytes()
     assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "2,5"]) == 0
     assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
 
@@ -89,6 +91,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["animation", "--states", "last"], "--states: an animation needs two states or more"),
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
+        (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
         (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, not 'now'"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),

@@ -54,6 +54,16 @@ def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
 
+def test_states_without_contact_have_white_columns():
+    result = sample_result()
+    result[0].pressure[:] = 0.0
+    result[0].shear[:] = 0.0
+    result[0].status[:] = 2
+    panel = figures.plot_stick_slip(result).axes[-1]
+    assert panel.get_xlim() == (0.5, 3.5)
+    assert {box.point for box in zone_boxes(result)} == {2.0, 3.0}
+
+
 def test_the_two_directions_of_slip_differ_without_colour():
     _, first, _ = LOOKS[SLIP_POSITIVE]
     _, second, _ = LOOKS[SLIP_NEGATIVE]

@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+from PIL import Image
 
 from fastpin.errors import InputError
 from fastpin.figures.cycles import plot_cycles
@@ -215,6 +216,28 @@ def test_formats(suffix: str, magic: bytes, tmp_path: Path) -> None:
     plot_tractions(sample_result(), path)
     assert path.read_bytes().startswith(magic)
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_print_quality(tmp_path: Path) -> None:
+    figure = plot_tractions(sample_result(), tmp_path / "a.svg")
+    assert "<text" not in (tmp_path / "a.svg").read_text(encoding="utf-8")  # letters are paths
+    plot_tractions(sample_result(), tmp_path / "a.pdf")
+    figure.savefig(tmp_path / "later.pdf")
+    for name in ("a.pdf", "later.pdf"):
+        content = (tmp_path / name).read_bytes()
+        assert b"/FontFile2" in content  # TrueType, embedded
+        assert b"/Type3" not in content
+    plot_tractions(sample_result(), tmp_path / "a.png", width=3.0)
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.width == 900
+
+
+def test_a_sketch_may_stand_beside_the_pressure() -> None:
+    pressure = plot_tractions(sample_result(), sketch=True).axes[0]
+    (panel,) = pressure.child_axes
+    assert [text.get_text()[:2] for text in panel.texts] == ["P ", "Q:"]
+    with pytest.raises(InputError, match="sketch: must be true or false"):
+        plot_tractions(sample_result(), sketch="yes")
 
 
 def test_no_global_state_is_touched() -> None:
