@@ -30,6 +30,9 @@ HEADING = 9.5
 CAPTION: dict[str, Any] = {"fontsize": CAPTION_SIZE, "color": "0.25", "parse_math": False}
 """Text of a caption."""
 
+USUAL_ROWS, ROW = 4, 0.16
+"""Rows of a legend for which figures have room, and the height of a further row, inches."""
+
 GAP = 0.14
 """Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
 
@@ -109,9 +112,9 @@ class Sheet:
 
     def head(self, *lines: str, caption: str = "") -> None:
         """Write lines above the panels, and a caption in smaller letters below the lines."""
-        text = "\n".join(line for line in lines if line)
-        width = self.figure.get_figwidth()
-        small = "\n".join(wrapped(caption, width - 0.9)) if caption else ""
+        width = self.figure.get_figwidth() - 0.9
+        text = "\n".join(row for line in lines for row in wrapped(line, width, HEADING))
+        small = "\n".join(wrapped(caption, width))
         if self.host is not None:
             top = self.host if self.axes.size > 1 else self.axes[0, 0]
             top.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)
@@ -130,6 +133,8 @@ class Sheet:
         if not handles:
             return
         if self.host is None:
+            rows = -(-len(handles) // columns)
+            self.figure.set_figheight(self.figure.get_figheight() + ROW * max(rows - USUAL_ROWS, 0))
             fitted_legend(self.figure, list(handles), columns, title)
             return
         self.axes[0, 0].legend(handles=handles, fontsize=6.5, title=title or None, title_fontsize=6.5, loc="best")

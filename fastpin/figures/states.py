@@ -30,6 +30,10 @@ FINEST = 0.5
 """Largest distance of the points of a drawn curve, degrees."""
 
 
+LONG_ENTRY = 32
+"""Characters of an entry of the legend beyond which two columns of entries would need letters too small to read."""
+
+
 class DrawnStates(list[State]):
     """The states that a figure draws.
 
@@ -262,7 +266,8 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
     """Return legend entries and the number of columns. Blank entries keep states and styles in separate columns."""
     if not states:
         return styles, max(len(styles), 1)
-    rows = len(states) if len(states) <= 3 else math.ceil(len(states) / 2)
+    longest = max(len(str(entry.get_label())) for entry in states)
+    rows = len(states) if len(states) <= 3 or longest > LONG_ENTRY else math.ceil(len(states) / 2)
     columns = [states[k : k + rows] for k in range(0, len(states), rows)]
     if styles:
         columns.append(styles)

@@ -31,8 +31,8 @@ DIGITS = 3
 CAPTION_SIZE = 7.2
 """Size of a caption, points."""
 
-CHARACTER = 0.052
-"""Mean width of a character of a caption, inches."""
+CHARACTER = 0.0072
+"""Mean width of a character, inches for each point of its size."""
 
 
 def shown_unit(unit: str) -> str:
@@ -94,9 +94,9 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     return ", ".join(parts)
 
 
-def wrapped(text: str, width: float) -> list[str]:
-    """The lines of a caption that is `width` inches wide."""
-    return textwrap.wrap(text, max(20, int(width / CHARACTER)))
+def wrapped(text: str, width: float, size: float = CAPTION_SIZE) -> list[str]:
+    """The lines of a text that is `width` inches wide in letters of `size` points."""
+    return textwrap.wrap(text, max(20, int(width / (CHARACTER * size))))
 
 
 def short(value: float, unit: str) -> str:
