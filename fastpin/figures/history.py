@@ -8,18 +8,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.figures.style import (
-    MAX_NAMED,
-    Line,
-    add_heading,
-    add_legend,
-    check_figure_text,
-    draw_and_save,
-    line,
-    panels,
-)
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import MAX_NAMED, Line, line
+from fastpin.figures.words import caption, quantity
 from fastpin.model.checks import instance, number_array
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
@@ -39,8 +33,10 @@ def plot_history(
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
-    dpi: float = 200.0,
+    dpi: float = 300.0,
     initial: Sequence[float] | np.ndarray | None = None,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the loads of a history over its corners, with a panel for each kind of load.
 
@@ -52,7 +48,7 @@ def plot_history(
     problem : Problem
         It tells the units.
     history : LoadHistory
-    path, title, width, dpi
+    path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
     initial : array_like, shape (loads,), optional
         The load at corner 0, of a history that continues another one.
@@ -65,21 +61,22 @@ def plot_history(
     """
     instance("problem", problem, Problem, "a Problem")
     instance("history", history, LoadHistory, "a LoadHistory")
-    inches = check_figure_text(title, width)
+    look = Look(path, title, width, dpi, ax)
     folded = _folded(history, np.zeros(len(LOADS)) if initial is None else number_array("initial", initial))
-    return draw_and_save(lambda: _draw(problem, folded, title, inches), path, dpi)
+    return look.drawn(lambda: _draw(problem, folded, look))
 
 
 Folded = tuple[np.ndarray, list[int], list[tuple[int, int, int]]]
 """Loads of corners, the numbers of these corners, and the repeated blocks, see :func:`_folded`."""
 
 
-def _draw(problem: Problem, folded: Folded, title: str, width: float) -> Figure:
+def _draw(problem: Problem, folded: Folded, look: Look) -> Sheet:
     loads, numbers, repeated = folded
     acting = [name for k, name in enumerate(LOADS) if loads[:, k].any()] or [LOADS[0]]
     kinds = list(dict.fromkeys(LOAD_KIND[name] for name in acting))
-    figure, axes = panels(len(kinds), 1, 1.7, width)
-    figure.set_figheight(1.7 * len(kinds) + 0.9)
+    sheet = look.sheet([1.7] * len(kinds), extra=1.1)
+    axes = sheet.axes
+    sheet.grid()
     entries: list[tuple[str, Line]] = []
     for kind, panel in zip(kinds, axes[:, 0], strict=True):
         names = [name for name in acting if LOAD_KIND[name] == kind]
@@ -91,15 +88,15 @@ def _draw(problem: Problem, folded: Folded, title: str, width: float) -> Figure:
             panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
             entries.append((name, style))
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(f"{', '.join(names)}  [{label}]")
+        panel.set_ylabel(quantity(", ".join(names), label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])
     _number_corners(axes[-1, 0], numbers)
-    figure.align_ylabels(axes)
+    sheet.figure.align_ylabels(axes)
     if len(entries) > 1:
-        add_legend(figure, entries)
-    add_heading(figure, title)
-    return figure
+        sheet.legend([Line2D([], [], label=name, **style) for name, style in entries], len(entries))
+    sheet.head(look.title, caption=caption(problem), lift=18.0 if repeated else 5.0)
+    return sheet
 
 
 def _folded(history: LoadHistory, initial: np.ndarray) -> Folded:

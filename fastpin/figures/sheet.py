@@ -110,8 +110,11 @@ class Sheet:
     axes: np.ndarray
     host: Axes | None
 
-    def head(self, *lines: str, caption: str = "") -> None:
-        """Write lines above the panels, and a caption in smaller letters below the lines."""
+    def head(self, *lines: str, caption: str = "", lift: float = 5.0) -> None:
+        """Write lines above the panels, and a caption in smaller letters below the lines.
+
+        `lift` is the distance of the caption from the panel, points.
+        """
         width = self.figure.get_figwidth() - 0.9
         text = "\n".join(row for line in lines for row in wrapped(line, width, HEADING))
         small = "\n".join(wrapped(caption, width))
@@ -121,7 +124,7 @@ class Sheet:
             return
         if self.axes.shape[1] == 1:
             if small:
-                self.axes[0, 0].set_title(small, pad=5.0, **CAPTION)
+                self.axes[0, 0].set_title(small, pad=lift, **CAPTION)
         else:
             text = "\n".join(filter(None, [text, small]))
         if text:

@@ -27,7 +27,7 @@ def test_a_repeated_block_is_drawn_once_with_its_times() -> None:
     assert np.allclose(stress.get_lines()[0].get_ydata(), [0.0, 0.0, 0.0, 0.0, 10.0])  # MPa
     assert [text.get_text() for text in forces.texts] == ["× 1,000"]
     assert [tick.get_text() for tick in stress.get_xticklabels()] == ["0", "1", "2", "3", "2,002"]
-    assert forces.get_ylabel() == "P, Q  [MN/m]"
+    assert forces.get_ylabel() == "P, Q (MN/m)"
 
 
 def test_a_history_without_loads_has_an_axis() -> None:
@@ -38,7 +38,7 @@ def test_a_history_without_loads_has_an_axis() -> None:
 def test_a_long_history_has_no_dots(tmp_path: Path) -> None:
     figure = plot_history(PROBLEM, LoadHistory([{"P": float(k)} for k in range(300)]), tmp_path / "a.svg")
     assert figure.axes[0].get_lines()[0].get_marker() == "None"
-    assert (tmp_path / "a.svg").stat().st_size < 60_000
+    assert (tmp_path / "a.svg").stat().st_size < 100_000
 
 
 @pytest.mark.parametrize(
