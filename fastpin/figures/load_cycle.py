@@ -28,6 +28,7 @@ from fastpin.figures.words import (
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import scaled, units
+from fastpin.solver.result import Result
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import sizes
 
@@ -49,7 +50,7 @@ NO_AREA = "area unknown: no states between the corners"
 
 
 def plot_slip(
-    cycle: LoadCycle,
+    cycle: LoadCycle | Result,
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
@@ -64,19 +65,25 @@ def plot_slip(
 
     Parameters
     ----------
-    cycle : LoadCycle
-        From :meth:`fastpin.Result.cycle`.
+    cycle : LoadCycle or Result
+        From :meth:`fastpin.Result.cycle`; of a result the last cycle.
     path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
     ------
     InputError
-        If `cycle` is no load cycle. Also see :func:`fastpin.plot_tractions`.
+        If `cycle` is no load cycle, or a result without one. Also see :func:`fastpin.plot_tractions`.
     """
-    instance("cycle", cycle, LoadCycle, "a load cycle, such as result.cycle()")
-    look = Look(path, title, width, dpi, ax)
-    return look.drawn(lambda: _draw_slip(cycle, look))
+    look, found = Look(path, title, width, dpi, ax), _cycle_of(cycle)
+    return look.drawn(lambda: _draw_slip(found, look))
+
+
+def _cycle_of(cycle: LoadCycle | Result) -> LoadCycle:
+    """The cycle, or the last one of a result."""
+    if isinstance(cycle, Result):
+        return cycle.cycle()
+    return instance("cycle", cycle, LoadCycle, "a result, or a load cycle such as result.cycle()")
 
 
 def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
@@ -156,7 +163,7 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
 
 
 def plot_loops(
-    cycle: LoadCycle,
+    cycle: LoadCycle | Result,
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
@@ -172,21 +179,21 @@ def plot_loops(
 
     Parameters
     ----------
-    cycle : LoadCycle
-        From :meth:`fastpin.Result.cycle`.
+    cycle : LoadCycle or Result
+        From :meth:`fastpin.Result.cycle`; of a result the last cycle.
     path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
     ------
     InputError
-        If `cycle` is no load cycle, or no load changes in it. Also see :func:`fastpin.plot_tractions`.
+        If `cycle` is no load cycle, or a result without one, or if no load changes in it. Also see
+        :func:`fastpin.plot_tractions`.
     """
-    instance("cycle", cycle, LoadCycle, "a load cycle, such as result.cycle()")
-    look = Look(path, title, width, dpi, ax)
-    if not _changing(cycle):
+    look, found = Look(path, title, width, dpi, ax), _cycle_of(cycle)
+    if not _changing(found):
         raise InputError("cycle", "has no loop: no load changes in it")
-    return look.drawn(lambda: _draw_loops(cycle, look))
+    return look.drawn(lambda: _draw_loops(found, look))
 
 
 def _changing(cycle: LoadCycle) -> list[str]:

@@ -24,6 +24,7 @@ from fastpin.model.units import named_loads, scaled, units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
+from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 
@@ -173,7 +174,7 @@ def draw_profile(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
 
 
 def plot_stress_field(
-    state: State,
+    state: State | Result,
     path: str | Path | None = None,
     component: str = "von_mises",
     body: str = "both",
@@ -190,7 +191,8 @@ def plot_stress_field(
 
     Parameters
     ----------
-    state : State
+    state : State or Result
+        Of a result the last state.
     component : str
         A name of :data:`fastpin.report.stress.COMPONENTS`.
     body : {"both", "plate", "pin"}
@@ -205,9 +207,10 @@ def plot_stress_field(
     InputError
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    instance("state", state, State, "a State")
-    look, curves = Look(path, title, width, ax=ax), field_curves(state, component, body, extent)
-    return look.drawn(lambda: draw_field(state, curves, component, look))
+    look = Look(path, title, width, ax=ax)
+    chosen = drawn_states(state, "last")[0] if isinstance(state, Result) else instance("state", state, State, "a State")
+    curves = field_curves(chosen, component, body, extent)
+    return look.drawn(lambda: draw_field(chosen, curves, component, look))
 
 
 def draw_field(state: State, curves: list[Curve], component: str, look: Look) -> Sheet:

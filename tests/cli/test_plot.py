@@ -107,6 +107,30 @@ def test_wrong_options(stored, arguments, message, capsys, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--states", "last"], "--states: chooses the states of a figure: it needs --plot FILE"),
+        (["--plot", "a.png", "--states", "9"], "--states: there is no state at load point 9; the last is 4"),
+        (["--plot", "a.png", "--states", "cycle"], "--states: the history has no cycle that has ended"),
+        (["--plot", "a.png", "--states", "x"], "--states: must be last, cycle, all or load points such as 2,3.5"),
+    ],
+)
+def test_wrong_states_are_refused_before_the_run(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", *arguments]) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_that_was_cut_short_leaves_no_figure(stored, tmp_path, capsys):
+    text = stored.with_name("short.h5")
+    text.write_bytes(stored.read_bytes()[: stored.stat().st_size // 2])
+    assert main(["plot", str(text), "tractions", "-o", str(tmp_path / "a.png")]) == 2
+    assert "is not a whole HDF5 file" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
     path = tmp_path / "ends.h5"
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])

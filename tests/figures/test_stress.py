@@ -100,6 +100,22 @@ def test_maps_of_all_components(result, component):
     assert any(COMPONENTS[component] in panel.get_ylabel() for panel in figure.axes)
 
 
+def test_a_map_of_a_result_is_that_of_its_last_state(result):
+    figure = figures.plot_stress_field(result)
+    assert figure.get_suptitle().startswith("load point 5: ")
+
+
+def test_no_rounding_is_drawn_as_slip():
+    pair = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+    cycle = LoadHistory([{"Q": 3e4}, {"Q": -3e4}]).repeated(12)
+    settled = solve(Problem(pair, 0.01, 2e-5, 0.4), LoadHistory([{"P": 2.42e6}]) + cycle, nodes=61, slip_sums=True)
+    assert 0.0 < settled.cycle().largest_slip_range < 1e-15
+    upper, lower = figures.plot_slip(settled).axes
+    assert not upper.lines[0].get_ydata().any()
+    assert not lower.lines[0].get_ydata().any()
+    assert upper.texts[0].get_text() == "0: no node slips"
+
+
 def test_a_map_has_the_stresses_of_its_points(result):
     state = result[-1]
     for curve in field_curves(state, "hoop", fineness=20):
@@ -129,8 +145,10 @@ def test_slip_and_loops_of_a_cycle(result, tmp_path):
     corners = solve(result.problem, [{"P": 6e5}, {"Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}], nodes=61)
     (line,) = figures.plot_loops(corners.cycle(first=2, last=4)).axes
     assert line.texts[0].get_text() == "area unknown: no states between the corners"
-    with pytest.raises(InputError, match="cycle: must be a load cycle"):
-        figures.plot_slip(result)
+    whole = figures.plot_slip(result).axes[0].lines[0].get_ydata()
+    assert np.array_equal(whole, upper.lines[0].get_ydata())
+    with pytest.raises(InputError, match="cycle: must be a result, or a load cycle"):
+        figures.plot_slip(result[-1])
     with pytest.raises(InputError, match="has no loop"):
         figures.plot_loops(solve(result.problem, [{"P": 1e5}, {"P": 1e5}], nodes=61).cycle(first=1, last=2))
 
@@ -153,7 +171,8 @@ def test_fatigue_along_the_edge(result):
         (lambda r: figures.plot_stress_profile(r, body="both"), 'body: must be "plate" or "pin"'),
         (lambda r: figures.plot_stress_profile(r, depth=0.0), "depth: must be above 0"),
         (lambda r: figures.plot_stress_profile(r, angle="a"), "angle: must be a number"),
-        (lambda r: figures.plot_stress_field(r), "state: must be a State"),
+        (lambda r: figures.plot_stress_field(r.states), "state: must be a State"),
+        (lambda r: figures.plot_loops(solve(r.problem, [{"P": 1e5}], nodes=61)), "cycle: the history has no cycle"),
         (lambda r: figures.plot_stress_field(r[0], component="x"), "component: must be"),
         (lambda r: figures.plot_stress_field(r[0], extent=1.0), "extent: must be above 1"),
         (lambda r: figures.plot_hoop_stress(r, "hoop.txt"), "path: a figure's name must end in"),
