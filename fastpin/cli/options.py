@@ -320,11 +320,17 @@ def add_paper(commands: Any) -> None:
         "--figure",
         metavar="NAME",
         action="append",
-        help="a figure's number, 3 to 17, or one of nine more: memory, sliding-onset, half-plane, rigid-pin, rings, "
-        "supports, hollow-pins, interference, regimes "
+        help="a figure's number, 3 to 17, or one of ten more: memory, sliding-onset, half-plane, rigid-pin, rings, "
+        "supports, hollow-pins, rectangular-lug, interference, regimes "
         "(repeat the option for several figures; default: figures 3 to 17)",
     )
     paper.add_argument("--nodes", type=literal, help="number of nodes (default 400)")
+    paper.add_argument(
+        "--format",
+        metavar="FORMAT",
+        action="append",
+        help="png, pdf or svg (repeat the option for several formats; default: png)",
+    )
     paper.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )

@@ -17,7 +17,8 @@ def run(options: argparse.Namespace) -> int:
     nodes = catalog.NODES if options.nodes is None else options.nodes
     try:
         names = list(dict.fromkeys(catalog.figure_name(name) for name in options.figure or catalog.PAPER))
-        catalog.check(names, options.output, nodes)
+        formats = list(dict.fromkeys(options.format or catalog.FORMATS[:1]))
+        catalog.check(names, options.output, nodes, formats)
     except InputError as error:
         option = f"--{error.field}" if error.field in vars(options) else error.field
         raise InputError(option, error.reason) from None
@@ -31,10 +32,11 @@ def run(options: argparse.Namespace) -> int:
                 def progress(part: float) -> None:
                     progress_bar.update(len(finished) + part - progress_bar.n)
 
-                files = catalog.make(name, options.output, nodes, progress)
+                files = catalog.make(name, options.output, nodes, progress, formats)
                 finished.append(name)
                 seconds = time.perf_counter() - began
-                progress_bar.write(f"figure {name}: {files[0]}, {files[1]}, {seconds:.1f} s", file=sys.stdout)
+                named = ", ".join(map(str, files))
+                progress_bar.write(f"figure {name}: {named}, {seconds:.1f} s", file=sys.stdout)
     except KeyboardInterrupt:
         written = f"figures that are finished: {', '.join(finished)}" if finished else "no figure was finished"
         return fail(f"interrupted; {written}", EXIT_INTERRUPTED)

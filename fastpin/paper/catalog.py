@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.figures.style import save_drawing
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import choice, whole_number
 from fastpin.model.grid import LEAST_NODES, MAX_NODES
 from fastpin.paper.curves import Report
 from fastpin.report.curves import Curve, write_csv
@@ -36,6 +36,12 @@ BEYOND = (
 
 NODES = 400
 """Number of nodes unless another one is chosen."""
+
+FORMATS = ("png", "pdf", "svg")
+"""Formats of a figure, by the ends of the names of files."""
+
+DPI = 300.0
+"""Dots per inch of a bitmap."""
 
 UNITS = "N (pressure) and T (shear on the pin) in F/R; angles from the bottom and T counter-clockwise positive"
 """Units and signs of all columns, for the head of the CSV files."""
@@ -98,14 +104,17 @@ def script(name: str | int) -> Script:
     return cast(Script, importlib.import_module(f"fastpin.paper.{stem(name).replace('-', '_')}"))
 
 
-def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None:
+def check(names: Iterable[str | int], directory: str | Path, nodes: int, formats: Sequence[str] = FORMATS[:1]) -> None:
     """Check before the work that all figures can be made, and make `directory` if it is missing.
 
     Raises
     ------
     InputError
-        If there is no such figure, a figure needs more than `nodes` nodes, or its files can't be written.
+        If there is no such figure, a figure needs more than `nodes` nodes, a format is unknown, or the files can't be
+        written.
     """
+    for kind in formats:
+        choice("format", kind, FORMATS)
     scripts = {figure_name(name): script(name) for name in names}
     for name, needed in scripts.items():
         if whole_number("nodes", nodes, LEAST_NODES, MAX_NODES) < needed.LEAST_NODES:
@@ -118,28 +127,36 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int) -> None
     except OSError as error:
         raise InputError("output", f"can't make the directory {folder}: {error.strerror}") from None
     for name in scripts:
-        for file in _files(name, folder):
+        for file in _files(name, folder, formats):
             check_writable(file)
 
 
-def _files(name: str | int, directory: str | Path) -> tuple[Path, Path]:
-    return Path(directory) / f"{stem(name)}.png", Path(directory) / f"{stem(name)}.csv"
+def _files(name: str | int, directory: str | Path, formats: Sequence[str]) -> list[Path]:
+    """Return the pictures of a figure, and the file of its numbers, which is the last."""
+    return [Path(directory) / f"{stem(name)}.{kind}" for kind in (*formats, "csv")]
 
 
 def make(
-    name: str | int, directory: str | Path = ".", nodes: int = NODES, progress: Report | None = None
-) -> tuple[Path, Path]:
-    """Compute a figure, and write it as PNG and its numbers as CSV. Return the paths of both files.
+    name: str | int,
+    directory: str | Path = ".",
+    nodes: int = NODES,
+    progress: Report | None = None,
+    formats: Sequence[str] = FORMATS[:1],
+) -> list[Path]:
+    """Compute a figure, and write it in each of the `formats`, and its numbers as CSV.
+
+    Return the paths of the pictures, then the path of the numbers.
 
     Raises
     ------
     InputError
         See :func:`check`.
     """
-    check([name], directory, nodes)
+    check([name], directory, nodes, formats)
     chosen = script(name)
     curves = chosen.compute(nodes, progress)
-    picture, numbers = _files(name, directory)
-    write_csv(curves, numbers, (chosen.TITLE, f"fastpin {__version__}, {nodes} nodes", UNITS))
-    save_drawing(chosen.draw, curves, picture)
-    return picture, numbers
+    files = _files(name, directory, formats)
+    write_csv(curves, files[-1], (chosen.TITLE, f"fastpin {__version__}, --nodes {nodes}", UNITS))
+    for picture in files[:-1]:
+        save_drawing(chosen.draw, curves, picture, DPI)
+    return files

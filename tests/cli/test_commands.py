@@ -421,7 +421,7 @@ def test_paper_writes_a_figure_and_its_numbers(tmp_path: Path, capsys: pytest.Ca
     assert line.startswith(f"figure 3: {files[0]}, {files[1]}, ")
     assert set((tmp_path / "new").iterdir()) == set(files)
     assert files[0].read_bytes().startswith(b"\x89PNG")
-    assert files[1].read_text().splitlines()[1] == f"# fastpin {__version__}, 101 nodes"
+    assert files[1].read_text().splitlines()[1] == f"# fastpin {__version__}, --nodes 101"
     # as docs/paper.md says
     rows = np.genfromtxt(files[1], delimiter=",", names=True, skip_header=3, dtype=None, encoding="utf-8")
     for friction, peak in ((0.1, 0.5489), (0.7, 0.3828)):
@@ -429,18 +429,31 @@ def test_paper_writes_a_figure_and_its_numbers(tmp_path: Path, capsys: pytest.Ca
         assert chosen["N"].max() == pytest.approx(peak, rel=3e-3)
 
 
+def test_paper_writes_the_formats_that_are_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    formats = ["--format", "pdf", "--format", "svg", "--format", "pdf"]
+    assert main(["paper", "--figure", "11", "--nodes", "101", "-o", str(tmp_path), *formats]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    files = [tmp_path / f"figure11.{kind}" for kind in ("pdf", "svg", "csv")]
+    assert line.startswith(f"figure 11: {', '.join(map(str, files))}, ")
+    assert set(tmp_path.iterdir()) == set(files)
+    assert files[0].read_bytes().startswith(b"%PDF")
+    assert "<svg" in files[1].read_text()
+
+
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """No figure is computed; the names of those asked for are recorded. Figure 6 is interrupted."""
     names: list[str] = []
 
-    def make(name: str, directory: Path, nodes: int, progress: Callable[[float], None]) -> tuple[Path, Path]:
+    def make(
+        name: str, directory: Path, nodes: int, progress: Callable[[float], None], formats: list[str]
+    ) -> list[Path]:
         if name == "6":
             raise KeyboardInterrupt
         progress(0.5)
         progress(1.0)
         names.append(name)
-        return directory / f"{name}.png", directory / f"{name}.csv"
+        return [directory / f"{name}.{kind}" for kind in (*formats, "csv")]
 
     monkeypatch.setattr(catalog, "make", make)
     return names
@@ -452,6 +465,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         (["--figure", "4", "--figure", "2"], "--figure: there is no '2'; there are 3 to 17 of the paper, and "),
         (["--figure", "17", "--nodes", "200"], "--nodes: figure 17 needs at least 201 nodes, not 200"),
         (["--nodes", "101"], "--nodes: figure 5 needs at least 201 nodes, not 101"),
+        (["--format", "svgz"], '--format: must be "png" or "pdf" or "svg", not "svgz", did you mean'),
         (["--nodes", "-1"], "--nodes: must be a whole number from 5 to 20000, not -1"),
         (["-o", "file"], "--output: file is a file, not a directory"),
         (["-o", "file/below"], "--output: can't make the directory file/below: Not a directory"),
