@@ -8,14 +8,21 @@ from typing import TypeVar
 
 import numpy as np
 
-from fastpin.kernels.status import OPEN
+from fastpin.model.angles import interval_near_bottom
 from fastpin.report.curves import Curve
 from fastpin.states.state import State
+from fastpin.states.zones import ALL_ROUND, Interval, is_all_round
 
 Report = Callable[[float], None]
 """A callable that receives the computed fraction of a figure, 0 to 1."""
 
 Item = TypeVar("Item")
+
+NEAR = 1e-12
+"""Distance below which two angles are the same place, rad."""
+
+ROOT_PLACES = np.linspace(0.0, 1.0, 13) ** 2
+"""Places between an edge and the first node at which a root is drawn, in parts of the distance."""
 
 
 def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
@@ -27,7 +34,10 @@ def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
 
 
 def traction_curve(state: State, force: float = 1.0, **parameters: float | str) -> Curve:
-    """Return pressure and shear traction of a state from edge to edge, with zeros at the edges read between nodes.
+    """Return pressure and shear traction of a state from edge to edge.
+
+    The tractions are refined (:attr:`fastpin.states.state.State.refined`): beside contact edges and stick-slip borders
+    they go like a root of the distance, and the points gather there.
 
     Parameters
     ----------
@@ -41,17 +51,42 @@ def traction_curve(state: State, force: float = 1.0, **parameters: float | str) 
     Returns
     -------
     Curve
-        Columns ``angle_deg`` (from the bottom, counter-clockwise), ``N`` and ``T`` in F/R. Several contacts are
-        separated by NaN.
+        Columns ``angle_deg`` (from the bottom, counter-clockwise), ``N`` and ``T`` in F/R; N and T are 0 at the edges.
+        Several contacts are separated by NaN. A contact all round goes from the top to the top.
     """
     parts: list[np.ndarray] = []
-    for start, stop in state.contact:
-        along = np.mod(state.theta - start, 2.0 * math.pi)
-        inside = np.flatnonzero((state.status != OPEN) & (along < stop - start))
-        inside = inside[np.argsort(along[inside])]
-        part = np.array([start + along, state.pressure / force, state.shear / force])[:, inside]
-        if stop - start < 2.0 * math.pi:  # else there are no edges
-            part = np.hstack([[[start], [0.0], [0.0]], part, [[stop], [0.0], [0.0]]])
-        parts += [np.full((3, 1), np.nan), part] if parts else [part]
-    angle, pressure, shear = np.hstack(parts) if parts else np.empty((3, 0))
-    return Curve(dict(parameters), {"angle_deg": np.degrees(angle) + 90.0, "N": pressure, "T": shear})
+    for patch, ends in zip(state.refined.tractions.patches, state.contact_in_runs, strict=True):
+        drawn = _from_the_top(patch) if is_all_round(ends[1] - ends[0]) else _from_edge_to_edge(patch, ends)
+        parts.append(drawn)
+    parts.sort(key=lambda part: float(part[0, 0]))
+    gap = np.full((1, 3), np.nan)
+    rows = [row for part in parts for row in (gap, part)][1:]
+    theta, pressure, shear = np.vstack(rows).T if rows else np.empty((3, 0))
+    shear = np.clip(shear, -state.problem.friction * pressure, state.problem.friction * pressure)
+    columns = {"angle_deg": np.degrees(theta) + 90.0, "N": pressure / force, "T": shear / force}
+    return Curve(dict(parameters), columns)
+
+
+def _from_the_top(patch: np.ndarray) -> np.ndarray:
+    """Return the rows of a contact all round, shape (k + 1, 3), from the top to the top."""
+    rows = patch[:-1].copy()
+    rows[:, 0] = ALL_ROUND[0] + np.mod(rows[:, 0] - ALL_ROUND[0], 2.0 * math.pi)
+    rows = rows[np.argsort(rows[:, 0])]
+    return np.vstack([rows, rows[0] + [2.0 * math.pi, 0.0, 0.0]])
+
+
+def _from_edge_to_edge(patch: np.ndarray, ends: Interval) -> np.ndarray:
+    """Return the rows of a contact, shape (m, 3), from edge to edge, beside the bottom of the hole.
+
+    Where no power law was found at an edge, the patch ends at the open node beyond. There a root leads to the edge.
+    """
+    for side, end in zip((1, -1), ends, strict=True):
+        rows = patch[::side]
+        if side * (end - rows[0, 0]) > NEAR:
+            inside = rows[side * (rows[:, 0] - end) > NEAR]
+            part = ROOT_PLACES[:-1, None]
+            beside = np.hstack([end + part * (inside[:1, 0:1] - end), np.sqrt(part) * inside[:1, 1:]])
+            patch = np.vstack([beside, inside])[::side]
+    moved = patch.copy()
+    moved[:, 0] += interval_near_bottom(*ends)[0] - ends[0]
+    return moved

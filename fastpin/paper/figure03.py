@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
 from fastpin.paper.curves import Report
-from fastpin.paper.tractions import Panel, chosen, pushed_curves, traction_figure
+from fastpin.paper.tractions import NAMES, Panel, chosen, pushed_curves, traction_figure
 from fastpin.report.curves import Curve
 
 TITLE = "Tractions in body force loading (Ti-6Al-4V on aluminium), L_p = 0.01 and 0.1"
@@ -29,10 +29,11 @@ def compute(nodes: int, progress: Report | None = None, pair: str = "Ti/Al") -> 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw pressure above shear, with one column for each load parameter."""
     lines = {str(friction): line(index, index) for index, friction in enumerate(FRICTION)}
-    titles = {"N": "$L_p$ = {:g}", "T": ""}
+    titles = {"N": "load parameter $L_p$ = {:g}", "T": ""}
     layout = [
         [Panel(quantity, chosen(curves, L_p=parameter), title.format(parameter)) for parameter in LOAD_PARAMETERS]
         for quantity, title in titles.items()
     ]
-    legend = [(f"μ = {friction}", style) for friction, style in lines.items()]
-    return traction_figure(layout, lambda curve: lines[str(curve.parameters["mu"])], legend)
+    legend = [(f"friction coefficient {friction}", style) for friction, style in lines.items()]
+    heading = f"{NAMES[curves[0].parameters['pair']]}, plane strain; body force F on the pin, downwards"
+    return traction_figure(layout, lambda curve: lines[str(curve.parameters["mu"])], legend, heading=[heading])

@@ -12,9 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_legend, line, panels
+from fastpin.figures.style import add_heading, add_legend, line, panels
 from fastpin.paper.curves import Report
 from fastpin.paper.sweep import load_parameter_axis, swept
+from fastpin.paper.tractions import MARKERS, NAMES
 from fastpin.report.curves import Curve
 
 TITLE = "Peak pressures and tan(rho/2)/tan(epsilon/2) in body force loading"
@@ -34,26 +35,30 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw peak pressure left and the ratio of half-angles right. Colours show the pair, dashes the friction."""
-    figure, axes = panels(1, 2, height=2.9)
+    figure, axes = panels(1, 2, height=3.1)
+    add_heading(figure, "Plane strain; body force F on the pin, downwards")
     lines = {
-        (pair, mu): line(colour, dashes) for colour, pair in enumerate(PAIRS) for dashes, mu in enumerate(FRICTION)
+        (pair, mu): line(colour, dashes) | {"marker": MARKERS[colour], "markersize": 4.0}
+        for colour, pair in enumerate(PAIRS)
+        for dashes, mu in enumerate(FRICTION)
     }
     peak, ratio = axes[0]
     for curve in curves:
-        style = lines[curve.parameters["pair"], curve.parameters["mu"]]
+        pair, friction = curve.parameters["pair"], curve.parameters["mu"]
+        style = {**lines[pair, friction], "markevery": (5 * PAIRS.index(pair), 15)}
         peak.plot(curve["L_p"], curve["N_max"], **style)
         ratio.plot(curve["L_p"], curve["tan_ratio"], **style)
-    peak.set_ylabel("$N_{max}\\,R/F$")
+    peak.set_ylabel("peak pressure  $N_{max}\\,R/F$")
     peak.set_yscale("log")
     peak.set_yticks([0.4, 0.5, 0.7, 1.0, 1.5, 2.0], labels=["0.4", "0.5", "0.7", "1", "1.5", "2"])
     peak.set_yticks([], minor=True)
-    ratio.set_ylabel("tan(ρ/2) / tan(ε/2)")
+    ratio.set_ylabel("stick zone over contact  tan(ρ/2) / tan(ε/2)")
     ratio.set_ylim(0.0, 1.03)
     for panel in axes[0]:
         load_parameter_axis(panel)
     add_legend(
         figure,
-        [(pair, lines[pair, FRICTION[0]]) for pair in PAIRS],
-        [(f"μ = {mu:g}", {**lines["Ti/Al", mu], "color": "0.35"}) for mu in FRICTION],
+        [(NAMES[pair], lines[pair, FRICTION[0]]) for pair in PAIRS],
+        [(f"friction coefficient {mu:g}", {**line(0, FRICTION.index(mu)), "color": "0.35"}) for mu in FRICTION],
     )
     return figure

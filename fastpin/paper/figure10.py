@@ -13,11 +13,12 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
 from fastpin.paper.curves import Report, steps, traction_curve
-from fastpin.paper.tractions import PAIRS, Panel, pushed, traction_figure
+from fastpin.paper.tractions import NAMES, PAIRS, Panel, pushed, traction_figure
 from fastpin.report.curves import Curve
 
 TITLE = "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75"
 LEAST_NODES = 101
+PAIR = "Ti/Al"
 LOAD_PARAMETER = 0.75
 FRICTION = 0.4
 DASHES = {(0.0, 0.0): 1, (0.25, -0.25): 0, (-0.25, 0.25): 2, (0.25, 0.25): 3, (-0.25, -0.25): 5}
@@ -36,10 +37,10 @@ def stress_unit(pair: str) -> float:
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions at the load P = F, one curve for each pair of remote stresses."""
-    unit = stress_unit("Ti/Al")
+    unit = stress_unit(PAIR)
     curves = []
     for along, across in steps(list(DASHES), progress):
-        state = pushed("Ti/Al", LOAD_PARAMETER, FRICTION, nodes, sxx=along * unit, syy=across * unit)
+        state = pushed(PAIR, LOAD_PARAMETER, FRICTION, nodes, sxx=along * unit, syy=across * unit)
         curves.append(traction_curve(state, L_p=LOAD_PARAMETER, mu=FRICTION, sigma_x=along, sigma_y=across))
     return curves
 
@@ -48,9 +49,20 @@ def draw(curves: Sequence[Curve]) -> Figure:
     """Draw pressure left, shear right, one line for each pair of stresses. The line without stress is dashed."""
     lines = {stresses: line(colour, dashes) for colour, (stresses, dashes) in enumerate(DASHES.items())}
     lines[0.0, 0.0]["color"] = "black"
-    labels = {stresses: f"$σ_x$ = {stresses[0]:g}, $σ_y$ = {stresses[1]:g}".replace("-", "−") for stresses in DASHES}
+    unit = stress_unit(PAIR)
+    size = max(map(max, DASHES))
+    labels = {
+        (along, across): f"$s_{{xx}}$ = {along * unit:+.2f}, $s_{{yy}}$ = {across * unit:+.2f}".replace("-", "−")
+        for along, across in DASHES
+    }
+    labels[0.0, 0.0] = "no remote stress"
     return traction_figure(
         [[Panel("N", curves), Panel("T", curves)]],
         lambda curve: lines[curve.parameters["sigma_x"], curve.parameters["sigma_y"]],
         *[[(labels[stresses], lines[stresses]) for stresses in list(DASHES)[k::2]] for k in range(2)],
+        heading=[
+            f"{NAMES[PAIR]}, plane strain; body force F downwards",
+            f"load parameter {LOAD_PARAMETER:g}, friction coefficient {FRICTION:g}; "
+            f"remote stresses in F/R ({size * unit:.2f} is σ = {size:g})",
+        ],
     )

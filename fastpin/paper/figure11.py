@@ -26,4 +26,4 @@ def compute(nodes: int, progress: Report | None = None, load_parameter: float = 
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw a column for each size of Q."""
-    return cycle_figure(curves, "eta", "η = {:g}")
+    return cycle_figure(curves, "eta")

@@ -7,30 +7,36 @@ notch. The notch is no error of the grid: there the pin still sticks where slip 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
-from fastpin.paper.fretting import FRICTION, label
+from fastpin.paper.fretting import FRICTION, RATIOS, case_lines
 from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 TITLE = "Steady-state shear tractions with fretting loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
 LEAST_NODES = 201
+PAIR = "Ti/Ti"
 LOAD_PARAMETER = 0.5
 ETAS = (0.5, 1.0)
 FIRST_LOADS = ("+Q", "-Q")
+SYMBOLS = {"+Q": "$+Q$", "-Q": "$−Q$"}
 CYCLES = 3
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions after each horizontal load of three cycles, for two sizes of Q and both first directions."""
-    problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], LOAD_PARAMETER, FRICTION, "centre", "fixed")
+    problem = Problem.from_load_parameter(PAIRS[PAIR], LOAD_PARAMETER, FRICTION, "centre", "fixed")
     curves = []
     for eta, first in steps([(eta, first) for eta in ETAS for first in FIRST_LOADS], progress):
         across = eta * FRICTION if first == "+Q" else -eta * FRICTION
@@ -38,17 +44,16 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
         for index, state in enumerate(solve(problem, history, nodes=nodes)[1:]):
             load = "+Q" if state.load["Q"] > 0.0 else "-Q"
             cycle = 1 + index // 2
-            curves.append(
-                traction_curve(state, L_p=LOAD_PARAMETER, mu=FRICTION, eta=eta, first=first, load=load, cycle=cycle)
-            )
+            parameters: dict[str, Any] = {"eta": eta, "first": first, "load": load, "cycle": cycle}
+            curves.append(traction_curve(state, pair=PAIR, L_p=LOAD_PARAMETER, mu=FRICTION, **parameters))
     return curves
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Draw shear tractions: the first forward load dashed, the first reverse load and both steady states solid."""
+    """Draw shear tractions: the first load dashed, the first reverse load wide and pale, both steady states solid."""
     steady = {load: line(index) for index, load in enumerate(FIRST_LOADS)}
     forward = {load: line(index, 1) for index, load in enumerate(FIRST_LOADS)}
-    reverse = {load: {**line(index, 0, 4.0), "alpha": 0.3} for index, load in enumerate(FIRST_LOADS)}
+    reverse = {load: {**line(index, 0, 4.5), "alpha": 0.3} for index, load in enumerate(FIRST_LOADS)}
 
     def style(curve: Curve) -> dict[str, object]:
         load = curve.parameters["load"]
@@ -63,16 +68,29 @@ def draw(curves: Sequence[Curve]) -> Figure:
             drawn = [
                 curve for curve in chosen(curves, eta=eta, first=first) if curve.parameters["cycle"] in (1, CYCLES)
             ]
-            row.append(Panel("T", drawn, f"0, {label(first)}, {label(second)}, …;  η = {eta:g}"))
+            title = f"$P$, then {SYMBOLS[first]}, {SYMBOLS[second]}, {SYMBOLS[first]}, …;  {RATIOS['centre']} = {eta:g}"
+            row.append(Panel("T", drawn, title))
         layout.append(row)
-    legend = []
-    for load in FIRST_LOADS:
-        name = label(load)
-        legend.append(
-            [
-                (f"{name}, steady", steady[load]),
-                (f"{name}, first load", forward[load]),
-                (f"{name}, first reverse", reverse[load]),
-            ]
-        )
-    return traction_figure(layout, style, *legend)
+    states = {"steady state": steady, "first load": forward, "first load the other way": reverse}
+    legend = [[(f"{SYMBOLS[load]}, {words}", lines[load]) for words, lines in states.items()] for load in FIRST_LOADS]
+    figure = traction_figure(layout, style, *legend, heading=case_lines(curves[0], "eta"))
+    for panel, content in zip(figure.axes, (content for row in layout for content in row), strict=True):
+        _name_steady_states(panel, content.curves)
+    return figure
+
+
+def _name_steady_states(panel: Axes, curves: Sequence[Curve]) -> None:
+    """Write the load beside each steady state, at its largest shear, so that it is known without colours."""
+    for curve in curves:
+        if curve.parameters["cycle"] == CYCLES:
+            largest = int(np.argmax(np.abs(curve["T"])))
+            side = math.copysign(1.0, curve["angle_deg"][largest])
+            panel.annotate(
+                SYMBOLS[str(curve.parameters["load"])],
+                (curve["angle_deg"][largest], curve["T"][largest]),
+                (7.0 * side, 0.0),
+                textcoords="offset points",
+                ha="left" if side > 0.0 else "right",
+                va="center",
+                fontsize=9.0,
+            )

@@ -25,4 +25,4 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw a column for each pair."""
-    return cycle_figure(curves, "pair", "{},  η = 1")
+    return cycle_figure(curves, "pair")

@@ -24,4 +24,4 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw a column for each load parameter."""
-    return cycle_figure(curves, "L_p", "$L_p$ = {:g}")
+    return cycle_figure(curves, "L_p")

@@ -1,20 +1,21 @@
 """Contact, stick zone and peak pressure of a body-loaded pin over the load parameter.
 
 With a fixed clearance, a growing load passes through all load parameters. The state at the load P belongs to
-L_p = clearance / (P beta*), with tractions in P/R. Each grid serves a quarter of a decade only. The smallest contact
-then still fills two thirds of the grid.
+L_p = clearance / (P beta*), with tractions in P/R. One history on one grid gives a whole curve, so no change of the
+grid shows in it. The nodes gather at the bottom, where the stick zones are narrow.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from fastpin.kernels.status import STICK
+from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.tractions import BOTTOM, PAIRS
@@ -22,26 +23,81 @@ from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
-LIMITS = np.geomspace(2.2, 0.005, 12)
-"""Load parameters at which one history ends and the next one begins, decreasing."""
-POINTS = 8
-"""States of each history."""
+LIMITS = (2.2, 0.005)
+"""Largest and smallest load parameter."""
+POINTS = 89
+"""States of a curve."""
 LEAST_STICKING = 9
 """Fewest nodes of a stick zone whose width is measured."""
+
+NODES_RATIO = 1.75
+"""Nodes of the grid over the nodes that are asked for.
+
+With 700 nodes, angles differ by 0.003 deg (median) from their values with 1,900 nodes, and peak pressures by 1e-6. The
+grids of 400 equally spaced nodes for a quarter of a decade each, which were used before, had the same differences.
+"""
+
+REACH = math.radians(93.0)
+"""Half the width of the grid: the contacts of these figures are narrower than +-90 deg."""
+
+LEAST_SPACING, CENTRE, GROWTH, SPACING, DOUBLED = 0.03, 0.45, 15.0, 0.15, 30.0
+"""Shape of the spacing over the angle x from the bottom, degrees; a common factor gives the number of nodes.
+
+It is LEAST_SPACING up to x = CENTRE. Then it grows like x/GROWTH up to about SPACING, and from there slowly: it is
+twice SPACING at x = DOUBLED. The narrowest stick zone, 0.2 deg on either side, then has 15 nodes.
+"""
+
+
+NARROW_SLIP = {("Ti/Ti", 0.3): (27, 30), ("Ti/Ti", 0.7): (51, 55), ("Al/Ti", 0.3): (20, 27), ("Al/Ti", 0.7): (48, 55)}
+"""Half-angles of contacts whose slip zones have fewer than seven nodes, degrees: from and to, by pair and friction.
+
+The nodes gather there too. Otherwise the slip zones at the edges, 0.2 deg wide and more, are misread by 0.1 deg.
+"""
+
+SLIP_SPACING, SLIP_GROWTH = 0.05, 5.0
+"""Spacing at these angles, degrees. Away from them it grows by 1/SLIP_GROWTH of the distance."""
+
+
+def gathered_grid(nodes: int, reach: float = REACH, slip: tuple[float, float] | None = None) -> Grid:
+    """Return an arc of about `nodes` nodes that gather at the bottom, with one of them there.
+
+    `reach` is the distance of its ends from the bottom, rad. The interval `slip` of angles from the bottom, degrees,
+    gets more nodes, in addition to `nodes`.
+    """
+    x = np.r_[0.0, np.geomspace(0.2 * CENTRE, math.degrees(reach), 2000)]
+    spacing = np.maximum(LEAST_SPACING, np.minimum(x / GROWTH, SPACING * (1.0 + x / DOUBLED)))
+    half = nodes // 2
+    spacing *= _count(x, spacing)[-1] / half
+    if slip is not None:
+        away = np.maximum(np.maximum(slip[0] - x, x - slip[1]), 0.0)
+        spacing = np.minimum(spacing, 700.0 / nodes * (SLIP_SPACING + away / SLIP_GROWTH))
+    below = _count(x, spacing)
+    side = np.radians(np.interp(np.linspace(0.0, below[-1], round(below[-1]) + 1), below, x))
+    return Grid(np.r_[BOTTOM - side[:0:-1], BOTTOM + side])
+
+
+def _count(x: np.ndarray, spacing: np.ndarray) -> np.ndarray:
+    """Return the number of nodes below each x, shape (n,)."""
+    return np.r_[0.0, np.cumsum(0.5 * np.diff(x) * (1.0 / spacing[1:] + 1.0 / spacing[:-1]))]
 
 
 def swept(cases: Sequence[tuple[str, float]], nodes: int, progress: Report | None) -> list[Curve]:
     """Return half-angles and peak pressure over L_p, one curve for each pair and coefficient of friction."""
-    curves = []
-    for pair, friction in steps(cases, progress):
-        rows: list[tuple[float, ...]] = []
-        for first, last in pairwise(LIMITS):
-            problem = Problem.from_load_parameter(PAIRS[pair], last, friction, "body")
-            loads = list(np.geomspace(last / first, 1.0, POINTS + 1)[1:-1])
-            rows += [_measured(state) for state in solve(problem, [{"P": 1.0}], nodes=nodes, between=loads)]
-        columns = dict(zip(("L_p", "epsilon_deg", "rho_deg", "N_max"), np.array(rows).T, strict=True))
-        curves.append(Curve({"pair": pair, "mu": friction}, columns))
-    return curves
+    names = "L_p", "epsilon_deg", "rho_deg", "N_max"
+    return [
+        Curve({"pair": pair, "mu": friction}, dict(zip(names, _rows(pair, friction, nodes).T, strict=True)))
+        for pair, friction in steps(cases, progress)
+    ]
+
+
+@functools.lru_cache(maxsize=32)
+def _rows(pair: str, friction: float, nodes: int) -> np.ndarray:
+    """Return the numbers of a curve, shape (POINTS, 4). Figures 5 and 8 have curves in common."""
+    largest, smallest = LIMITS
+    problem = Problem.from_load_parameter(PAIRS[pair], smallest, friction, "body")
+    loads = smallest / np.geomspace(largest, smallest, POINTS)[:-1]
+    grid = gathered_grid(round(NODES_RATIO * nodes), slip=NARROW_SLIP.get((pair, friction)))
+    return np.array([_measured(state) for state in solve(problem, [{"P": 1.0}], grid=grid, between=loads.tolist())])
 
 
 def _measured(state: State) -> tuple[float, float, float, float]:
@@ -64,4 +120,4 @@ def load_parameter_axis(panel: Axes) -> None:
     """Make the x axis of a panel a logarithmic axis of L_p with plain numbers."""
     panel.set_xscale("log")
     panel.set_xticks([0.01, 0.1, 1.0], labels=["0.01", "0.1", "1"])
-    panel.set_xlabel("$L_p$")
+    panel.set_xlabel("load parameter  $L_p$ = clearance/(F β*)")

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import Line, add_legend, angle_axis, panels
+from fastpin.figures.style import Line, add_heading, add_legend, angle_axis, panels
 from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
@@ -25,6 +26,25 @@ PAIRS = {
     "Al/Ti": MaterialPair(ALUMINIUM, TITANIUM),
 }
 """Pin and plate. Ti-6Al-4V and aluminium in plane strain have the Dundurs parameters of the paper."""
+
+NAMES = {
+    "Ti/Al": "Ti-6Al-4V pin, aluminium plate",
+    "Ti/Ti": "Ti-6Al-4V pin and plate",
+    "Al/Ti": "aluminium pin, Ti-6Al-4V plate",
+}
+"""Words for the pairs."""
+
+QUANTITIES = {"N": "pressure  $N\\,R/F$", "T": "shear traction  $T\\,R/F$"}
+"""Words on the axes of both tractions."""
+
+HEADING_WIDTH = 88
+"""Most characters in a line of a heading. A figure 7.2 inches wide has room for 95."""
+
+MARKERS = ("o", "s", "^", "D", "v", "x")
+"""Marks beside the colours of lines whose dashes show something else. They also tell the lines apart in grey."""
+
+ANGLE = "angle from the bottom (deg)"
+"""Words on the axis of angles."""
 
 
 @dataclass
@@ -58,7 +78,10 @@ def chosen(curves: Sequence[Curve], **parameters: float | str) -> list[Curve]:
 
 
 def traction_figure(
-    layout: Sequence[Sequence[Panel]], style: Callable[[Curve], Line], *legend: Sequence[tuple[str, Line]]
+    layout: Sequence[Sequence[Panel]],
+    style: Callable[[Curve], Line],
+    *legend: Sequence[tuple[str, Line]],
+    heading: Sequence[str] = (),
 ) -> Figure:
     """Draw panels of tractions over the angle.
 
@@ -69,12 +92,17 @@ def traction_figure(
     style : callable
         ``style(curve)`` returns the line of a curve.
     legend : rows of (label, line)
+    heading : sequence of str
+        Lines above the panels: the parameters that all panels share.
     """
     figure, axes = panels(len(layout), len(layout[0]))
+    add_heading(
+        figure, *(part for sentence in heading for part in wrap(sentence, HEADING_WIDTH, break_on_hyphens=False))
+    )
     for column in axes.T:
         for panel in column[1:]:
             panel.sharex(column[0])
-        column[-1].set_xlabel("angle from the bottom  [deg]")
+        column[-1].set_xlabel(ANGLE)
         angle_axis(column[-1])
     for row, contents in zip(axes, layout, strict=True):
         for panel, content in zip(row, contents, strict=True):
@@ -84,7 +112,7 @@ def traction_figure(
                 panel.tick_params(labelleft=False)
             else:
                 panel.tick_params(labelleft=True)
-                panel.set_ylabel(f"${content.quantity}\\,R/F$")
+                panel.set_ylabel(QUANTITIES[content.quantity])
             for curve in content.curves:
                 panel.plot(curve["angle_deg"], curve[content.quantity], **style(curve))
             panel.set_title(content.title, fontsize=9.0)

@@ -6,6 +6,8 @@ import csv
 from functools import cache
 from pathlib import Path
 
+import matplotlib.image
+import matplotlib.text
 import numpy as np
 import pytest
 
@@ -13,9 +15,11 @@ from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, figure10, figure13, sweep, tractions
+from fastpin.paper import curves as curves_of_figures
 from fastpin.paper.curves import steps, traction_curve
 from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.solving import solve
+from fastpin.verification import closed_forms
 from tests.support.samples import sample_result
 
 NODES = 81
@@ -24,7 +28,7 @@ TRACTIONS = tuple(name for name in catalog.PAPER if name not in SWEEPS)
 
 # Panels, and lines in all of them; not counted are the lines at T = 0 and N = 0.
 DRAWN = {
-    "3": (4, 16), "4": (2, 21), "5": (2, 10), "6": (4, 16), "7": (2, 21), "8": (2, 18), "9": (2, 12), "10": (2, 10),
+    "3": (4, 16), "4": (6, 21), "5": (2, 10), "6": (4, 16), "7": (6, 21), "8": (2, 18), "9": (6, 12), "10": (2, 10),
     "11": (4, 12), "12": (4, 12), "13": (4, 16), "14": (4, 12), "15": (4, 12), "16": (4, 12), "17": (2, 6),
 }  # fmt: skip
 
@@ -76,8 +80,101 @@ def test_drawn_with_all_lines_and_a_legend_inside(name: str) -> None:
     styles = {(line.get_color(), line.get_linestyle()) for line in lines}
     assert {line.get_linestyle() for line in legend.get_lines()} >= {dashes for _, dashes in styles}
     assert {line.get_color() for line in legend.get_lines()} >= {colour for colour, _ in styles}
-    assert figure.axes[0].get_ylabel().endswith(("R/F$", "[deg]"))
+    assert figure.axes[0].get_ylabel().endswith(("R/F$", "(deg)"))
     assert figure.axes[-1].get_xlabel()
+    assert len(figure._suptitle.get_text().splitlines()) <= 2
+    heading = figure._suptitle.get_window_extent()
+    assert 0.0 <= heading.x0 < heading.x1 <= figure.bbox.width
+
+
+WORDS = {
+    "3": ("Ti-6Al-4V pin, aluminium plate", "body force F", "L_p$ = 0.01", "L_p$ = 0.1", "friction coefficient 0.7"),
+    "4": ("aluminium plate", "L_p$ = 0.25", "L_p$ = 0.5", "L_p$ = 1", "friction coefficient 0 ", "0.6, 0.4, 0.3 (left"),
+    "5": ("aluminium plate", "half-angle of the contact", "half-angle of the stick zone", "clearance/(F β*)", "ρ = ε"),
+    "6": ("Ti-6Al-4V pin and plate", "body force F", "L_p$ = 0.01", "friction coefficient 0.1"),
+    "7": ("Ti-6Al-4V pin and plate", "L_p$ = 1", "0.6, 0.4, 0.3 (left, middle, right)"),
+    "8": ("Ti-6Al-4V pin and plate", "aluminium pin, Ti-6Al-4V plate", "peak pressure", "stick zone over contact"),
+    "9": ("friction coefficient 0.4", "force F at the centre of the pin", "body force F on the whole pin"),
+    "10": ("friction coefficient 0.4", "load parameter 0.75", "in F/R", "$s_{xx}$ = +0.80, $s_{yy}$ = −0.80"),
+    "11": ("friction coefficient 0.55", "load parameter 0.05", "can't rotate", "η = Q/(μP)$ = 0.5", "(to the right)"),
+    "12": ("friction coefficient 0.55", "load parameter 0.5", "can't rotate", "η = Q/(μP)$ = 1", "(to the left)"),
+    "13": ("load parameter 0.5", "η = Q/(μP)$ = 1", "steady state", "first load", "first load the other way"),
+    "14": ("load parameter 0.05", "free to rotate", "body force By", "η = B_x/(μB_y)$ = 1", "$B_y$ and $−B_x$"),
+    "15": ("load parameter 0.05", "friction coefficient 0.55", "η = Bx/(μBy) = 1", "aluminium pin, Ti-6Al-4V plate"),
+    "16": ("Aluminium pin", "L_p$ = 0.25", "L_p$ = 0.5", "η = Bx/(μBy) = 1", "friction coefficient 0.55"),
+    "17": ("Aluminium pin", "L_p$ = 1", "η = Bx/(μBy) = 1", "friction coefficient 0.55", "(downwards)"),
+}  # fmt: skip
+"""Words that each figure must have: all parameters, and the symbols in formulas."""
+
+
+@pytest.mark.parametrize("name", catalog.PAPER)
+def test_figures_name_their_parameters(name: str) -> None:
+    figure = catalog.script(name).draw(computed(name))
+    text = " ".join(item.get_text().replace("\n", " ") for item in figure.findobj(matplotlib.text.Text))
+    assert [words for words in WORDS[name] if words not in text] == []
+    for panel in figure.axes:
+        assert panel.get_ylabel() != "" or not panel.get_subplotspec().is_first_col()
+
+
+@pytest.mark.parametrize("name", catalog.PAPER)
+def test_lines_of_a_panel_differ_without_colours(name: str) -> None:
+    figure = catalog.script(name).draw(computed(name))
+    for panel in figure.axes:
+        lines = [line for line in panel.lines if len(line.get_xdata()) > 2]
+        looks = {str((line._dash_pattern, line.get_marker(), line.get_linewidth())) for line in lines}
+        if name == "13":  # each of two loads has its name beside its line
+            assert {text.get_text() for text in panel.texts} == {"$+Q$", "$−Q$"}
+            assert len(looks) == 3
+        else:
+            assert len(looks) == len(lines)
+
+
+def test_pressure_goes_like_a_root_at_the_edges() -> None:
+    """Between the nodes the curve is nearer to Persson's closed form than straight lines are."""
+    state = tractions.pushed("Ti/Ti", 0.5, 0.0, 201)
+    half = float(closed_forms.persson_half_angle(0.5))
+    places = np.linspace(-0.999 * half, 0.999 * half, 4001)
+    exact = closed_forms.persson_pressure(places, half)
+    curve = traction_curve(state)
+    error = np.abs(np.interp(np.degrees(places), curve["angle_deg"], curve["N"]) - exact)
+    straight = np.abs(np.interp(places, state.theta - tractions.BOTTOM, state.pressure) - exact)
+    assert error.mean() < 0.15 * straight.mean()
+    assert error.max() < 0.3 * straight.max()
+
+
+def test_an_edge_without_a_law_ends_in_a_root() -> None:
+    patch = np.array([[-0.2, 0.0, 0.0], [0.0, 2.0, 1.0], [0.1, 3.0, 1.5], [0.2, 0.0, 0.0]])
+    rows = curves_of_figures._from_edge_to_edge(patch, (-0.1, 0.2))
+    assert rows[[0, -1]] == pytest.approx(np.array([[-0.1, 0.0, 0.0], [0.2, 0.0, 0.0]]))
+    beside = (rows[:, 0] > -0.1) & (rows[:, 0] <= 0.0)
+    assert rows[beside, 1] == pytest.approx(2.0 * np.sqrt((rows[beside, 0] + 0.1) / 0.1))
+    assert rows[beside, 2] == pytest.approx(0.5 * rows[beside, 1])
+    assert np.count_nonzero(beside) > 10
+
+
+def test_nodes_gather_at_the_bottom_and_at_narrow_slip_zones() -> None:
+    grid = sweep.gathered_grid(700)
+    x = np.degrees(grid.theta - tractions.BOTTOM)
+    assert grid.size == 701
+    assert x == pytest.approx(-x[::-1], abs=1e-9)
+    assert x[350] == pytest.approx(0.0, abs=1e-12)
+    spacing = np.diff(x[350:])
+    assert spacing[:10] == pytest.approx(0.0263, rel=0.01)
+    assert np.all(np.diff(spacing) > -1e-3)
+    finer = np.degrees(sweep.gathered_grid(700, slip=(20, 27)).theta - tractions.BOTTOM)
+    middle = (finer[:-1] > 20.0) & (finer[1:] < 27.0)
+    assert np.diff(finer)[middle] == pytest.approx(0.05, rel=0.05)
+
+
+def test_stick_zones_have_no_gaps_and_no_jogs() -> None:
+    """With equal spacings of a quarter of a decade each, the first curve ended, and the others had 0.012 and 0.044."""
+    narrow, small_slip, wide = sweep.swept([("Ti/Al", 0.1), ("Al/Ti", 0.3), ("Ti/Al", 0.2)], 201, None)
+    assert narrow["rho_deg"].min() == pytest.approx(0.22, abs=0.02)
+    ratio = np.tan(np.radians(0.5 * small_slip["rho_deg"])) / np.tan(np.radians(0.5 * small_slip["epsilon_deg"]))
+    assert np.all(np.diff(ratio) < 0.0)
+    assert np.abs(np.diff(ratio, 2)).max() < 0.006
+    conforming = wide["L_p"] < 0.06
+    assert np.abs(np.diff(np.log(wide["rho_deg"][conforming]), 2)).max() < 0.012
 
 
 @pytest.mark.parametrize("name", SWEEPS)
@@ -199,7 +296,9 @@ def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
     assert np.sum(split["N"] == 0.0) == 4
     state = sample_result(closed=True, nodes=90)[0]
     state.status[:], state.pressure[:] = 0, 1.0
-    assert traction_curve(state)["N"].tolist() == [1.0] * 90
+    round_and_round = traction_curve(state)
+    assert round_and_round["N"] == pytest.approx(1.0)
+    assert round_and_round["angle_deg"][[0, -1]] == pytest.approx([-180.0, 180.0], abs=4.0)
     state = sample_result()[0]
     state.status[:] = 2
     assert traction_curve(state)["N"].size == 0
@@ -223,8 +322,9 @@ def test_names() -> None:
 
 
 def test_a_figure_is_made_with_its_numbers(tmp_path: Path) -> None:
-    picture, numbers = catalog.make(17, tmp_path / "new" / "folder", 201)
-    assert picture.read_bytes().startswith(b"\x89PNG")
+    picture, page, numbers = catalog.make(17, tmp_path / "new" / "folder", 201, formats=("png", "pdf"))
+    assert matplotlib.image.imread(picture).shape[:2] == (1560, 2160)  # 300 dots an inch
+    assert page.read_bytes().startswith(b"%PDF")
     rows = list(csv.DictReader(line for line in numbers.read_text().splitlines() if not line.startswith("#")))
     assert {row["load"] for row in rows} == {"By", "+Bx", "-Bx"}
     assert {row["mu"] for row in rows} == {"0.55"}
