@@ -11,8 +11,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_heading, add_legend, line, panels
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.paper.curves import Report
+from fastpin.paper.legends import head
 from fastpin.paper.sweep import load_parameter_axis, swept
 from fastpin.paper.tractions import NAMES
 from fastpin.report.curves import Curve
@@ -33,7 +34,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw contact half-angles left and stick half-angles right, with one scale."""
     figure, axes = panels(1, 2, height=2.9)
-    add_heading(figure, f"{NAMES[PAIR]}, plane strain; body force F on the pin, downwards")
+    head(figure, f"{NAMES[PAIR]}, plane strain; body force F on the pin, downwards")
     contact, stick = axes[0]
     stick.sharey(contact)
     lines = [line(k, k) for k in STYLES[: len(curves)]]

@@ -12,10 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_heading, add_legend, line, panels
+from fastpin.figures.style import add_legend, panels
 from fastpin.paper.curves import Report
+from fastpin.paper.legends import grey, head, marked
 from fastpin.paper.sweep import load_parameter_axis, swept
-from fastpin.paper.tractions import MARKERS, NAMES
+from fastpin.paper.tractions import NAMES
 from fastpin.report.curves import Curve
 
 TITLE = "Peak pressures and tan(rho/2)/tan(epsilon/2) in body force loading"
@@ -36,11 +37,9 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw peak pressure left and the ratio of half-angles right. Colours show the pair, dashes the friction."""
     figure, axes = panels(1, 2, height=3.1)
-    add_heading(figure, "Plane strain; body force F on the pin, downwards")
+    head(figure, "Plane strain; body force F on the pin, downwards")
     lines = {
-        (pair, mu): line(colour, dashes) | {"marker": MARKERS[colour], "markersize": 4.0}
-        for colour, pair in enumerate(PAIRS)
-        for dashes, mu in enumerate(FRICTION)
+        (pair, mu): marked(colour, dashes) for colour, pair in enumerate(PAIRS) for dashes, mu in enumerate(FRICTION)
     }
     peak, ratio = axes[0]
     for curve in curves:
@@ -59,6 +58,6 @@ def draw(curves: Sequence[Curve]) -> Figure:
     add_legend(
         figure,
         [(NAMES[pair], lines[pair, FRICTION[0]]) for pair in PAIRS],
-        [(f"friction coefficient {mu:g}", {**line(0, FRICTION.index(mu)), "color": "0.35"}) for mu in FRICTION],
+        [(f"friction coefficient {mu:g}", grey(FRICTION.index(mu))) for mu in FRICTION],
     )
     return figure

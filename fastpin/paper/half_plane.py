@@ -26,17 +26,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from fastpin.figures.style import Line, line, panels
+from fastpin.figures.style import panels
 from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
+from fastpin.paper.legends import grey, head, legend_below, marked
 from fastpin.paper.tractions import BOTTOM
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
@@ -260,21 +262,26 @@ def unlike_half_planes(friction: float, beta: float, cells: int = 60) -> float:
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw one panel for each theory, with solid lines at 5 % and 1 %."""
-    figure, axes = panels(2, 2, height=2.9)
-    for panel, (name, styles) in zip(axes.flat, _styles().items(), strict=True):
+    figure, axes = panels(2, 2, height=3.6)
+    head(
+        figure,
+        f"P at the centre of the pin, plane strain; friction coefficient {FRICTION:g} unless said otherwise",
+        f"unlike bodies: Dundurs' β = ±{BETA:g}; curves end where the grid has errors as large",
+    )
+    for panel, (name, theory) in zip(axes.flat, THEORIES.items(), strict=True):
         for curve in curves:
-            label, style = styles.get(str(curve.parameters["quantity"]), (None, None))
+            style = theory.lines.get(str(curve.parameters["quantity"]))
             if curve.parameters["panel"] == name and style is not None:
-                panel.plot(curve["L_p"], np.abs(curve["error"]), label=label, **style)
+                panel.plot(curve["L_p"], np.abs(curve["error"]), **marked(*style))
         for level in LEVELS:
             panel.axhline(level, color="0.2", linewidth=0.9, zorder=0)
-        place = "lower left" if name == "Unlike materials" else "upper right"
-        panel.legend(loc=place, fontsize=6.8, handlelength=2.6, labelspacing=0.2, borderaxespad=0.2)
-        _error_axes(panel, f"{name}: stick size" if name == "Unlike materials" else name)
-        panel.label_outer()
+        colours = [(words, marked(colour)) for colour, words in enumerate(theory.colours)]
+        dashes = [(words, grey(dash)) for dash, words in enumerate(theory.dashes)]
+        legend_below(panel, [*colours, *dashes], 2)
+        _error_axes(panel, theory.title)
     for panel in axes[0]:
         degrees = panel.secondary_xaxis("top", functions=(_degrees, _load_parameter))
-        degrees.set_xlabel("half-angle of Hertz's contact  [deg]", fontsize=8.0)
+        degrees.set_xlabel("half-angle of Hertz's contact (deg)", fontsize=8.0)
         degrees.set_xticks([60.0, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1], labels=["60", "30", "10", "3", "1", "0.3", "0.1"])
         degrees.set_xticks([], minor=True)
         degrees.tick_params(labelsize=8.0)
@@ -301,39 +308,73 @@ def _load_parameter(degrees: np.ndarray) -> np.ndarray:
     return 1.0 / (math.pi * np.radians(np.maximum(degrees, 1e-9)) ** 2)
 
 
-def _styles() -> dict[str, dict[str, tuple[str | None, Line]]]:
-    """Return the legend entry and the line of each drawn quantity, by panel."""
-    back, low = 1, 2
-    return {
-        "Hertz": {
-            "peak pressure": ("peak pressure, no friction", line(0)),
-            "peak pressure, with friction": ("peak pressure, μ = 0.5", line(0, 1)),
-            "half-width": ("half-width, no friction", line(1)),
-            "half-width, with friction": ("half-width, μ = 0.5", line(1, 1)),
+@dataclass(frozen=True)
+class Theory:
+    """A panel.
+
+    Attributes
+    ----------
+    title : str
+    colours, dashes : tuple of str
+        What each colour and each kind of dashes shows.
+    lines : dict
+        Colour and dashes of each quantity that is drawn.
+    """
+
+    title: str
+    colours: tuple[str, ...]
+    dashes: tuple[str, ...]
+    lines: dict[str, tuple[int, int]]
+
+
+THEORIES = {
+    "Hertz": Theory(
+        "P alone: Hertz",
+        ("width of the contact", "peak pressure"),
+        ("no friction", f"friction {FRICTION:g}"),
+        {
+            "half-width": (0, 0),
+            "half-width, with friction": (0, 1),
+            "peak pressure": (1, 0),
+            "peak pressure, with friction": (1, 1),
         },
-        "Cattaneo-Mindlin": {
-            "distribution, +Q": ("shear, ∫|ΔT|/∫μN", line(0)),
-            "distribution, moved, +Q": ("the same, moved", line(2)),
-            "peak shear, +Q": ("peak shear", line(1)),
-            "stick size, +Q": ("stick size", line(3)),
-            "distribution, -Q": (None, line(0, back)),
-            "peak shear, -Q": (None, line(1, back)),
-            "stick size, -Q": ("stick size, after −Q", line(3, back)),
-            "distribution, +Q, mu = 0.2": ("shear, μ = 0.2", line(0, low, 1.0)),
-            "peak shear, +Q, mu = 0.2": ("peak shear, μ = 0.2", line(1, low, 1.0)),
+    ),
+    "Cattaneo-Mindlin": Theory(
+        f"P, then Q = ±{RATIO:g} μP: Cattaneo and Mindlin",
+        ("shear  ∫|ΔT| / ∫μN", "same, formula centred", "largest shear", "stick zone"),
+        ("+Q", "−Q after +Q", f"+Q, friction {LOW_FRICTION:g}"),
+        {
+            "distribution, +Q": (0, 0),
+            "distribution, -Q": (0, 1),
+            f"distribution, +Q, mu = {LOW_FRICTION:g}": (0, 2),
+            "distribution, moved, +Q": (1, 0),
+            "peak shear, +Q": (2, 0),
+            "peak shear, -Q": (2, 1),
+            f"peak shear, +Q, mu = {LOW_FRICTION:g}": (2, 2),
+            "stick size, +Q": (3, 0),
+            "stick size, -Q": (3, 1),
         },
-        "Bulk stress": {
-            "shift, balanced": ("shift, curvature kept", line(0)),
-            "shift, uniaxial": ("shift, uniaxial", line(0, 1)),
-            "what the stress adds, balanced": ("what the stress adds, curvature kept", line(1)),
-            "what the stress adds, uniaxial": ("what the stress adds, uniaxial", line(1, 1)),
+    ),
+    "Bulk stress": Theory(
+        "P, then +Q and a remote stress: shift of the stick zone",
+        ("whole shift", "part due to the stress"),
+        ("$s_{yy}$ = 1.4 $s_{xx}$", "$s_{yy}$ = 0"),
+        {
+            "shift, balanced": (0, 0),
+            "shift, uniaxial": (0, 1),
+            "what the stress adds, balanced": (1, 0),
+            "what the stress adds, uniaxial": (1, 1),
         },
-        "Unlike materials": {
-            f"mu = {ratio:g} |beta|, beta {relation} 0": (
-                f"μ = {ratio:g} |β|, β {relation} 0",
-                line(colour, dashes),
-            )
+    ),
+    "Unlike materials": Theory(
+        "P alone, unlike bodies: width of the stick zone",
+        tuple(f"friction {ratio:g} |β|" for ratio in MU_OVER_BETA),
+        ("β > 0 (softer plate)", "β < 0 (softer pin)"),
+        {
+            f"mu = {ratio:g} |beta|, beta {relation} 0": (colour, dashes)
             for colour, ratio in enumerate(MU_OVER_BETA)
             for dashes, relation in enumerate("><")
         },
-    }
+    ),
+}
+"""The panels, by the names of their quantities in the numbers."""

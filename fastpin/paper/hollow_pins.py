@@ -10,11 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import Line, add_legend, line, panels
+from fastpin.figures.style import Line, add_legend, panels
 from fastpin.model.bodies import Disk, PinBody, Tube, TubeLoad
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
-from fastpin.paper.rings import LOAD_PARAMETER, PAIR
+from fastpin.paper.legends import grey, head, marked
+from fastpin.paper.rings import CASE, LOAD_PARAMETER, PAIR
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
@@ -23,8 +24,8 @@ LEAST_NODES = 101
 BORES = (0.0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, *(0.02 * k for k in range(29, 37)), 0.75, 0.8, 0.85, 0.9)
 FRICTION = (0.0, 0.3)
 LOADS: dict[TubeLoad, str] = {
-    "uniform": "free bore, uniform traction",
-    "held": "rigid core",
+    "uniform": "uniform traction on a free bore",
+    "held": "rigid core in the bore",
 }
 
 
@@ -48,14 +49,15 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw the peak pressure left, the half-angle right. Colours show the load; dashed lines have friction."""
     figure, axes = panels(1, 2, height=3.0)
+    head(figure, f"{CASE}; force F on the bore, downwards")
     colours: dict[str, int] = {load: k for k, load in enumerate(LOADS)}
 
     def style(load: str, friction: float) -> Line:
-        return line(colours[load], FRICTION.index(friction))
+        return marked(colours[load], FRICTION.index(friction))
 
     for panel, name, label in (
-        (axes[0, 0], "N_max", "peak pressure  $N_{max} R/P$"),
-        (axes[0, 1], "half_angle_deg", "half-angle of the contact  [deg]"),
+        (axes[0, 0], "N_max", "peak pressure  $N_{max} R/F$"),
+        (axes[0, 1], "half_angle_deg", "half-angle of the contact (deg)"),
     ):
         for curve in curves:
             panel.plot(curve["bore_radius"], curve[name], **style(curve.parameters["load"], curve.parameters["mu"]))
@@ -63,6 +65,6 @@ def draw(curves: Sequence[Curve]) -> Figure:
         panel.set_ylabel(label)
         panel.set_xlim(0.0, max(BORES))
     axes[0, 0].set_ylim(bottom=0.0)
-    friction = [(f"friction {mu:g}", {**style("uniform", mu), "color": "0.35"}) for mu in FRICTION]
-    add_legend(figure, [(words, line(colours[load])) for load, words in LOADS.items()], friction)
+    friction = [(f"friction coefficient {mu:g}", grey(k)) for k, mu in enumerate(FRICTION)]
+    add_legend(figure, [(words, style(load, FRICTION[0])) for load, words in LOADS.items()], friction)
     return figure

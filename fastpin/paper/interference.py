@@ -1,10 +1,10 @@
 """Interference fits under a force: the loads at which they slip and open, and their tractions on the way.
 
-Like bodies, nu = 0.3, plane strain. Left: the load P over R N0 at which the contact opens (solid) and at which the
+Like bodies, nu = 0.3, plane strain. Above: the load P over R N0 at which the contact opens (solid) and at which the
 first place slips (dashed), against the coefficient of friction. N0 is the pressure before the load; the curves do not
 depend on the interference. The solver gives both loads on two grids, and the limit of fine grids is extrapolated.
 Circles: the closed form of the slip. Grey lines: closed forms of the opening without friction and of a bonded contact.
-Right: pressure and shear round the hole for mu = 0.3 and a load at the centre.
+Below: pressure and shear round the hole for mu = 0.3 and a load at the centre.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, line, panels
@@ -20,7 +21,9 @@ from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.joint import PinLoad
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.legends import head
+from fastpin.paper.tractions import ANGLE
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -37,7 +40,11 @@ FRICTION = tuple(np.r_[0.0, 0.02, 0.05, 0.1:1.51:0.1].round(2).tolist())
 LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 SHOWN_FRICTION = 0.3
 STAGES = (0.0, 3.204, 3.6029, 4.5)
-"""Loads P/(R N0) of the right panel: none, first slip, opening, and an open top."""
+"""Loads P/(R N0) of the lower panels: none, first slip, opening, and an open top."""
+
+
+OPENS, SLIPS = line(5), line(4, 1)
+"""Lines of both events. The lower panels have other colours."""
 
 
 def slips(state: State) -> bool:
@@ -93,52 +100,52 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     problem = fitted(SHOWN_FRICTION)
     states = solve(problem, [{"P": stage} for stage in STAGES], grid=Grid.circle(nodes))
     for stage, state in zip(STAGES, states, strict=True):
-        ends = np.r_[state.theta, state.theta[0] + 2.0 * math.pi]  # from the top round to the top
-        columns = {"angle_deg": np.degrees(ends) + 90.0}
-        columns |= {name: np.append(values, values[0]) for name, values in (("N", state.pressure), ("T", state.shear))}
-        curves.append(Curve({"pin_load": "centre", "mu": SHOWN_FRICTION, "P": stage}, columns))
+        curves.append(traction_curve(state, pin_load="centre", mu=SHOWN_FRICTION, P=stage))
     return curves
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Draw the loads of both events against friction on the left, tractions on the right."""
-    figure, axes = panels(1, 2, height=3.3)
-    loads, tractions = axes[0]
-    of_events = [curve for curve in curves if "P_opens" in curve.columns]
-    for colour, curve in enumerate(of_events):
-        loads.plot(curve["mu"], curve["P_opens"], **line(colour))
-        loads.plot(curve["mu"], curve["P_slips"], **line(colour, 1))
-        dots = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": line(colour)["color"]}
-        loads.plot(curve["mu"], curve["P_slips_closed_form"], markerfacecolor="white", markeredgewidth=0.9, **dots)
-        bonded = _bonded(str(curve.parameters["pin_load"]))
-        loads.axhline(bonded, color="0.35", linewidth=0.8, zorder=0)
-        loads.annotate(f"bonded, {curve.parameters['pin_load']} load", (1.5, bonded + 0.06), ha="right", fontsize=8.0)
-    loads.axhline(math.pi, color="0.35", linewidth=0.8, zorder=0)
-    loads.annotate("no friction: π", (1.5, math.pi - 0.06), ha="right", va="top", fontsize=8.0)
-    loads.set_xlim(0.0, FRICTION[-1])
-    loads.set_ylim(0.0, 5.2)
-    loads.set_xlabel("coefficient of friction  μ")
-    loads.set_ylabel("load  $P/(R\\,N_0)$")
-    for colour, curve in enumerate(curves[len(of_events) :], start=2):
-        tractions.plot(curve["angle_deg"], curve["N"], **line(colour))
-        tractions.plot(curve["angle_deg"], curve["T"], **line(colour, 0, 0.8))
-    tractions.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-    tractions.set_xlim(-180.0, 180.0)
-    tractions.set_xticks(range(-180, 181, 60))
-    tractions.set_xlabel("angle from the bottom  [deg]")
-    tractions.set_ylabel("$N/N_0$ (thick),  $T/N_0$ (thin)")
-    grey = {"color": "0.35"}
-    add_legend(
+    """Draw the loads of both events against friction above, one panel for each load of the pin; tractions below."""
+    figure, axes = panels(2, 2, height=2.7)
+    head(
         figure,
-        [
-            ("centre load", line(0)),
-            ("body load", line(1)),
-            ("opens", line(5) | grey),
-            ("first place slips", line(5, 1) | grey),
-        ],
-        [(f"$P/(R\\,N_0)$ = {stage:.4g}", line(colour)) for colour, stage in enumerate(STAGES, start=2)],
+        "Interference fit of like bodies (ν = 0.3), plane strain; N0: pressure without the load P",
+        f"above: circles are the closed form; below: force at the centre, friction coefficient {SHOWN_FRICTION:g}",
     )
+    of_events = [curve for curve in curves if "P_opens" in curve.columns]
+    for panel, curve in zip(axes[0], of_events, strict=True):
+        _draw_events(panel, curve)
+    axes[0, 1].sharey(axes[0, 0])
+    stages = curves[len(of_events) :]
+    for panel, quantity in zip(axes[1], "NT", strict=True):
+        for k, curve in enumerate(stages):
+            panel.plot(curve["angle_deg"], curve[quantity], **line(k, k))
+        panel.set_xlim(-180.0, 180.0)
+        panel.set_xticks(range(-180, 181, 60))
+        panel.set_xlabel(ANGLE)
+        panel.set_ylabel({"N": "pressure  $N/N_0$", "T": "shear traction  $T/N_0$"}[quantity])
+    events = [("above: the top opens", OPENS), ("above: the first place slips", SLIPS)]
+    loads = [(f"below: $P/(R\\,N_0)$ = {curve.parameters['P']:.3g}", line(k, k)) for k, curve in enumerate(stages)]
+    add_legend(figure, events, loads)
     return figure
+
+
+def _draw_events(panel: Axes, curve: Curve) -> None:
+    """Draw the loads of slip and opening for one load of the pin, and the limits of little and much friction."""
+    pin_load = str(curve.parameters["pin_load"])
+    panel.plot(curve["mu"], curve["P_opens"], **OPENS)
+    panel.plot(curve["mu"], curve["P_slips"], **SLIPS)
+    dots = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": SLIPS["color"]}
+    panel.plot(curve["mu"], curve["P_slips_closed_form"], markerfacecolor="white", markeredgewidth=0.9, **dots)
+    limits = (_bonded(pin_load), "bonded", 0.06, "bottom"), (math.pi, "opens without friction: π", -0.06, "top")
+    for load, words, shift, side in limits:
+        panel.axhline(load, color="0.35", linewidth=0.8, zorder=0)
+        panel.annotate(words, (FRICTION[-1], load + shift), ha="right", va=side, fontsize=8.0)
+    panel.set_xlim(0.0, FRICTION[-1])
+    panel.set_ylim(0.0, 5.2)
+    panel.set_title({"centre": "force at the centre of the pin", "body": "body force"}[pin_load], fontsize=9.0)
+    panel.set_xlabel("friction coefficient  μ")
+    panel.set_ylabel("load  $P/(R\\,N_0)$")
 
 
 def _bonded(pin_load: str) -> float:

@@ -13,12 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_legend, line, panels
+from fastpin.figures.style import add_legend, panels
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.fretting import FRICTION
+from fastpin.paper.legends import grey, head, marked
 from fastpin.paper.tractions import BOTTOM, PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
@@ -79,20 +80,27 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw the memory on the left, and the distance of the first half cycles from the steady ones on the right."""
     figure, axes = panels(1, 2, height=3.0)
+    head(
+        figure,
+        f"Like bodies (Ti-6Al-4V), plane strain, friction coefficient {FRICTION:g}",
+        "P at the centre of a pin that can't rotate, then cycles of ±Q",
+    )
     memory, transient = axes[0]
     for index, curve in enumerate(curves):
-        memory.plot(curve["L_p"], 100.0 * curve["memory_T"], **line(index))
-        transient.plot(curve["L_p"], 100.0 * curve["first_forward_T"], **line(index))
-        transient.plot(curve["L_p"], 100.0 * curve["first_reverse_T"], **line(index, 1, 1.0))
+        memory.plot(curve["L_p"], 100.0 * curve["memory_T"], **marked(index))
+        transient.plot(curve["L_p"], 100.0 * curve["first_forward_T"], **marked(index))
+        transient.plot(curve["L_p"], 100.0 * curve["first_reverse_T"], **marked(index, 1, 1.0))
     for panel in (memory, transient):
         panel.set_xscale("log")
-        panel.set_xlabel("load parameter  $L_p$")
+        panel.set_xticks([0.01, 0.1, 1.0, 10.0], labels=["0.01", "0.1", "1", "10"])
+        panel.set_xlabel("load parameter  $L_p$ = clearance/(P β*)")
+        panel.set_ylabel("∫|ΔT| / ∫μN  (%)")
         panel.set_ylim(bottom=0.0)
-    memory.set_ylabel("memory:  ∫|ΔT| / ∫μN  [%]")
-    transient.set_ylabel("from the steady state:  ∫|ΔT| / ∫μN  [%]")
+    memory.set_title("shear: cycles begun with +Q against −Q", fontsize=8.5)
+    transient.set_title("shear: first cycle against the steady cycle", fontsize=8.5)
     add_legend(
         figure,
-        [(f"Q/(μP) = {curve.parameters['eta']:g}", line(index)) for index, curve in enumerate(curves)],
-        [("first +Q", line(5)), ("first −Q", line(5, 1, 1.0))],
+        [(f"Q/(μP) = {curve.parameters['eta']:g}", marked(index)) for index, curve in enumerate(curves)],
+        [("first +Q (right panel)", grey(0)), ("first −Q (right panel)", grey(1, 1.0))],
     )
     return figure

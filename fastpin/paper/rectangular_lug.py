@@ -20,8 +20,9 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
-from fastpin.paper.rings import INFINITE, LOAD_PARAMETER, PAIR
-from fastpin.paper.tractions import BOTTOM
+from fastpin.paper.legends import grey, head
+from fastpin.paper.rings import CASE, INFINITE, LOAD_PARAMETER, PAIR
+from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
@@ -70,21 +71,26 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw tractions above, hoop stress and peak pressure below. Colours show the plate; dashed lines have friction."""
     figure, axes = panels(2, 2)
+    head(
+        figure,
+        f"{CASE}; body force F; hole radius R",
+        f"lug held at its top, {ABOVE:g} R above the centre of the hole, and cut off {BELOW:g} R below it",
+    )
 
     def style(plate: str, friction: float) -> Line:
         return line(0 if plate == LUG else 5, FRICTION.index(friction), 1.4 if plate == LUG else 1.0)
 
     for panel, column, label in (
-        (axes[0, 0], "N", "pressure  $N R/F$"),
-        (axes[0, 1], "T", "shear traction  $T R/F$"),
-        (axes[1, 0], "hoop", "hoop stress of the plate  [F/R]"),
+        (axes[0, 0], "N", QUANTITIES["N"]),
+        (axes[0, 1], "T", QUANTITIES["T"]),
+        (axes[1, 0], "hoop", "hoop stress (F/R)"),
     ):
         for curve in curves:
             if column in curve.columns:
                 panel.plot(
                     curve["angle_deg"], curve[column], **style(curve.parameters["plate"], curve.parameters["mu"])
                 )
-        panel.set_xlabel("angle from the bottom  [deg]")
+        panel.set_xlabel(ANGLE)
         panel.set_ylabel(label)
         angle_axis(panel)
     axes[0, 0].set_ylim(bottom=0.0)
@@ -96,7 +102,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     axes[1, 1].set_xlabel("half-width of the lug over the hole radius")
     axes[1, 1].set_ylabel("peak pressure  $N_{max} R/F$")
     plates = [(f"{LUG}, half-width {SHOWN:g} R", style(LUG, 0.0)), (INFINITE, style(INFINITE, 0.0))]
-    friction_lines = [(f"friction {mu:g}", {**style(LUG, mu), "color": "0.35"}) for mu in FRICTION]
+    friction_lines = [(f"friction coefficient {mu:g}", grey(k)) for k, mu in enumerate(FRICTION)]
     add_legend(figure, [*plates, *friction_lines])
     return figure
 

@@ -16,13 +16,14 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from scipy import ndimage
 
-from fastpin.figures.style import add_heading, panels
+from fastpin.figures.style import panels
 from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper import figure10
 from fastpin.paper.curves import Report, steps
-from fastpin.paper.tractions import PAIRS
+from fastpin.paper.legends import head
+from fastpin.paper.tractions import NAMES, PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -52,7 +53,7 @@ COARSE, FINE = 40, 15
 ALL_ROUND = -1
 """Number of arcs that stands for a contact all round in the curves."""
 
-NAMES = {0: "no contact", 1: "one arc", 2: "two arcs", 3: "three arcs", ALL_ROUND: "all round"}
+REGIMES = {0: "no contact", 1: "one arc", 2: "two arcs", 3: "three arcs", ALL_ROUND: "all round"}
 FILLS = {0: "#ffffff", 1: "#d6e6f5", 2: "#f2b15f", 3: "#c08fc0", ALL_ROUND: "#73988a"}
 """Colours of the regimes. Their greys differ too, and every region has its name in it."""
 
@@ -153,9 +154,10 @@ def _add_rays(rays: dict[float, Ray], start: Result, turns: tuple[float, float],
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw a map for each pin and force."""
     figure, axes = panels(2, 2, height=3.35)
-    add_heading(
+    head(
         figure,
-        "s_c: the stress sxx = syy that moves the edge of the hole by the clearance or interference",
+        f"{NAMES[PAIR]}, plane strain, friction coefficient {figure10.FRICTION:g}; body force P",
+        "sc: the stress sxx = syy that moves the edge of the hole by clearance or interference",
     )
     for panel, curve in zip(axes.flat, curves, strict=True):
         is_of_paper = curve.parameters["P"] > 0.0 and curve.parameters["L_p"] > 0.0
@@ -163,16 +165,16 @@ def draw(curves: Sequence[Curve]) -> Figure:
         if is_of_paper:
             _mark_cases(panel)
         pin = "clearance" if curve.parameters["L_p"] > 0.0 else "interference"
-        force = "with the force P" if curve.parameters["P"] > 0.0 else "no force"
-        panel.set_title(f"{pin} pin, {force}", fontsize=10.0)
+        force = f"load parameter {curve.parameters['L_p']:g}" if curve.parameters["P"] > 0.0 else "no force"
+        panel.set_title(f"{pin} pin, {force}".replace(" -", " −"), fontsize=10.0)
         panel.set_aspect("equal")
         panel.set_xlim(-LARGEST, LARGEST)
         panel.set_ylim(-LARGEST, LARGEST)
         panel.grid(False)
     for panel in axes[-1]:
-        panel.set_xlabel("remote stress  $s_{xx}/s_c$")
+        panel.set_xlabel("horizontal remote stress  $s_{xx}/s_c$")
     for panel in axes[:, 0]:
-        panel.set_ylabel("remote stress  $s_{yy}/s_c$")
+        panel.set_ylabel("vertical remote stress  $s_{yy}/s_c$")
     return figure
 
 
@@ -255,7 +257,7 @@ def _write_names(panel: Axes, rays: dict[float, Ray], clear: float) -> None:
             depth = ndimage.distance_transform_edt(inside, sampling=(1.0, 0.28))[1:-1, 1:-1]
             row, column = np.unravel_index(int(depth.argmax()), depth.shape)
             if depth[row, column] > 2.0:
-                panel.text(raster[column], raster[row], NAMES[kind], ha="center", va="center", fontsize=10.5)
+                panel.text(raster[column], raster[row], REGIMES[kind], ha="center", va="center", fontsize=9.5)
 
 
 def _turn(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """The limit of a rigid pin: centre load and body load become equal, and elastic pins tend to it.
 
-Left: three pins in an aluminium plate, of steel, of ten times the plate's modulus, and rigid. They are free to rotate
+Above: three pins in an aluminium plate, of steel, of ten times the plate's modulus, and rigid. They are free to rotate
 and pushed down, mu = 0.4, L_p = 0.1. As the modulus grows, beta* falls and the clearance with it; L_p stays. A rigid
-pin has 1/G_I = 0, so both loads are the same problem, and their tractions are equal in every bit. Right: int
+pin has 1/G_I = 0, so both loads are the same problem, and their tractions are equal in every bit. Below: int
 |difference| over int N of an elastic pin's tractions (Poisson's ratio 0.3), between its two loads and to the rigid pin.
 """
 
@@ -13,12 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_legend, angle_axis, line, panels
+from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
-from fastpin.paper.tractions import BOTTOM
+from fastpin.paper.legends import grey, head, marked
+from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -34,7 +35,9 @@ RATIOS = tuple(10.0 ** (k / 2) for k in range(13))
 ARC = (BOTTOM - 1.35, BOTTOM + 1.35)
 LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 PAIRS = ("centre to body", "centre to rigid", "body to rigid")
-"""Pairs of states that the right panel compares."""
+"""Pairs of states that the lower panels compare."""
+PIN_NAMES = ("above: steel pin", "above: pin ten times as stiff as the plate", "above: rigid pin")
+PAIR_NAMES = ("centre load to body load", "centre load to rigid pin", "body load to rigid pin")
 
 
 def pushed_pin(pin: Material, pin_load: PinLoad, nodes: int) -> State:
@@ -69,36 +72,41 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Draw tractions on the left, differences on the right."""
-    figure, axes = panels(1, 2, height=3.1)
-    tractions, convergence = axes[0]
+    """Draw pressure and shear above, the differences of both below."""
+    figure, axes = panels(2, 2, height=2.7)
+    head(
+        figure,
+        f"Aluminium plate, plane strain, friction coefficient {FRICTION:g}, load parameter {LOAD_PARAMETER:g}",
+        "force F downwards; pin free to rotate",
+    )
     colours = {name: index for index, name in enumerate(PINS)}
-    for curve in curves[:-1]:
-        style = line(colours[str(curve.parameters["pin"])], int(curve.parameters["pin_load"] == "body"))
-        for quantity in "NT":
-            tractions.plot(curve["angle_deg"], curve[quantity], **style)
-    tractions.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-    tractions.set_xlabel("angle from the bottom  [deg]")
-    tractions.set_ylabel("$N\\,R/F$,  $T\\,R/F$")
-    tractions.text(-68.0, 0.4, "N")
-    tractions.text(55.0, 0.17, "T")
-    angle_axis(tractions)
-
+    for panel, quantity in zip(axes[0], "NT", strict=True):
+        for curve in curves[:-1]:
+            pin, load = str(curve.parameters["pin"]), str(curve.parameters["pin_load"])
+            panel.plot(curve["angle_deg"], curve[quantity], **_pin_line(colours[pin], load))
+        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        panel.set_xlabel(ANGLE)
+        panel.set_ylabel(QUANTITIES[quantity])
+        angle_axis(panel)
+    axes[0, 0].set_ylim(bottom=0.0)
     differences = curves[-1]
-    for colour, pair in enumerate(PAIRS, start=3):
-        for dashes, quantity in enumerate("NT"):
-            style = line(colour, 2 * dashes)
-            label = f"{quantity}, {pair}"
-            convergence.plot(differences["E_pin/E_plate"], differences[label], label=label, **style)
-    convergence.set_xscale("log")
-    convergence.set_yscale("log")
-    convergence.set_xlabel("$E_{pin}/E_{plate}$")
-    convergence.set_ylabel("difference,  ∫|ΔN|/∫N  or  ∫|ΔT|/∫N")
-    convergence.legend(loc="lower left", fontsize=7.0, handlelength=2.6, labelspacing=0.3)
-    grey = {"color": "0.35"}
+    words = {"N": "pressure", "T": "shear traction"}
+    for panel, quantity in zip(axes[1], "NT", strict=True):
+        for colour, pair in enumerate(PAIRS, start=3):
+            panel.plot(differences["E_pin/E_plate"], differences[f"{quantity}, {pair}"], **marked(colour, colour - 3))
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        panel.set_xlabel("modulus of the pin over modulus of the plate")
+        panel.set_title(f"difference of the {words[quantity]}", fontsize=9.0)
+        panel.set_ylabel(f"∫|Δ{quantity}| / ∫N")
     add_legend(
         figure,
-        [("steel in aluminium", line(0)), ("ten times as stiff", line(1)), ("rigid", line(2))],
-        [("centre load", {**line(0), **grey}), ("body load", {**line(0, 1), **grey})],
+        [(name, _pin_line(index, "centre")) for index, name in enumerate(PIN_NAMES)],
+        [("above: force at the centre", grey(0)), ("above: body force", grey(1))],
+        [(f"below: {name}", marked(colour, colour - 3)) for colour, name in enumerate(PAIR_NAMES, start=3)],
     )
     return figure
+
+
+def _pin_line(colour: int, pin_load: str) -> Line:
+    return marked(colour, int(pin_load == "body")) | {"markevery": (0.05 + 0.05 * colour, 0.2)}

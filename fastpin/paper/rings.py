@@ -24,6 +24,8 @@ TITLE = "Ring lugs: tractions for outer radii from 1.5 R to an infinite plate; l
 LEAST_NODES = 101
 PAIR = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 LOAD_PARAMETER, FRICTION = 0.1, 0.3
+CASE = f"Like bodies (ν = 0.3), plane strain, load parameter {LOAD_PARAMETER:g}"
+"""The words of a heading."""
 SUPPORTS: tuple[Support, ...] = ("held", "uniform")
 OUTER_RADII = (1.5, 2.0, 3.0, 4.0)
 INFINITE = "infinite plate"
@@ -45,14 +47,15 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw pressure left, shear right; the held rim above, the uniform traction below."""
     lines: dict[float, Line] = {outer: line(k, k) for k, outer in enumerate(OUTER_RADII)}
-    infinite = line(5, 0, 1.0)
+    infinite = line(5, 5, 1.0)
     plate = chosen(curves, support=INFINITE)
     layout = []
-    for support, words in zip(SUPPORTS, ("rim held", "uniform traction on the rim"), strict=True):
+    for support, words in zip(SUPPORTS, ("ring held at its rim", "uniform traction on the rim"), strict=True):
         shown = [*plate, *chosen(curves, support=support)]
-        layout.append([Panel("N", shown, f"pressure, {words}"), Panel("T", shown, f"shear traction, {words}")])
+        layout.append([Panel("N", shown, words), Panel("T", shown, words)])
     return traction_figure(
         layout,
         lambda curve: lines.get(curve.parameters.get("outer_radius", 0.0), infinite),
         [*((f"outer radius {outer:g} R", style) for outer, style in lines.items()), (INFINITE, infinite)],
+        heading=[CASE, f"friction coefficient {FRICTION:g}; body force F on the pin, downwards; R: radius of the hole"],
     )

@@ -13,9 +13,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import add_legend, line, panels
+from fastpin.figures.style import COLOURS, Line, add_legend, line, panels
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
+from fastpin.paper.legends import grey, head, legend_below
 from fastpin.paper.tractions import PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
@@ -30,6 +31,14 @@ LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 16) for k in range(17))
 SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
 FRICTION = tuple(0.05 + 0.95 * k / 8 for k in range(9))
 SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
+STYLES: tuple[Line, ...] = tuple(
+    {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.4}
+    for colour, marker in (
+        (COLOURS[0], "o"), (COLOURS[1], "s"), (COLOURS[2], "^"), (COLOURS[3], "D"),
+        (COLOURS[4], "v"), (COLOURS[5], "x"), ("0.5", "P"),
+    )
+)  # fmt: skip
+"""Lines of the coefficients of friction on the left, then of the load parameters on the right."""
 SCAN, ROUNDS = 32, 3
 """Search of the first onset: states inside the range of Q, and how often the range is narrowed to a part of it."""
 AMPLITUDES, HALVINGS = 8, 5
@@ -105,23 +114,31 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 
 def draw(curves: Sequence[Curve]) -> Figure:
-    """Draw the onsets against L_p on the left, against mu on the right."""
-    figure, axes = panels(1, 2, height=3.0)
-    rows = []
-    for panel, name, symbol, other in ((axes[0, 0], "mu", "μ", "L_p"), (axes[0, 1], "L_p", "$L_p$", "mu")):
-        row = []
-        for index, curve in enumerate(curve for curve in curves if name in curve.parameters):
-            panel.plot(curve[other], curve["eta_s_forward"], marker=".", markersize=3, **line(index))
-            panel.plot(curve[other], curve["eta_s_back"], marker=".", markersize=3, **line(index, 1, 1.0))
-            row.append((f"{symbol} = {curve.parameters[name]:g}", line(index)))
+    """Draw the onsets against L_p on the left, against mu on the right. No colour and no mark has two meanings."""
+    figure, axes = panels(1, 2, height=3.4)
+    head(
+        figure,
+        "Like bodies (Ti-6Al-4V), plane strain; pin that can't rotate, P at its centre, then Q",
+        f"Beyond the end of a curve some places stick up to Q = {LARGEST:g} P",
+    )
+    styles = iter(STYLES)
+    for panel, name, title, other in (
+        (axes[0, 0], "mu", "friction coefficient", "L_p"),
+        (axes[0, 1], "L_p", "load parameter", "mu"),
+    ):
+        entries: list[tuple[str, Line]] = []
+        for curve in (curve for curve in curves if name in curve.parameters):
+            style = next(styles)
+            panel.plot(curve[other], curve["eta_s_forward"], **style)
+            panel.plot(curve[other], curve["eta_s_back"], **{**style, "linestyle": line(0, 1)["linestyle"]})
+            entries.append((f"{curve.parameters[name]:g}", style))
         panel.axhline(1.0, color="0.6", linewidth=0.7, zorder=0)
-        panel.set_ylim(0.9, 5.0 if name == "mu" else 2.2)
-        rows.append(row)
+        panel.set_ylim(0.9, 6.0 if name == "mu" else 2.2)
+        panel.set_ylabel("onset of sliding  $Q/(μP)$")
+        legend_below(panel, entries, len(entries), title)
     axes[0, 0].set_xscale("log")
-    axes[0, 0].set_xlabel("load parameter  $L_p$")
-    axes[0, 1].set_xlabel("coefficient of friction  μ")
-    axes[0, 0].set_ylabel("onset of sliding  $η_s$ = Q/(μP)")
-    rows[0].append(("first way, at +Q", line(5)))
-    rows[1].append(("way back, at −Q", line(5, 1, 1.0)))
-    add_legend(figure, *rows)
+    axes[0, 0].set_xticks([0.1, 1.0, 10.0], labels=["0.1", "1", "10"])
+    axes[0, 0].set_xlabel("load parameter  $L_p$ = clearance/(P β*)")
+    axes[0, 1].set_xlabel("friction coefficient  μ")
+    add_legend(figure, [("first push, at +Q", grey(0)), ("way back, at −Q after +Q", grey(1))])
     return figure

@@ -15,7 +15,8 @@ from fastpin.figures.style import Line, add_legend, line, panels
 from fastpin.model.bodies import SUPPORTS, Plate, PlateBody, Ring
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
-from fastpin.paper.rings import FRICTION, INFINITE, LOAD_PARAMETER, PAIR
+from fastpin.paper.legends import head
+from fastpin.paper.rings import CASE, FRICTION, INFINITE, LOAD_PARAMETER, PAIR
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
@@ -45,7 +46,7 @@ OUTER_RADII = (
     10.0,
 )
 NAMES = {
-    "held": "held",
+    "held": "rim held",
     "uniform": "uniform traction",
     "normal": "normal traction, cosine",
     "shear": "shear traction, sine",
@@ -74,10 +75,11 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw the peak pressure left, the half-angle right, over the outer radius."""
     figure, axes = panels(1, 2, height=3.0)
+    head(figure, CASE, f"friction coefficient {FRICTION:g}; body force F on the pin, downwards")
     lines: dict[str, Line] = {support: line(k, k) for k, support in enumerate(SUPPORTS)}
     for panel, name, label in (
-        (axes[0, 0], "N_max", "peak pressure  $N_{max} R/P$"),
-        (axes[0, 1], "half_angle_deg", "half-angle of the contact  [deg]"),
+        (axes[0, 0], "N_max", "peak pressure  $N_{max} R/F$"),
+        (axes[0, 1], "half_angle_deg", "half-angle of the contact (deg)"),
     ):
         for curve in curves:
             if curve.parameters["support"] == INFINITE:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from textwrap import wrap
 
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import Line, add_heading, add_legend, angle_axis, panels
+from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.legends import head
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -36,12 +36,6 @@ NAMES = {
 
 QUANTITIES = {"N": "pressure  $N\\,R/F$", "T": "shear traction  $T\\,R/F$"}
 """Words on the axes of both tractions."""
-
-HEADING_WIDTH = 88
-"""Most characters in a line of a heading. A figure 7.2 inches wide has room for 95."""
-
-MARKERS = ("o", "s", "^", "D", "v", "x")
-"""Marks beside the colours of lines whose dashes show something else. They also tell the lines apart in grey."""
 
 ANGLE = "angle from the bottom (deg)"
 """Words on the axis of angles."""
@@ -96,9 +90,7 @@ def traction_figure(
         Lines above the panels: the parameters that all panels share.
     """
     figure, axes = panels(len(layout), len(layout[0]))
-    add_heading(
-        figure, *(part for sentence in heading for part in wrap(sentence, HEADING_WIDTH, break_on_hyphens=False))
-    )
+    head(figure, *heading)
     for column in axes.T:
         for panel in column[1:]:
             panel.sharex(column[0])

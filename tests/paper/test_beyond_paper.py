@@ -101,3 +101,15 @@ def test_drawn(name, remembered, monkeypatch):
     lines = [line for panel in figure.axes for line in panel.lines if len(line.get_xdata()) > 2 or name != "memory"]
     assert len(lines) == (9 if name == "memory" else 8)
     assert all(panel.get_xlabel() for panel in figure.axes)
+    heading = figure._suptitle.get_text()
+    assert "Like bodies (Ti-6Al-4V), plane strain" in heading
+    assert "can't rotate" in heading
+    if name == "memory":
+        assert "friction coefficient 0.55" in heading
+        assert len({line.get_marker() for line in figure.axes[0].lines}) == len(remembered)
+        return
+    left, right = ({line.get_color() for line in panel.lines if len(line.get_xdata()) == 2} for panel in figure.axes)
+    assert len(left & right) == 1  # the line at one
+    titles = [panel.get_legend().get_title().get_text() for panel in figure.axes]
+    assert titles == ["friction coefficient", "load parameter"]
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["0.1", "0.3"]
