@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 from pathlib import Path
 
-from fastpin import casefile, pages, solver
+from fastpin import casefile, pages, solver, studies
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail
-from fastpin.errors import InputError
+from fastpin.errors import CaseFileError, InputError
+from fastpin.model.case import Case
 from fastpin.pages.html import check_page
 from fastpin.pages.result import write_source
 from fastpin.pages.source import Source
@@ -69,9 +71,21 @@ def _of_sweep(options: argparse.Namespace, page: Path) -> int:
     return EXIT_OK
 
 
+def _case(source: Path) -> Case:
+    """Read a case file. A plan is refused with the way to the page of its sweep."""
+    try:
+        return casefile.read_case(source)
+    except CaseFileError:
+        with contextlib.suppress(CaseFileError):
+            studies.read_plan(source)
+            words = f"is a plan: name the directory of its sweep, such as {source.with_suffix('')}"
+            raise InputError(str(source), words) from None
+        raise
+
+
 def _of_case(options: argparse.Namespace, page: Path) -> int:
     """Solve a case, and write its page. A run that ends early has a page of its states."""
-    case, code, reason = casefile.read_case(options.source), EXIT_OK, None
+    case, code, reason = _case(options.source), EXIT_OK, None
     if options.error_bars:
         case = dataclasses.replace(case, options=case.options.changed(error_bars=True))
     with Bar(len(case.history), CORNERS) as bar:

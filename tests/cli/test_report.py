@@ -67,14 +67,22 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
         (["a.h5"], "a.h5: there is no such file"),
         (["."], ".: holds no sweep: there is no index.sqlite"),
         (["junk.h5"], "junk.h5: is not a whole HDF5 file"),
+        (["plan.toml"], "plan.toml: is a plan: name the directory of its sweep, such as plan"),
     ],
 )
 def test_wrong_input_is_refused_in_one_sentence(
     arguments: list[str], message: str, case: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("junk.h5").write_bytes(b"junk")
+    Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\n')
     assert main(["report", *arguments]) == 2
     error = capsys.readouterr().err
     assert error.startswith(f"fastpin: {message}")
     assert error.count("\n") == 1
-    assert sorted(path.name for path in Path().iterdir()) == ["case.toml", "junk.h5"]
+    assert sorted(path.name for path in Path().iterdir()) == ["case.toml", "junk.h5", "plan.toml"]
+
+
+def test_all_faults_of_a_case_are_listed(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(CASE.replace("nodes = 121", "nodes = 1").replace("friction = 0.4", "friction = -1"))
+    assert main(["report", str(case)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 2
