@@ -16,7 +16,7 @@ from fastpin.pages.content import Facts, Listing, Page, Part, Section, Table, Te
 from fastpin.pages.html import check_page, write_page
 from fastpin.pages.source import now
 from fastpin.report.case import case_rows, corner_columns
-from fastpin.report.sweep import chart, check_axes, run_columns
+from fastpin.report.sweep import brief, chart, check_axes, run_columns
 from fastpin.storage.packed import INDEX
 from fastpin.studies.index import DONE, FAILED, WAITING, Index
 from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
@@ -124,7 +124,7 @@ def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Secti
 def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
     fields = []
     for name, spacing in plan.fields.items():
-        values = list(dict.fromkeys(str(point.values[name]) for point in plan.points if name in point.values))
+        values = list(dict.fromkeys(brief(point.values[name]) for point in plan.points if name in point.values))
         shown = values if len(values) <= 12 else [*values[:3], "...", *values[-3:]]
         fields.append((name, f"{len(values):,}", ", ".join(shown), spacing))
     parts: list[Part] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]

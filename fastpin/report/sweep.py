@@ -232,7 +232,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for row in rows:
-        name = "\n".join(f"{other} = {_brief(row[other])}" for other in others if row[other] is not None)
+        name = "\n".join(f"{other} = {brief(row[other])}" for other in others if row[other] is not None)
         numbers, failed = parts.setdefault(name, (np.full(shape, np.nan), np.zeros(shape, dtype=bool)))
         place = tuple(places[row[field]] for (_, places), field in zip(axes, (y, x) if y else (x,), strict=True))
         failed[place] = row["status"] == FAILED
@@ -261,7 +261,7 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
 def _column(name: str, values: Sequence[Any], unit: str) -> Column:
     """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
     if not all(value is None or _is_number(value) for value in values):
-        return name, unit, ["-" if value is None else _brief(value).strip('"') for value in values]
+        return name, unit, ["-" if value is None else brief(value).strip('"') for value in values]
     least = _ROUNDING.get(unit, 0.0)
     values = [0.0 if value is not None and abs(value) < least else value for value in values]
     factor, label = scaled([value for value in values if value is not None], unit)
@@ -287,10 +287,10 @@ def _kind(field: str) -> str:
     return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")
 
 
-def _brief(value: Any) -> str:
+def brief(value: Any) -> str:
     """Return a value as text, numbers with six significant digits."""
     if isinstance(value, list):
-        return f"[{', '.join(map(_brief, value))}]"
+        return f"[{', '.join(map(brief, value))}]"
     return f"{value:.6g}" if _is_number(value) else as_toml(value)
 
 
