@@ -16,7 +16,7 @@ from fastpin.model.case import Case
 from fastpin.model.units import named_loads
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
-from fastpin.report.case import edge_body
+from fastpin.report.case import edge_body, hole_body
 from fastpin.report.stress import COMPONENTS
 from fastpin.report.sweep import Chart
 from fastpin.solver.result import Result
@@ -36,6 +36,15 @@ class Words(NamedTuple):
     caption: str
 
 
+def sketch(album: Album, case: Case) -> Picture:
+    """Draw the joint with the ranges of its loads."""
+    words = Words(
+        f"Sketch of pin and {hole_body(case.problem)} with arrows for the loads.",
+        "The joint in proportion, but for the clearance, and its loads with their ranges over the history.",
+    )
+    return album.picture(lambda path: figures.plot_sketch(case, path), *words)
+
+
 def history(album: Album, case: Case, initial: np.ndarray) -> Picture:
     """Draw the load history from the load before its first corner, shape (loads,)."""
     words = Words(
@@ -53,6 +62,16 @@ def tractions(album: Album, states: Sequence[State]) -> Picture:
         "Pressure N and shear traction T on the pin, counter-clockwise positive; below, stick and slip of each state.",
     )
     return album.picture(lambda path: figures.plot_tractions(states, path), *words)
+
+
+def stick_slip(album: Album, states: Sequence[State]) -> Picture:
+    """Draw the map of stick and slip."""
+    first, last = load_point(states[0]), load_point(states[-1])
+    words = Words(
+        f"Map of the zones that stick and slip, over angle and load point, from load point {first:.4g} to {last:.4g}.",
+        "Stick and slip over the angle round the hole and the load point. White is open.",
+    )
+    return album.picture(lambda path: figures.plot_stick_slip(states, path), *words)
 
 
 def hoop(album: Album, states: Sequence[State]) -> Picture:

@@ -126,6 +126,7 @@ def case(page: Pages) -> Section:
         "case",
         "Case",
         [
+            *_drawn(lambda: drawings.sketch(page.album, found)),
             Facts("The problem", rows, ("subject", "in words")),
             Facts("Options of the solver", solver, ("option", "value", "meaning")),
         ],
@@ -242,7 +243,10 @@ def zones(page: Pages) -> Section:
     heads = ("load point", "zone", "from", "to", "direction of the pin")
     units_ = ("", "", "deg", "deg", "")
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
-    return Section("zones", "Stick and slip", [Table("Zones of contact, stick and slip", columns)])
+    parts: list[Part] = [Table("Zones of contact, stick and slip", columns)]
+    if len(page.source.mapped) > 1:
+        parts = [*_drawn(lambda: drawings.stick_slip(page.album, page.source.mapped)), *parts]
+    return Section("zones", "Stick and slip", parts)
 
 
 def _zone_rows(state: State) -> list[tuple[str, ...]]:

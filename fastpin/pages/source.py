@@ -34,6 +34,9 @@ CRITERION: Any = "smith-watson-topper"
 MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
 
+MOST_MAPPED = 60
+"""Most states of a map that begins with the history. The first cycles of most histories fit."""
+
 MOST_CORNERS = 100_000
 """Most corners in which a closed part without repeated blocks, or the largest force, is looked for."""
 
@@ -185,6 +188,13 @@ class Source:
         if largest is not None and largest not in chosen:
             chosen[np.argmin(np.abs(chosen[:-1] - largest))] = largest
         return self.read(np.unique(chosen).tolist())
+
+    @cached_property
+    def mapped(self) -> list[State]:
+        """States in a row for the map of stick and slip: of the last cycle, or the first ones if it has few."""
+        if self.cycle is not None and len(self.cycle.states) > MOST_DRAWN:
+            return list(self.cycle.states)
+        return self.read(range(min(self.points.size, MOST_MAPPED)))
 
     def _largest_force(self, places: np.ndarray) -> int | None:
         """Return the place of the state with the largest force on the pin, of several; None if that is not known."""
