@@ -352,6 +352,6 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     states = result.states if cycle is None else cycle.states
     if result.cycles and (line := report.cycle.fatigue_line(states, result.cycles[-1])):
         print(line)
-    for note in note_lines(case, result, result.states):
+    for note in note_lines(case, result):
         print(f"note: {note}")
     print(solver_line(result))

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from fastpin.casefile.reader import parse_case, read_text
+from fastpin.casefile.reader import parse_case
+from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.model.checks import check_callable, file_path, instance, string

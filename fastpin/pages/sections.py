@@ -11,6 +11,7 @@ from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import as_toml
+from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.loads import named_load
 from fastpin.model.materials import Material
 from fastpin.model.units import acting_loads, named_loads, units, with_unit
@@ -69,7 +70,12 @@ def overview(page: Pages) -> Section:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
     states, cycle = source.rows[0], source.cycle
+    pressures = (state.pressure for state in states)
+    warnings = [*doubts(problem, source.case.history, source.case.options)]
+    warnings += pressure_doubts(problem, source.case.history, pressures)
     parts: list[Part] = [_status(source)]
+    parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
+    parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]
     if states:
         largest = max(states, key=lambda state: state.peak_pressure)
         unit = units(problem)["traction"]
@@ -82,8 +88,6 @@ def overview(page: Pages) -> Section:
             words = f"The sentences on states are on the {len(states)} states in the table of key figures."
             parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not read."))
         parts.append(Items([_sentence(line) for line in sentences if line]))
-        notes = note_lines(source.case, source.result, states)
-        parts += [Text(f"Note: {note}.", "note") for note in notes]
     parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
     return Section("overview", "Overview", parts)
 
@@ -146,7 +150,7 @@ def materials(page: Pages) -> Section:
     modulus = "1/beta*" if problem.dimensionless else "Pa"
     columns: list[Column] = [("constant", "", _CONSTANTS)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
-    parts: list[Part] = [Table("Elastic constants", columns)]
+    parts: list[Part] = [Table("Elastic constants and yield strength", columns)]
     fatigue = {
         name: material.fatigue.given() for name, material in found.items() if material.fatigue and not material.is_rigid
     }
@@ -163,14 +167,16 @@ def materials(page: Pages) -> Section:
     return Section("materials", "Materials", parts)
 
 
-_CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G"]
+_CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
 
 
 def _constants(material: Material, unit: str) -> list[str]:
     if material.is_rigid:
-        return [material.name or "rigid", "infinite", "-", "infinite"]
+        return [material.name or "rigid", "infinite", "-", "infinite", "-"]
     moduli = [with_unit(value, unit, 5) for value in (material.E, material.shear_modulus)]
-    return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1]]
+    strength = material.known_yield_strength
+    yields = "not known" if strength is None else with_unit(strength, "Pa", 5)
+    return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1], yields]
 
 
 def _cell(value: object) -> str:

@@ -273,6 +273,17 @@ def test_a_result_without_states_says_what_is_missing(tmp_path: Path) -> None:
     assert "Unfinished" in page.text
 
 
+@pytest.mark.usefixtures("undrawn")
+def test_doubtful_values_and_notes_stand_in_the_overview(tmp_path: Path) -> None:
+    result = sample_result(friction=4.0)
+    result.statistics["jumps"] = 2.0
+    result.report(tmp_path / "page.html")
+    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    assert re.search(r"Warning: friction: 4 is above 2[^\n]*\.", words)
+    assert "Note: the pin snapped 2 times; work does not balance there." in words
+    assert "828 MPa" in words  # the yield strength of the pin
+
+
 def test_words_cover_all_names() -> None:
     assert set(QUANTITY_WORDS) == set(QUANTITIES)
     assert set(LOAD_WORDS) == set(LOADS)
