@@ -202,34 +202,29 @@ class PathStep:
                 assert isinstance(self._columns, Columns)  # the table of a held contact is whole
                 self._columns.refresh(int(counts[exchange.NEEDED_COLUMN]), updates)
             elif code in (exchange.REBUILD, exchange.ALL_AT_ONCE):
-                if self._room is not None and self._drift() > SEVERE_DRIFT and self._go_back():
-                    checked = 0
-                    continue
-                self._book()
-                self._rebuild(all_at_once=code == exchange.ALL_AT_ONCE)
+                if not (self._room is not None and self._drift() > SEVERE_DRIFT and self._go_back()):
+                    self._book()
+                    self._rebuild(all_at_once=code == exchange.ALL_AT_ONCE)
                 checked = 0
             elif code == exchange.CYCLING:
                 self._book()
                 self._resettle()
                 checked = 0
             elif code != exchange.REACHED:
-                if self._drift() > SEVERE_DRIFT and self._go_back():
-                    checked = 0
-                    continue
-                self._book()
-                raise StepLostError(code, self.fraction)
+                if not (self._drift() > SEVERE_DRIFT and self._go_back()):
+                    self._book()
+                    raise StepLostError(code, self.fraction)
+                checked = 0
             else:
                 self._book()
-                solution = self._correct()
-                if solution is None:
+                if (solution := self._correct()) is None:
                     checked = 0
                     continue
                 settled = _snap_to_bounds(system, self.now, solution)
-                if not _exceeds_bounds(settled, solution):
+                last = settlings == MOST_SETTLINGS
+                if not _exceeds_bounds(settled, solution) or (last and _is_rounding(settled, solution)):
                     return settled
-                if settlings == MOST_SETTLINGS:
-                    if _is_rounding(settled, solution):
-                        return settled
+                if last:
                     raise StepLostError(exchange.CYCLING, self.fraction)
                 # When a load is almost gone, rounding can keep a status too long. At its limit it changes at once.
                 self._take(settled)

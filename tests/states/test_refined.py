@@ -282,5 +282,5 @@ def test_an_edge_a_little_inside_the_outermost_node():
         for patch in state.refined.tractions.patches:
             theta, pressure, shear = patch.T
             assert np.all(np.diff(theta) > 0.0)
-            # Measured on arcs of slightly different length: up to 0.034 with 101 nodes, and 1e-4 with 201.
-            assert np.all(np.abs(shear) <= 0.55 * pressure + 0.04 * state.peak_pressure)
+            # Measured: up to 5e-4 with 101 to 119 nodes, and 5e-5 with 201.
+            assert np.all(np.abs(shear) <= 0.55 * pressure + 2e-3 * state.peak_pressure)
