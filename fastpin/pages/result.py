@@ -15,7 +15,7 @@ from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
 from fastpin.pages.html import check_page, write_page
-from fastpin.pages.sections import SECTIONS, Pages
+from fastpin.pages.sections import SECTIONS, Shared
 from fastpin.pages.source import Source, now
 from fastpin.solver.result import Result
 from fastpin.studies.convergence import Convergence
@@ -93,7 +93,7 @@ def write_source(
 ) -> None:
     """Write the page of a source, see :func:`write_report`."""
     report = progress or (lambda done, total: None)
-    page, sections = Pages(source, Album(), convergence), []
+    page, sections = Shared(source, Album(), convergence), []
     for number, make in enumerate(SECTIONS):
         report(number, len(SECTIONS))
         sections.append(make(page))

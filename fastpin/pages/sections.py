@@ -51,7 +51,7 @@ NO_STATE = "There is no state: the run ended before its first corner, or its sta
 
 
 @dataclass(frozen=True)
-class Pages:
+class Shared:
     """What the sections of one page share.
 
     Attributes
@@ -66,7 +66,7 @@ class Pages:
     convergence: Convergence | None = None
 
 
-def overview(page: Pages) -> Section:
+def overview(page: Shared) -> Section:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
     states, cycle = source.rows[0], source.cycle
@@ -102,7 +102,7 @@ def _status(source: Source) -> Text:
     corners = len(source.case.history)
     if source.result.complete:
         return Text(f"Complete: all {corners:,} corners of the load history were followed; {_count(source)}.")
-    why = f" The reason: {source.error}." if source.error else " The run may still be going on."
+    why = f" The reason: {source.error}." if source.error else " The run may still be going on." * bool(source.path)
     how = f" To continue it: fastpin resume {source.path}" if source.path else ""
     return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{how}", "note")
 
@@ -111,7 +111,7 @@ def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
 
 
-def case(page: Pages) -> Section:
+def case(page: Shared) -> Section:
     """Return every parameter of the case in words, and the options of the solver."""
     found = page.source.case
     problem, unit = found.problem, units(found.problem)
@@ -141,7 +141,7 @@ _IN_RESULTS = ("nodes", "method", "error_bars")
 """Options that a result tells without its run."""
 
 
-def materials(page: Pages) -> Section:
+def materials(page: Shared) -> Section:
     """Return the constants of all materials."""
     problem = page.source.case.problem
     found = {"pin": problem.pair.pin, "plate": problem.pair.plate}
@@ -183,7 +183,7 @@ def _cell(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def loads(page: Pages) -> Section:
+def loads(page: Shared) -> Section:
     """Return the figure and the table of the corners."""
     found = page.source.case
     history = found.history
@@ -205,7 +205,7 @@ def loads(page: Pages) -> Section:
     return Section("loads", "Loads", [*parts, Table("Corners of the load history", columns, gaps), *remarks])
 
 
-def key_figures(page: Pages) -> Section:
+def key_figures(page: Shared) -> Section:
     """Return the table of states, and all quantities of the states that are drawn."""
     source, problem = page.source, page.source.case.problem
     states, gaps = source.rows
@@ -219,7 +219,8 @@ def key_figures(page: Pages) -> Section:
     shown = [row for row in shown if not all(cell in ("nan", "-") for cell in row[2])]
     columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
     for place, state in enumerate(drawn):
-        columns.append((f"{state.step + state.fraction:.5g}", "", [row[2][place] for row in shown]))
+        values = ["-" if row[2][place] == "nan" else row[2][place] for row in shown]
+        columns.append((f"{state.step + state.fraction:.5g}", "", values))
     parts.append(Table("All quantities, by load point", columns))
     if states[0].error_bars is None:
         how = (
@@ -233,14 +234,16 @@ def key_figures(page: Pages) -> Section:
     return Section("figures", "Key figures", parts)
 
 
-def tractions(page: Pages) -> Section:
+def tractions(page: Shared) -> Section:
     """Return the figure of the tractions."""
     if not page.source.drawn:
         return Section("tractions", "Tractions", [Text(NO_STATE, "missing")])
+    if not any(state.in_contact for state in page.source.drawn):
+        return Section("tractions", "Tractions", [Text("Pin and hole do not touch in the drawn states.", "missing")])
     return Section("tractions", "Tractions", [drawings.tractions(page.album, page.source.drawn)])
 
 
-def zones(page: Pages) -> Section:
+def zones(page: Shared) -> Section:
     """Return the zones of contact, stick and slip."""
     drawn = page.source.drawn
     if not drawn:
@@ -275,7 +278,7 @@ def _ends(start: float, stop: float) -> tuple[str, str]:
     return f"{first:z.2f}", f"{last:z.2f}"
 
 
-def hysteresis(page: Pages) -> Section:
+def hysteresis(page: Shared) -> Section:
     """Return loops and slip of the last cycle, and the changes of all cycles."""
     source, cycle, parts = page.source, page.source.cycle, list[Part]()
     if cycle is None:
@@ -311,7 +314,7 @@ def _drawn(draw: Callable[[], Part]) -> list[Part]:
         return [Text(f"There is no figure: {error.field} {error.reason}.", "missing")]
 
 
-def stresses(page: Pages) -> Section:
+def stresses(page: Shared) -> Section:
     """Return the hoop stress round the hole, and a map of the state with the largest one."""
     drawn, problem = page.source.drawn, page.source.case.problem
     if not drawn:
@@ -327,7 +330,7 @@ def stresses(page: Pages) -> Section:
     return Section("stresses", "Stresses", parts)
 
 
-def fatigue(page: Pages) -> Section:
+def fatigue(page: Shared) -> Section:
     """Return the hot spot over the last cycle, with the life if the material has constants for it."""
     found = page.source.fatigue
     if isinstance(found, str):
@@ -339,7 +342,7 @@ def fatigue(page: Pages) -> Section:
     return Section("fatigue", "Fatigue", parts)
 
 
-def convergence(page: Pages) -> Section:
+def convergence(page: Shared) -> Section:
     """Return a convergence study, if there is one."""
     study = page.convergence
     if study is None:
@@ -356,7 +359,7 @@ def convergence(page: Pages) -> Section:
     return Section("convergence", "Convergence", parts)
 
 
-def checks(page: Pages) -> Section:
+def checks(page: Shared) -> Section:
     """Return the residuals of all states, and the counts of the solver."""
     source = page.source
     rows = [
@@ -374,7 +377,7 @@ def checks(page: Pages) -> Section:
     return Section("checks", "Checks", parts)
 
 
-def provenance(page: Pages) -> Section:
+def provenance(page: Shared) -> Section:
     """Return the versions, the place and time of the run, its id, and its input."""
     source = page.source
     document = canonical(source.case)
@@ -401,7 +404,7 @@ def _shortened(text: str) -> str:
     return f"{text[:MOST_CHARACTERS]}\n... {len(text) - MOST_CHARACTERS:,} more characters"
 
 
-SECTIONS: Sequence[Callable[[Pages], Section]] = (
+SECTIONS: Sequence[Callable[[Shared], Section]] = (
     overview, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue, convergence,
     checks, provenance,
 )  # fmt: skip

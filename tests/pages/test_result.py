@@ -284,6 +284,16 @@ def test_doubtful_values_and_notes_stand_in_the_overview(tmp_path: Path) -> None
     assert "828 MPa" in words  # the yield strength of the pin
 
 
+@pytest.mark.usefixtures("undrawn")
+def test_a_pin_that_does_not_touch_has_no_tractions(tmp_path: Path) -> None:
+    result = fastpin.solve(sample_result().problem, [{"sxx": 1e6}], nodes=61)
+    result.report(tmp_path / "page.html")
+    words = Page((tmp_path / "page.html").read_text(encoding="utf-8")).text
+    assert "Pin and hole do not touch in the drawn states." in words
+    assert "no contact" in words
+    assert "nan" not in words.split()
+
+
 def test_words_cover_all_names() -> None:
     assert set(QUANTITY_WORDS) == set(QUANTITIES)
     assert set(LOAD_WORDS) == set(LOADS)
