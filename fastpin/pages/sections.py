@@ -86,7 +86,7 @@ def overview(page: Shared) -> Section:
         sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue)]
         if len(states) < source.points.size:
             words = f"The sentences on states are on the {len(states)} states in the table of key figures."
-            parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not read."))
+            parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not among them."))
         parts.append(Items([_sentence(line) for line in sentences if line]))
     parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
     return Section("overview", "Overview", parts)
