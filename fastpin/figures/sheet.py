@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
 
 from fastpin.errors import InputError
 from fastpin.figures.style import (
@@ -32,6 +34,15 @@ CAPTION: dict[str, Any] = {"fontsize": CAPTION_SIZE, "color": "0.25", "parse_mat
 
 USUAL_ROWS, ROW = 4, 0.16
 """Rows of a legend for which figures have room, and the height of a further row, inches."""
+
+SMALL: Any = {"font.size": 7.5}
+"""Size of letters in given axes, points."""
+
+LEAST_CAPTION = 2.5
+"""Least width of given axes with a caption, inches."""
+
+BELOW = 0.45
+"""Distance from given axes to the legend below, inches. It holds the words of the axis of angles."""
 
 GAP = 0.14
 """Gap between panels inside given axes, in parts of the axes. It holds the numbers of an axis."""
@@ -75,7 +86,12 @@ class Look:
 
     def drawn(self, draw: Callable[[], Sheet]) -> Figure:
         """Draw a sheet in the house style, save its figure if there is a path, and return the figure."""
-        return draw_and_save(lambda: draw().figure, self.path, self.dpi)
+
+        def figure() -> Figure:
+            with mpl.rc_context(None if self.ax is None else SMALL):
+                return draw().figure
+
+        return draw_and_save(figure, self.path, self.dpi)
 
     def sheet(self, heights: Sequence[float], columns: int = 1, extra: float = 1.35, **options: Any) -> Sheet:
         """Return a sheet with a row of panels for each of `heights`, inches.
@@ -111,16 +127,18 @@ class Sheet:
     host: Axes | None
 
     def head(self, *lines: str, caption: str = "", lift: float = 5.0) -> None:
-        """Write lines above the panels, and a caption in smaller letters below the lines.
+        """Write lines above the panels, and a caption in smaller letters below the lines. Narrow axes get no caption.
 
         `lift` is the distance of the caption from the panel, points.
         """
-        width = self.figure.get_figwidth() - 0.9
+        host = self.host
+        inches = self.figure.get_figwidth() if host is None else host.get_window_extent().width / self.figure.dpi
+        width = inches - (0.9 if host is None else 0.0)
         text = "\n".join(row for line in lines for row in wrapped(line, width, HEADING))
         small = "\n".join(wrapped(caption, width))
-        if self.host is not None:
-            top = self.host if self.axes.size > 1 else self.axes[0, 0]
-            top.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)
+        if host is not None:
+            small = "" if width < LEAST_CAPTION else small
+            host.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)
             return
         if self.axes.shape[1] == 1:
             if small:
@@ -132,7 +150,7 @@ class Sheet:
             self.figure.suptitle(text, fontsize=size, parse_math=False)
 
     def legend(self, handles: Sequence[Artist], columns: int, title: str = "") -> None:
-        """Add a legend below the panels; inside the first panel in given axes."""
+        """Add a legend below the panels. Blank entries keep columns apart."""
         if not handles:
             return
         if self.host is None:
@@ -140,7 +158,13 @@ class Sheet:
             self.figure.set_figheight(self.figure.get_figheight() + ROW * max(rows - USUAL_ROWS, 0))
             fitted_legend(self.figure, list(handles), columns, title)
             return
-        self.axes[0, 0].legend(handles=handles, fontsize=6.5, title=title or None, title_fontsize=6.5, loc="best")
+        host = self.host
+        below = ScaledTranslation(0.0, -BELOW, self.figure.dpi_scale_trans)
+        host.legend(
+            handles=[entry for entry in handles if str(entry.get_label()).strip()], fontsize=6.5, title=title or None,
+            title_fontsize=6.5, loc="upper center", ncols=min(columns, 2), bbox_to_anchor=(0.5, 0.0),
+            bbox_transform=host.transAxes + below, borderaxespad=0.0, alignment="left",
+        )  # fmt: skip
 
     def grid(self, axis: Any = "both") -> None:
         """Draw light lines behind the curves of all panels."""

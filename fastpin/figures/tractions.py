@@ -167,7 +167,7 @@ def _shade_slip(axes: Sequence[Axes], state: State, frame: Frame) -> None:
         for left, width in frame.place(start, stop):
             for panel in axes:
                 panel.axvspan(left, left + width, color=_SHADE, linewidth=0, zorder=-1)
-            _write_arrow(axes[0], left + 0.5 * width, 1.0, sign, axes[0].get_xaxis_transform(), above=True)
+            _write_arrow(axes[0], left + 0.5 * width, 0.9, sign, axes[0].get_xaxis_transform(), above=True)
 
 
 def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: Frame) -> None:
