@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis as MatplotlibAxis
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from fastpin.figures.style import MAX_NAMED, Line, add_legend, line, panels, save_drawing
+from fastpin.errors import InputError
+from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.style import MAX_NAMED, Line, line, spread
+from fastpin.figures.words import shown_unit
 from fastpin.model.checks import instance
 from fastpin.report.sweep import Axis, Chart
 
@@ -22,33 +30,77 @@ _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MOST_COLUMNS = 3
 """Most maps side by side."""
 
-LOG_RATIO = 100.0
+LOG_RATIO = 30.0
 """Ratio of the largest to the smallest value, all positive, from which on their scale is logarithmic."""
 
+MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
+"""Marks of the computed values, as many as colours. Crosses mark failed runs."""
 
-def plot_sweep(chart: Chart, path: str | Path, dpi: float = 160.0) -> None:
-    """Save the figure of a sweep: maps over two fields, or curves over one field.
+LEVELS = 7
+"""Most contour lines of a map."""
+
+LEAST_CELLS = 3
+"""Fewest cells along each axis of a map with contour lines."""
+
+DECADES = 1.7
+"""Decades of an axis up to which its numbers stand at 1, 2 and 5 times powers of ten.
+
+Up to twice as many they stand at 1 and 3 times powers of ten, and beyond at powers of ten.
+"""
+
+PLAIN = 1e-3, 1e5
+"""Numbers between these are written in full, others as powers of ten."""
+
+
+def plot_sweep(
+    chart: Chart,
+    path: str | Path | None = None,
+    title: str | None = None,
+    width: float | None = None,
+    dpi: float = 300.0,
+    *,
+    ax: Axes | None = None,
+) -> Figure:
+    """Draw the figure of a sweep: maps over two fields, or curves over one field.
 
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
-    at the geometric mean. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are failed
-    runs, too. Positive values that differ by a factor of 100 or more have a logarithmic scale.
+    at the geometric mean. Contour lines join equal values. Hatched cells are failed runs. Crosses at the lower edge of
+    a figure of curves are failed runs, too. Positive values that differ by a factor of 30 or more have a logarithmic
+    scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     Parameters
     ----------
     chart : Chart
         From :func:`fastpin.report.sweep.chart`.
-    path : path
-        The suffix chooses the format.
+    path : path, optional
+        Also save the figure; the suffix chooses the format.
+    title : str, optional
+        The chart's own unless given.
+    width : float, optional
+        Width in inches; 5.4 to 7.6 unless given.
     dpi : float
-        Dots per inch of a bitmap.
+        Dots per inch of a saved bitmap.
+    ax : matplotlib axes, optional
+        Axes to draw curves or a single map in, instead of a new figure.
+
+    Returns
+    -------
+    Figure
+        The new figure, or the figure of `ax`.
 
     Raises
     ------
     InputError
-        If an argument is out of range, the figure's format is unknown, or the file can't be written.
+        If an argument is out of range, the figure's format is unknown, the file can't be written, or `ax` is given for
+        several maps.
     """
     instance("chart", chart, Chart, "a Chart")
-    save_drawing(_draw_curves if chart.y is None else _draw_maps, chart, path, dpi)
+    maps = 0 if chart.y is None else len(chart.parts)
+    if ax is not None and maps > 1:
+        raise InputError("ax", f"holds one map, but the chart has {maps}")
+    natural = {0: 5.8, 1: 5.4}.get(maps, 7.6)
+    look = Look(path, chart.title if title is None else title, natural if width is None else width, dpi, ax)
+    return look.drawn(lambda: _draw_curves(chart, look) if chart.y is None else _draw_maps(chart, look))
 
 
 def cell_edges(axis: Axis) -> np.ndarray:
@@ -63,33 +115,67 @@ def cell_edges(axis: Axis) -> np.ndarray:
     return np.exp(edges) if axis.log else edges
 
 
-def _draw_maps(chart: Chart) -> Figure:
+def _draw_maps(chart: Chart, look: Look) -> Sheet:
     assert chart.y is not None
     columns = min(len(chart.parts), MOST_COLUMNS)
     rows = math.ceil(len(chart.parts) / columns)
-    figure, axes = panels(rows, columns, height=3.4 if columns == 1 else 2.5, width=5.4 if columns == 1 else 7.6)
+    sheet = look.sheet([3.4 if columns == 1 else 2.5] * rows, columns, 0.6)
     known = _known_values(chart)
     scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
-    x, y = cell_edges(chart.x), cell_edges(chart.y)
-    mesh: Any = None
-    for panel, (name, numbers, failed) in zip(axes.flat, chart.parts, strict=False):
-        mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(numbers), norm=scale, cmap="viridis", edgecolors="face")
-        mesh.set_linewidth(0.2)
-        for row, column in np.argwhere(np.isnan(numbers)):
-            size = x[column + 1] - x[column], y[row + 1] - y[row]
-            style = _FAILED if failed[row, column] else _OPEN
-            panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
+    levels = _levels(known)
+    for panel, (name, numbers, failed) in zip(sheet.axes.flat, chart.parts, strict=False):
+        mesh = _draw_map(panel, chart, numbers, failed, scale)
+        _draw_contours(panel, chart, numbers, levels)
         _scale_axes(panel, chart)
-        panel.grid(False)
-        panel.set_title(name, fontsize=8.0)
-    _finish(figure, axes, chart)
-    for panel in axes[:, 0]:
-        panel.set_ylabel(chart.y.label)
-    bar = figure.colorbar(mesh, ax=list(axes.flat), aspect=30, pad=0.02)
-    bar.set_label(chart.label, parse_math=False)
+        panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
+    _label_panels(sheet, chart)
+    bar = sheet.figure.colorbar(mesh, ax=list(sheet.axes.flat), aspect=30, pad=0.02)
+    bar.set_label(_shown(chart.label), parse_math=False)
     bar.outline.set_linewidth(0.5)
-    _explain(figure, chart)
-    return figure
+    if isinstance(scale, LogNorm):
+        _round_numbers(bar.ax.yaxis, known)
+    sheet.head(look.title)
+    _explain(sheet, chart)
+    return sheet
+
+
+def _draw_map(panel: Axes, chart: Chart, numbers: np.ndarray, failed: np.ndarray, scale: Normalize) -> QuadMesh:
+    """Draw the cells of a map, and return their mesh."""
+    assert chart.y is not None
+    x, y = cell_edges(chart.x), cell_edges(chart.y)
+    mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(numbers), norm=scale, cmap="viridis", edgecolors="face")
+    mesh.set_linewidth(0.2)
+    for row, column in np.argwhere(np.isnan(numbers)):
+        size = x[column + 1] - x[column], y[row + 1] - y[row]
+        style = _FAILED if failed[row, column] else _OPEN
+        panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
+    return mesh
+
+
+def _levels(known: np.ndarray) -> np.ndarray:
+    """Return round values for contour lines, strictly between the smallest and the largest known value."""
+    low, high = float(known.min()), float(known.max())
+    if _spans_decades(known):
+        few = math.log10(high / low) > 0.5 * LEVELS
+        found = np.asarray(LogLocator(subs=(1.0,) if few else (1.0, 3.0), numticks=50).tick_values(low, high))
+    else:
+        found = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    return found[(found > low) & (found < high)]
+
+
+def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.ndarray) -> None:
+    """Draw labelled lines of equal values through the middles of the cells."""
+    assert chart.y is not None
+    known = np.isfinite(numbers)
+    if min(numbers.shape) < LEAST_CELLS or not known.any():
+        return
+    inside = levels[(levels > numbers[known].min()) & (levels < numbers[known].max())]
+    if inside.size:
+        lines = panel.contour(
+            chart.x.values, chart.y.values, np.ma.masked_invalid(numbers), inside, colors="white", linewidths=0.8
+        )
+        for text in panel.clabel(lines, fmt=lambda value: f"{value:.4g}".replace("-", "−"), fontsize=6.5):
+            text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})
 
 
 def _known_values(chart: Chart) -> np.ndarray:
@@ -103,62 +189,98 @@ def _spans_decades(values: np.ndarray) -> bool:
     return bool(values.min() > 0.0 and values.max() >= LOG_RATIO * values.min())
 
 
-def _explain(figure: Figure, chart: Chart) -> None:
+def _explain(sheet: Sheet, chart: Chart) -> None:
     """Add a legend of the cells without a value: of failed runs, and of all others."""
     failed = any(part.any() for _, _, part in chart.parts)
     empty = any((np.isnan(numbers) & ~part).any() for _, numbers, part in chart.parts)
-    handles = [Patch(label="failed", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
-    if handles:
-        figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8.0)
+    handles = [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
+    sheet.legend(handles, 2)
 
 
-def _draw_curves(chart: Chart) -> Figure:
-    names = [name.replace("\n", ", ") for name, _, _ in chart.parts]
+def _draw_curves(chart: Chart, look: Look) -> Sheet:
+    shown = spread(len(chart.parts), MAX_NAMED)
+    names = [_shown(chart.parts[k][0].replace("\n", ", ")) for k in shown]
     across = max(1, min(3, 78 // (max(map(len, names)) + 8)))  # entries of the legend side by side
-    figure, axes = panels(1, 1, height=2.9 + 0.17 * math.ceil(len(names) / across), width=5.8)
-    panel = axes[0, 0]
-    entries: list[tuple[str, Line]] = []
-    shades = mpl.colormaps["viridis"](np.linspace(0.9, 0.0, len(chart.parts)))
-    for index, (name, (_, numbers, failed)) in enumerate(zip(names, chart.parts, strict=True)):
-        style = line(index, index) if len(chart.parts) <= MAX_NAMED else {**line(), "color": shades[index]}
-        panel.plot(chart.x.values, numbers, marker="o", markersize=2.5, **style)
-        x = chart.x.values[failed]
-        panel.plot(
-            x,
-            np.full(len(x), 0.02 + 0.03 * index),
-            transform=panel.get_xaxis_transform(),
-            marker="x",
-            markersize=4.0,
-            linestyle="none",
-            color=style["color"],
-        )
-        entries.append((name, style))
+    sheet = look.sheet([2.9], extra=0.6 + 0.17 * math.ceil(len(names) / across))
+    panel = sheet.axes[0, 0]
+    sheet.grid()
+    handles: list[Any] = []
+    any_failed = False
+    for index, (part, name) in enumerate(zip(shown, names, strict=True)):
+        _, numbers, failed = chart.parts[part]
+        style: Line = line(index, index) | {"marker": MARKERS[index], "markersize": 3.5}
+        panel.plot(chart.x.values, numbers, **style)
+        _mark_failed(panel, chart.x.values[failed], index)
+        any_failed = any_failed or bool(failed.any())
+        if name:
+            handles.append(Line2D([], [], label=name, **style))
     _scale_axes(panel, chart)
-    panel.set_ylabel(chart.label, parse_math=False)
+    panel.set_ylabel(_shown(chart.label), parse_math=False)
     if _spans_decades(_known_values(chart)):
         panel.set_yscale("log")
-    _finish(figure, axes, chart)
-    cross: Line = {"color": "0.3", "linestyle": "none", "marker": "x", "markersize": 4.0}
-    marks = [("failed", cross)] if any(failed.any() for _, _, failed in chart.parts) else []
-    named = [entry for entry in entries if entry[0]] + marks
-    if named:
-        add_legend(figure, *[named[k : k + across] for k in range(0, len(named), across)])
-    return figure
+        _round_numbers(panel.yaxis, _known_values(chart))
+    _label_panels(sheet, chart)
+    if any_failed:
+        handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
+    some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""
+    sheet.head(look.title)
+    sheet.legend(_by_rows(handles, across), across, some)
+    return sheet
+
+
+def _by_rows(handles: Sequence[Any], columns: int) -> list[Any]:
+    """Return the entries of a legend that is filled column by column, so that they read row by row."""
+    blank = Line2D([], [], linestyle="none", label=" ")
+    filled = [*handles, *[blank] * (-len(handles) % columns)] if len(handles) > columns else list(handles)
+    return [filled[k] for column in range(columns) for k in range(column, len(filled), columns)]
+
+
+def _mark_failed(panel: Axes, x: np.ndarray, index: int) -> None:
+    """Mark the failed runs of a curve at the lower edge of the panel, above those of the curves before it."""
+    panel.plot(
+        x,
+        np.full(len(x), 0.02 + 0.03 * index),
+        transform=panel.get_xaxis_transform(),
+        marker="x",
+        markersize=4.0,
+        linestyle="none",
+        color=line(index)["color"],
+    )
+
+
+def _shown(label: str) -> str:
+    """A label with the letters of figures in its units."""
+    label = re.sub(r"\(([^()]*)\)$", lambda found: f"({shown_unit(found[1])})", label)
+    return re.sub(r"(?<=\d )u(?=\w+$)", "µ", label, flags=re.MULTILINE).replace(" -", " −")
 
 
 def _scale_axes(panel: Axes, chart: Chart) -> None:
     if chart.x.log:
         panel.set_xscale("log")
+        _round_numbers(panel.xaxis, chart.x.values)
     if chart.y is not None and chart.y.log:
         panel.set_yscale("log")
+        _round_numbers(panel.yaxis, chart.y.values)
 
 
-def _finish(figure: Figure, axes: np.ndarray, chart: Chart) -> None:
-    """Add the title and the labels of the x axes, and hide the panels without a map."""
+def _round_numbers(axis: MatplotlibAxis, values: np.ndarray) -> None:
+    """Put plain numbers at 1, 2 and 5 times powers of ten on a logarithmic axis, or at powers of ten on a long one."""
+    decades = math.log10(float(values.max()) / float(values.min()))
+    plain = PLAIN[0] <= values.min() and values.max() <= PLAIN[1]
+    subs = (1.0, 2.0, 5.0) if decades <= DECADES else (1.0, 3.0) if decades <= 2.0 * DECADES else (1.0,)
+    axis.set_major_locator(LogLocator(subs=subs if plain else (1.0,), numticks=12))
+    axis.set_minor_formatter(NullFormatter())
+    if plain:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _label_panels(sheet: Sheet, chart: Chart) -> None:
+    """Add the labels of the axes, and hide the panels without a map."""
     filled = 1 if chart.y is None else len(chart.parts)
-    for index, panel in enumerate(axes.flat):
+    for index, panel in enumerate(sheet.axes.flat):
         panel.set_visible(index < filled)
-        if index + axes.shape[1] >= filled:
-            panel.set_xlabel(chart.x.label)
-    if chart.title:
-        figure.suptitle(chart.title, fontsize=9.5, parse_math=False)
+        if index + sheet.axes.shape[1] >= filled:
+            panel.set_xlabel(_shown(chart.x.label))
+    if chart.y is not None:
+        for panel in sheet.axes[:, 0]:
+            panel.set_ylabel(_shown(chart.y.label))

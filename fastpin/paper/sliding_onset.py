@@ -35,7 +35,7 @@ STYLES: tuple[Line, ...] = tuple(
     {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.4}
     for colour, marker in (
         (COLOURS[0], "o"), (COLOURS[1], "s"), (COLOURS[2], "^"), (COLOURS[3], "D"),
-        (COLOURS[4], "v"), (COLOURS[5], "x"), ("0.5", "P"),
+        (COLOURS[4], "v"), (COLOURS[5], "x"), (COLOURS[6], "P"),
     )
 )  # fmt: skip
 """Lines of the coefficients of friction on the left, then of the load parameters on the right."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
 from fastpin.model.units import scaled, units
+from fastpin.report.field_words import field_words
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.index import DONE, FAILED
@@ -49,6 +50,9 @@ _KIND = {
     "plate_body.interference": "displacement",
 }
 """The kind of every field of a case that has a unit, apart from the loads."""
+
+ROUNDING = 1e-9
+"""Part of the largest value below which values are rounding. Figures show them as 0."""
 
 _ROUNDING = {"deg": 1e-7, "rad": 1e-12}
 """By unit: smaller values are rounding, and the text table shows them as 0. A node is above 1e-2 deg wide."""
@@ -123,7 +127,7 @@ class Axis:
     Attributes
     ----------
     label : str
-        Name of the field, with its unit.
+        Words for the field, with its unit in parentheses.
     values : ndarray
         Values of the field, increasing, in the label's unit.
     log : bool
@@ -144,13 +148,14 @@ class Chart:
     title : str
         Title of the figure.
     label : str
-        Name of the outcome or key figure, with its unit.
+        Name of the outcome or key figure, with its unit in parentheses.
     x : Axis
     y : Axis or None
         None for curves.
     parts : list of (str, ndarray, ndarray of bool)
         One entry for each map or curve: its name, with a line for each field; its values; True where a run failed. Both
-        arrays have the shape (len(y), len(x)) for a map, (len(x),) for a curve. Missing values are NaN.
+        arrays have the shape (len(y), len(x)) for a map, (len(x),) for a curve. Missing values are NaN. Values that are
+        rounding are 0.
     missing : int
         Number of points without a value.
     """
@@ -227,20 +232,24 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     x, y, others = check_axes(plan, value, x, y)
     unit = _units(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
-    factor, label = scaled([number for number in found if number is not None], _unit(plan, value, unit))
+    least = _rounding(plan, rows, value, unit)
+    factor, label = scaled(
+        [number for number in found if number is not None and abs(number) > least], _unit(plan, value, unit)
+    )
+    others_words = {other: _value_words(rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for row in rows:
-        name = "\n".join(f"{other} = {brief(row[other])}" for other in others if row[other] is not None)
+        name = "\n".join(others_words[other](row[other]) for other in others if row[other] is not None)
         numbers, failed = parts.setdefault(name, (np.full(shape, np.nan), np.zeros(shape, dtype=bool)))
         place = tuple(places[row[field]] for (_, places), field in zip(axes, (y, x) if y else (x,), strict=True))
         failed[place] = row["status"] == FAILED
         if row["status"] == DONE and row.get(value) is not None:
-            numbers[place] = factor * row[value]
+            numbers[place] = factor * row[value] if abs(row[value]) > least else 0.0
     return Chart(
         plan.title,
-        f"{value.replace('_', ' ')}{f'  [{label}]' if label else ''}",
+        _label(value.replace("_", " "), label),
         axes[-1][0],
         axes[0][0] if y else None,
         [(name, *arrays) for name, arrays in parts.items()],
@@ -252,10 +261,34 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
     factor, label = scaled(values, unit.get(_kind(name), ""))
-    axis = Axis(
-        f"{name}{f'  [{label}]' if label else ''}", factor * np.array(values, float), plan.fields[name] == "log"
-    )
+    axis = Axis(_label(field_words(name), label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
+
+
+def _label(words: str, unit: str) -> str:
+    return f"{words} ({unit})" if unit else words
+
+
+def _value_words(rows: Sequence[Row], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
+    """Return a function that gives words for a value of a field, in the unit that suits all its values."""
+    words, given = field_words(field), [row[field] for row in rows if row[field] is not None]
+    if not all(map(_is_number, given)):
+        return lambda value: f"{words} = {brief(value)}".replace('"', "")
+    factor, label = scaled(given, unit.get(_kind(field), ""))
+    return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
+
+
+def _rounding(plan: Plan, rows: Sequence[Row], value: str, unit: dict[str, str]) -> float:
+    """Return the size below which values of a figure are rounding.
+
+    It is a part of the largest value, and of the largest key figure of the same kind: a motion that is zero by symmetry
+    is compared with the other motions.
+    """
+    alike = [value]
+    if value in KEY_FIGURES and value not in plan.outcomes and KEY_FIGURES[value]:
+        alike = [name for name, kind in KEY_FIGURES.items() if kind == KEY_FIGURES[value]]
+    numbers = [abs(row[name]) for row in rows if row["status"] == DONE for name in alike if _is_number(row.get(name))]
+    return max(_ROUNDING.get(_unit(plan, value, unit), 0.0), ROUNDING * max(numbers, default=0.0))
 
 
 def _column(name: str, values: Sequence[Any], unit: str) -> Column:

@@ -436,8 +436,11 @@ def test_paper_writes_the_formats_that_are_asked_for(tmp_path: Path, capsys: pyt
     files = [tmp_path / f"figure11.{kind}" for kind in ("pdf", "svg", "csv")]
     assert line.startswith(f"figure 11: {', '.join(map(str, files))}, ")
     assert set(tmp_path.iterdir()) == set(files)
-    assert files[0].read_bytes().startswith(b"%PDF")
-    assert "<svg" in files[1].read_text()
+    page, drawing = files[0].read_bytes(), files[1].read_text()
+    assert page.startswith(b"%PDF")
+    assert b"/FontFile2" in page  # TrueType fonts inside
+    assert "<svg" in drawing
+    assert "<text" not in drawing  # letters are outlines
 
 
 @pytest.fixture

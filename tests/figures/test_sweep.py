@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from fastpin.figures import sweep as sweep_figure
+from fastpin.errors import InputError
+from fastpin.figures.style import MAX_NAMED
 from fastpin.figures.sweep import cell_edges, plot_sweep
-from fastpin.report.sweep import Axis, chart
+from fastpin.report.sweep import Axis, Chart, chart
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
 from tests.support.plans import MAP, made_up_rows
@@ -41,7 +44,7 @@ def test_edges_of_cells(values: list[float], log: bool, edges: list[float]) -> N
 
 
 def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweep_figure._draw_maps(chart(plan, rows, "peak_pressure"))
+    figure = plot_sweep(chart(plan, rows, "peak_pressure"))
     maps, bar = figure.axes[:2], figure.axes[-1]
     mesh = maps[0].collections[0]
     assert np.ma.filled(mesh.get_array(), np.nan).ravel() == pytest.approx(
@@ -51,19 +54,22 @@ def test_a_map_shows_every_value_and_hatches_failures(plan: Plan, rows: list[dic
     assert maps[0].patches[0].get_xy() == pytest.approx((0.1, 10**0.5))
     assert not list(maps[1].patches)
     assert maps[0].get_yscale() == "log"
-    assert bar.get_ylabel() == "peak pressure  [MPa]"
+    assert bar.get_ylabel() == "peak pressure (MPa)"
     assert mesh.get_clim() == (20.0, 42.0)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["failed", "no value"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["failed run", "no value"]
 
 
 def test_curves_have_gaps_and_crosses_where_runs_failed(plan: Plan, rows: list[dict[str, Any]]) -> None:
-    figure = sweep_figure._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
+    figure = plot_sweep(chart(plan, rows, "peak_pressure", "contact.clearance"))
     (panel,) = figure.axes
     curve, crosses = panel.lines[:2]
     assert curve.get_ydata() == pytest.approx([20.0, np.nan, np.nan], nan_ok=True)
     assert crosses.get_xdata() == pytest.approx([10.0])
     assert panel.get_xscale() == "log"
-    assert panel.get_xlabel() == "contact.clearance  [um]"
+    assert panel.get_xlabel() == "clearance (µm)"
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names[0] == "material of the pin = steel, friction coefficient = 0.2"
+    assert names[-1] == "failed run"
 
 
 @pytest.mark.parametrize("x", [None, "contact.clearance"])
@@ -83,8 +89,8 @@ def test_figures_without_any_value(plan: Plan, tmp_path: Path) -> None:
         plot_sweep(chart(plan, sweep.rows(plan, tmp_path), "dx", x), tmp_path / "a.png")
 
 
-@pytest.mark.parametrize(("value", "scale"), [(101.0, "log"), (99.0, "linear"), (-101.0, "linear")])
-def test_values_that_span_two_decades_have_a_logarithmic_scale(
+@pytest.mark.parametrize(("value", "scale"), [(31.0, "log"), (29.0, "linear"), (-31.0, "linear")])
+def test_values_that_span_decades_have_a_logarithmic_scale(
     value: float, scale: str, plan: Plan, rows: list[dict[str, Any]]
 ) -> None:
     known = [row for row in rows if row.get("peak_pressure")]
@@ -92,7 +98,71 @@ def test_values_that_span_two_decades_have_a_logarithmic_scale(
     for row in known:
         row["peak_pressure"] = 1.0
     largest["peak_pressure"] = value
-    figure = sweep_figure._draw_maps(chart(plan, rows, "peak_pressure"))
+    figure = plot_sweep(chart(plan, rows, "peak_pressure"))
     assert isinstance(figure.axes[0].collections[0].norm, mpl.colors.LogNorm) == (scale == "log")
-    curves = sweep_figure._draw_curves(chart(plan, rows, "peak_pressure", "contact.clearance"))
+    curves = plot_sweep(chart(plan, rows, "peak_pressure", "contact.clearance"))
     assert curves.axes[0].get_yscale() == scale
+
+
+@pytest.fixture
+def smooth() -> Chart:
+    """A map with 5 x 4 cells, one of them empty."""
+    x, y = (
+        Axis("friction coefficient", np.linspace(0.1, 0.9, 5), False),
+        Axis("clearance (um)", np.geomspace(1, 8, 4), True),
+    )
+    numbers = 10.0 + 100.0 * x.values + 5.0 * np.log2(y.values)[:, None]
+    numbers[0, 0] = np.nan
+    return Chart("a map", "peak pressure (MPa)", x, y, [("", numbers, np.isnan(numbers))], 1)
+
+
+def test_contours_join_equal_values(smooth: Chart) -> None:
+    figure = plot_sweep(smooth)
+    lines = figure.axes[0].collections[1]
+    numbers = smooth.parts[0][1]
+    assert len(lines.levels) >= 4
+    assert np.all((lines.levels > np.nanmin(numbers)) & (lines.levels < np.nanmax(numbers)))
+    assert np.all(lines.levels % 5.0 == 0.0)
+    for level, path in zip(lines.levels, lines.get_paths(), strict=True):
+        friction, clearance = path.vertices.T
+        assert 10.0 + 100.0 * friction + 5.0 * np.log2(clearance) == pytest.approx(level, abs=2.0)
+
+
+def test_contours_of_decades_stand_at_powers_of_ten(smooth: Chart) -> None:
+    name, numbers, failed = smooth.parts[0]
+    figure = plot_sweep(replace(smooth, parts=[(name, 10.0 ** (numbers / 20.0), failed)]))
+    assert set(np.round(np.log10(figure.axes[0].collections[1].levels) % 1.0, 6)) <= {0.0, 0.477121}
+    assert figure.axes[1].get_yscale() == "log"
+
+
+def test_numbers_of_logarithmic_axes_are_plain(smooth: Chart) -> None:
+    figure = plot_sweep(smooth)
+    figure.draw_without_rendering()
+    shown = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert {"1", "2", "5"} <= set(shown)
+    assert figure.axes[0].get_ylabel() == "clearance (µm)"
+
+
+def test_a_given_axes_holds_one_map_or_curves(smooth: Chart, plan: Plan, rows: list[dict[str, Any]]) -> None:
+    host = Figure()
+    left, right = host.subplots(1, 2)
+    assert plot_sweep(smooth, ax=left) is host
+    assert left.get_title() == "a map"
+    curves = chart(plan, rows, "peak_pressure", "contact.clearance")
+    assert plot_sweep(curves, ax=right) is host
+    assert len(right.get_legend().get_texts()) == 5
+    with pytest.raises(InputError, match="ax: holds one map, but the chart has 2"):
+        plot_sweep(chart(plan, rows, "peak_pressure"), ax=left)
+
+
+def test_no_more_curves_than_can_be_told_apart() -> None:
+    x = Axis("friction coefficient", np.array([0.1, 0.2]), False)
+    parts = [(f"force P in load 1 = {k} N", np.array([1.0, 2.0]) * k, np.zeros(2, bool)) for k in range(12)]
+    figure = plot_sweep(Chart("", "dx (m)", x, None, parts, 0))
+    drawn = [one for one in figure.axes[0].lines if len(one.get_xdata()) == 2]
+    assert len(drawn) == MAX_NAMED
+    looks = {(one.get_color(), str(one._dash_pattern), one.get_marker()) for one in drawn}
+    assert len(looks) == len(drawn) == len({one.get_marker() for one in drawn})
+    assert figure.legends[0].get_title().get_text() == "8 of 12 curves"
+    names = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"force P in load 1 = 0 N", "force P in load 1 = 11 N"} <= names

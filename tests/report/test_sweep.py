@@ -10,6 +10,7 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.figures.sweep import plot_sweep
+from fastpin.report.field_words import field_words
 from fastpin.report.sweep import chart, check_axes, text, write_csv
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
@@ -57,14 +58,14 @@ def test_figures_that_can_not_be(written: str, words: str) -> None:
 
 def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "peak_pressure")
-    assert found.label == "peak pressure  [MPa]"
+    assert found.label == "peak pressure (MPa)"
     assert found.missing == 2
     assert found.y is not None
-    assert (found.x.label, found.x.log, found.x.values.tolist()) == ("contact.friction", False, [0.2, 0.4])
-    assert (found.y.label, found.y.log) == ("contact.clearance  [um]", True)
+    assert (found.x.label, found.x.log, found.x.values.tolist()) == ("friction coefficient", False, [0.2, 0.4])
+    assert (found.y.label, found.y.log) == ("clearance (um)", True)
     assert found.y.values == pytest.approx([1.0, 10.0, 100.0])
     (name, numbers, failed), (other, complete, none) = found.parts
-    assert (name, other) == ('pin.material = "steel"', "pin.E = 1e+11")
+    assert (name, other) == ("material of the pin = steel", "modulus of the pin = 100 GPa")
     assert numbers == pytest.approx(np.array([[20.0, 40.0], [np.nan, 41.0], [np.nan, 42.0]]), nan_ok=True)
     assert complete == pytest.approx(np.array([[20.0, 40.0], [21.0, 41.0], [22.0, 42.0]]))
     assert failed.tolist() == [[False, False], [True, False], [False, False]]
@@ -73,13 +74,42 @@ def test_numbers_of_a_map(plan: Plan, rows: list[dict[str, Any]]) -> None:
 
 def test_numbers_of_curves(plan: Plan, rows: list[dict[str, Any]]) -> None:
     found = chart(plan, rows, "contact_start", "contact.clearance")
-    assert found.label == "contact start  [deg]"
+    assert found.label == "contact start (deg)"
     assert found.y is None
     assert [name.splitlines()[-1] for name, _, _ in found.parts] == [
-        "contact.friction = 0.2",
-        "contact.friction = 0.4",
+        "friction coefficient = 0.2",
+        "friction coefficient = 0.4",
     ] * 2
     assert found.parts[3][1].tolist() == [-40.0, -41.0, -42.0]
+
+
+def test_rounding_is_no_number_of_a_figure(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    for place, row in enumerate(rows):
+        if row["status"] == "done":
+            row |= {"dx": (-1) ** place * 3e-21, "dy": -2e-5, "peak_shear_angle": 4e-8, "rotation": 0.0}
+    for name in ("dx", "peak_shear_angle", "rotation"):
+        values = np.concatenate([numbers.ravel() for _, numbers, _ in chart(plan, rows, name).parts])
+        assert set(values[np.isfinite(values)]) == {0.0}
+    assert chart(plan, rows, "dx").label == "dx (m)"
+    kept = chart(plan, rows, "dy").parts[1][1]
+    assert kept == pytest.approx(-20.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "words"),
+    [
+        ("contact.friction", "friction coefficient"),
+        ("contact.hole_radius", "hole radius"),
+        ("pin.nu", "Poisson's ratio of the pin"),
+        ("plate_body.outer_radius", "outer radius of the plate"),
+        ("load.2.Q", "force Q in load 2"),
+        ("load.1.amplitude.sxx", "remote stress sxx in load 1.amplitude"),
+        ("load.3.repeat", "repeat in load 3"),
+        ("solve.nodes", "number of nodes"),
+    ],
+)
+def test_fields_have_words(field: str, words: str) -> None:
+    assert field_words(field) == words
 
 
 def test_runs_with_different_units_have_none(plan: Plan, rows: list[dict[str, Any]]) -> None:
@@ -132,7 +162,7 @@ def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any
     assert lines[1].startswith("# units: mass $/kg_{2, walk deg, loss J/m, peak_pressure Pa")
     assert lines[2].startswith("id,pin.material,pin.E,contact.friction,contact.clearance,mass,walk,loss,states,")
     found = chart(with_outcomes, rows, "mass")
-    assert (found.label, found.missing) == ("mass  [$/kg_{2]", 2)
+    assert (found.label, found.missing) == ("mass ($/kg_{2)", 2)
     plot_sweep(found, tmp_path / "a.png")  # the unit is no formula
     assert (tmp_path / "a.png").stat().st_size > 1000
 
