@@ -18,6 +18,9 @@ from fastpin.model.problem import Problem
 from fastpin.model.units import acting_loads, scaled, units, with_unit
 from fastpin.report.table import Column, table, visible_rows
 
+ROUNDING = 1e-9
+"""Values below this part of the largest of their kind are rounding, and printed as 0."""
+
 _PIN_LOADS = {"centre": "force at the centre", "body": "uniform body force"}
 """Words for the load of a solid pin."""
 
@@ -211,7 +214,7 @@ def corner_columns(
 def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list[Column]:
     """Return the columns of all loads that are not zero throughout: name, unit and one number a row, for :func:`table`.
 
-    Loads of one kind share a unit and its SI prefix.
+    Loads of one kind share a unit and its SI prefix. Values below :data:`ROUNDING` of the largest are printed as 0.
     """
     unit = units(problem)
     columns = []
@@ -219,7 +222,9 @@ def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list
     for name in acting:
         same_kind = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
         factor, label = scaled(same_kind, unit[LOAD_KIND[name]])
-        columns.append((name, label, [f"{load[name] * factor:.5g}" for load in loads]))
+        noise = ROUNDING * max(map(abs, same_kind))
+        values = [0.0 if abs(load[name]) <= noise else load[name] * factor for load in loads]
+        columns.append((name, label, [f"{value:.5g}" for value in values]))
     return columns
 
 

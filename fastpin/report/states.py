@@ -13,12 +13,15 @@ from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
 from fastpin.model.units import scaled, units, with_unit
-from fastpin.report.case import hole_body, load_columns
+from fastpin.report.case import ROUNDING, hole_body, load_columns
 from fastpin.report.table import MAX_ROWS, Column, table
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round
+
+OWN_COLUMNS = ("load point", QUANTITIES["dissipation"].label, "residual")
+"""Columns in which a state differs from the same state one cycle before: its number, a sum, and rounding."""
 
 _DEGREE = math.degrees(1.0)
 
@@ -27,7 +30,8 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     """Return a table of states, one line each.
 
     Error bars stand behind +-, if the states have any. The bar of an interval is the larger one of its two ends. A ?
-    stands for a bar that is infinite: nothing is known of the error.
+    stands for a bar that is infinite: nothing is known of the error. States that repeat earlier ones become one line;
+    the sum of the dissipation may differ.
 
     Parameters
     ----------
@@ -42,7 +46,7 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
         If an argument is of another class.
     """
     whole_number("hidden", hidden, 0)
-    return table(state_columns(problem, states), hidden)
+    return table(state_columns(problem, states), hidden, OWN_COLUMNS)
 
 
 def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
@@ -87,7 +91,7 @@ def quantity_column(
 ) -> Column:
     """Return the label of a quantity, its unit, and its value in each state with its error bar, if there is one.
 
-    Values below 1e-9 of the largest, or of the size `natural`, become 0: they are rounding.
+    Values below :data:`ROUNDING` of the largest, or of the size `natural`, become 0.
 
     Parameters
     ----------
@@ -106,7 +110,7 @@ def quantity_column(
     if each.kind == "angle":
         bars = [_bar(state, _DEGREE, name) for state in states]
         return each.label, "deg", [_angle(value) + bar for value, bar in zip(values, bars, strict=True)]
-    noise = 1e-9 * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
+    noise = ROUNDING * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
     cleaned = [0.0 if abs(value) <= noise else value for value in values]
     factor, label = (_DEGREE, "deg") if each.kind == "width" else scaled(cleaned, units(problem)[each.kind])
     bars = [_bar(state, factor, name) for state in states]
@@ -172,8 +176,8 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
 
 
 def _first_and_last(values: list[float], unit: str, digits: int) -> list[str]:
-    """Return the first and the last value as text. Values below 1e-9 of the largest become 0: they are rounding."""
-    noise = 1e-9 * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    """Return the first and the last value as text. Values below :data:`ROUNDING` of the largest become 0."""
+    noise = ROUNDING * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     cleaned = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
     return ["not known" if math.isnan(value) else with_unit(value, unit, digits) for value in cleaned]
 
