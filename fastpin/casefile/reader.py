@@ -26,7 +26,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
-from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, Problem
+from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
@@ -48,6 +48,7 @@ KEYS: dict[str, tuple[str, ...]] = {
         "hub_stiffness",
         "drive",
         "gauge_radius",
+        "thickness",
     ),
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
@@ -138,6 +139,8 @@ def case_from(
     materials = known_materials(source, folder)
     problem = _problem(source, folder, read_pair(source, materials), materials)
     history = read(source, folder)
+    if problem is not None and history is not None and problem.thickness is not None:
+        history = history.per_thickness(problem.thickness)
     options = _options(source.section("solve"))
     if problem is not None and history is not None:
         report_loads(source, problem, history)
@@ -227,7 +230,7 @@ def _problem(
     pin_load = contact.choice("pin_load", ("centre", "body"))
     rotation = contact.choice("rotation", ("free", "fixed", "spring"))
     drive = contact.choice("drive", ("force", "ux", "uy", "both"))
-    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness", "gauge_radius")}
+    hub, thickness = _hub_and_thickness(contact)
     if rotation == "spring" and "hub_stiffness" not in contact:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
@@ -238,7 +241,7 @@ def _problem(
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     held = None not in (pin_load, rotation, drive)
     if held:
-        values |= {"pin_load": pin_load, "rotation": rotation, "drive": drive, **hub}
+        values |= {"pin_load": pin_load, "rotation": rotation, "drive": drive, **hub, **thickness}
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,
@@ -253,6 +256,20 @@ def _problem(
         harmless["pin_load"] = "centre"
     problem = contact.build(make, values, harmless, {"plate_body": (source.section("plate_body"), "file")})
     return problem if held else None
+
+
+def _hub_and_thickness(contact: Section) -> tuple[dict[str, float | None], dict[str, float]]:
+    """The sizes of hub and gauge, and the thickness if it is given. The stiffness of a spring is per thickness then."""
+    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness", "gauge_radius")}
+    thickness = None if "thickness" not in contact else contact.checked("thickness", checked_thickness)
+    if thickness is None:
+        return hub, {}
+    if "load_parameter" in contact:
+        contact.report(f"thickness: {NO_THICKNESS}", "thickness")
+        return hub, {}
+    if hub["hub_stiffness"] is not None:
+        hub["hub_stiffness"] /= thickness
+    return hub, {"thickness": thickness}
 
 
 def _options(section: Section) -> SolveOptions:

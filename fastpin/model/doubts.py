@@ -24,6 +24,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.units import printed_unit
 
 MOST_FRICTION, PERCENT = 2.0, 200.0
 """Friction above the first is rare: clean metals reach 1.5. The second is as much in percent.
@@ -66,6 +67,9 @@ LEAST_STRESS = 2e3
 
 LARGEST_HOLE = 1.0
 """Hole radius, m, above which it is probably in mm: pins of large bridges and cranes have half of it."""
+
+THICKEST = 50.0
+"""Thickness in hole radii above which it is probably in mm: such a long pin bends."""
 
 LOOSEST, TIGHTEST = 0.5, 0.02
 """Clearance and interference in parts of the radius. A looser pin is no pin of this hole; a tighter one yields."""
@@ -239,6 +243,11 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
             f"{_short(radius)} m is larger than any pin; lengths are in m: "
             f"{_short(radius)} mm is {_short(radius / 1e3)}",
         )
+    if problem.thickness is not None and problem.thickness > THICKEST * radius:
+        yield InputWarning(
+            "thickness",
+            f"{_short(problem.thickness)} m is more than {THICKEST:g} hole radii; lengths are in m: 5 mm is 5e-3",
+        )
     if clearance < -TIGHTEST * radius:
         yield InputWarning(
             "clearance",
@@ -292,7 +301,7 @@ def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:
         return
     name, soft = max(strains, key=lambda name: strains[name]), _softest(problem)
     if strains[name] > MOST_STRAIN:
-        yield _too_large(name, largest[name], strains[name], soft)
+        yield _too_large(problem, name, largest[name], strains[name])
     elif strains[name] < LEAST_STRAIN and _stiffest(problem)[1] > STIFFEST:
         yield InputWarning(
             "E", f"{_short(soft[1])} Pa of the {soft[0]} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9"
@@ -311,8 +320,8 @@ def _strains(problem: Problem, largest: dict[str, float]) -> dict[str, float]:
     }
 
 
-def _too_large(name: str, load: float, strain: float, soft: tuple[str, float]) -> InputWarning:
-    body, modulus = soft
+def _too_large(problem: Problem, name: str, load: float, strain: float) -> InputWarning:
+    body, modulus = _softest(problem)
     if modulus < SOFTEST:
         unit, factor = ("GPa", 1e9) if modulus < IN_GPA else ("MPa", 1e6)
         return InputWarning(
@@ -320,10 +329,13 @@ def _too_large(name: str, load: float, strain: float, soft: tuple[str, float]) -
             f"{_short(modulus)} Pa of the {body} is softer than rubber; "
             f"moduli are in Pa: {_short(modulus)} {unit} is {_short(modulus * factor)}",
         )
-    units = {"force": ("N/m", "forces are per thickness, in N/m"), "moment": ("N", "moments are per thickness, in N")}
-    unit, hint = units.get(LOAD_KIND[name], ("Pa", "stresses are in Pa"))
+    kind = LOAD_KIND[name]
+    factor, unit = printed_unit(problem, kind)
+    hint = f"{kind}s are in {unit}" if problem.thickness else f"{kind}s are per thickness, in {unit}"
+    if kind == "traction":
+        hint = "stresses are in Pa"
     return InputWarning(
-        name, f"{_short(load)} {unit} strains the bodies by {strain:.2g}, far beyond linear elasticity; {hint}"
+        name, f"{_short(factor * load)} {unit} strains the bodies by {strain:.2g}, far beyond linear elasticity; {hint}"
     )
 
 
@@ -340,10 +352,12 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
         and radius <= LARGEST_HOLE
         and force != 1.0
     ):
+        factor, unit = printed_unit(problem, "force")
+        hint = "forces are per thickness, in N/m: divide a force in N by the thickness in m, or give the thickness"
         yield InputWarning(
             name,
-            f"{_short(largest[name])} N/m is a bearing stress of {_mega(force / (2.0 * radius))} only; "
-            "forces are per thickness, in N/m: divide a force in N by the thickness in m",
+            f"{_short(factor * largest[name])} {unit} is a bearing stress of {_mega(force / (2.0 * radius))} only; "
+            + (hint if problem.thickness is None else "forces are in N: 1 kN is 1e3"),
         )
     for name in ("sxx", "syy", "sxy"):
         stress = abs(largest.get(name, 0.0))

@@ -32,7 +32,7 @@ from fastpin.model.checks import (
 from fastpin.model.compliance import Compliance
 from fastpin.model.history_csv import read_corners
 from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
-from fastpin.model.problem import Problem
+from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
 
 POINTS = 24
@@ -335,6 +335,19 @@ class LoadHistory:
                 once[-1] = once[-1] or len(lengths)
             ends.append(np.tile(once, block.count))
         return LoadHistory.of_blocks([Block(given, np.concatenate(ends), lengths, count, cycle=True)])
+
+    def per_thickness(self, thickness: float) -> LoadHistory:
+        """This history with its forces, N, and moments, N m, divided by a thickness, m.
+
+        The result has forces in N/m and moments in N, as all solvers take them. Other loads stay.
+
+        A `thickness` that is not positive raises :class:`InputError`.
+        """
+        kinds = LOAD_KIND.values()
+        divisor = np.where(
+            [kind in ("force", "moment") for kind in kinds], checked_thickness("thickness", thickness), 1.0
+        )
+        return LoadHistory.of_blocks(replace(block, given=block.given / divisor) for block in self._blocks)
 
     def __repr__(self) -> str:
         given = ~np.all([np.all(np.isnan(block.given), axis=0) for block in self._blocks], axis=0)

@@ -9,7 +9,7 @@ from typing import Literal
 
 from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube, check_pin_body, check_plate_body
-from fastpin.model.checks import as_toml, choice, instance, not_negative, number, true_or_false
+from fastpin.model.checks import as_toml, choice, instance, not_negative, number, positive, true_or_false
 from fastpin.model.compliance import Compliance
 from fastpin.model.joint import Joint, PinLoad
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair, check_moduli
@@ -35,6 +35,9 @@ LEAST_STIFFNESS, MOST_STIFFNESS = 1e-30, 1e30
 
 MOST_GAUGE = 1e30
 """Largest gauge radius, in parts of R. The displacement grows like its logarithm: a larger circle is no plate."""
+
+NO_THICKNESS = "has no meaning in a dimensionless problem, whose loads are in units of F"
+"""Why a dimensionless problem refuses a thickness."""
 
 Drive = Literal["force", "ux", "uy", "both"]
 """Ways to drive the pin: by the forces P and Q, or by displacements in place of Q (ux), of P (uy) or of both."""
@@ -91,6 +94,11 @@ class Problem:
         A solid or a hollow pin.
     plate_body : Plate, Ring, Bushing or Compliance
         An infinite plate, a ring lug, a bush in either of them, or any finite plate.
+    thickness : float, optional
+        Thickness of pin and plate, m. It changes no state. Printed texts then have forces in N, moments in N m and
+        energies in J. Loads and results in Python, JSON, CSV and HDF5 stay per thickness:
+        :meth:`fastpin.LoadHistory.per_thickness` converts loads. In case files loads are in N and N m then. Not for a
+        dimensionless problem.
 
     Raises
     ------
@@ -111,6 +119,7 @@ class Problem:
     gauge_radius: float | None = field(default=None, kw_only=True)
     pin_body: PinBody = field(default=Disk(), kw_only=True)
     plate_body: PlateBody = field(default=Plate(), kw_only=True)
+    thickness: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         instance("pair", self.pair, MaterialPair, "a MaterialPair")
@@ -148,6 +157,10 @@ class Problem:
             )
         self._check_hub(radius)
         self._check_drive(radius)
+        if self.thickness is not None:
+            object.__setattr__(self, "thickness", checked_thickness("thickness", self.thickness))
+            if self.dimensionless:
+                raise InputError("thickness", NO_THICKNESS)
         object.__setattr__(self, "clearance", clearance)
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
@@ -380,6 +393,11 @@ class Problem:
         if self.hub_stiffness is None:
             return 0.0
         return self.hole_radius**2 / (self.hub_stiffness * self.surfaces.beta_star)
+
+
+def checked_thickness(field: str, value: object) -> float:
+    """Check a thickness, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`, and return it as a float."""
+    return number(field, positive(field, value), LEAST_RADIUS, MOST_RADIUS)
 
 
 def check_bush(pair: MaterialPair, bush: Bushing) -> None:

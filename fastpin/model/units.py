@@ -23,7 +23,10 @@ _SI = {
     "life": "cycles",
 }
 
-_WITH_PREFIX = frozenset({*_SI.values(), "s"} - {"", "cycles"})
+_WITH_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J"}
+"""Units of the kinds that are per thickness elsewhere, in printed texts of a problem with a thickness."""
+
+_WITH_PREFIX = frozenset({*_SI.values(), *_WITH_THICKNESS.values(), "s"} - {"", "cycles"})
 """Units that may get an SI prefix."""
 
 _DIMENSIONLESS = {
@@ -49,6 +52,20 @@ def units(problem: Problem) -> dict[str, str]:
     return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
 
 
+def printed_unit(problem: Problem, kind: str) -> tuple[float, str]:
+    """The factor and the unit of a kind of quantity in printed texts: in N, not in N/m, if there is a thickness."""
+    if problem.thickness is not None and kind in _WITH_THICKNESS:
+        return problem.thickness, _WITH_THICKNESS[kind]
+    return 1.0, units(problem)[kind]
+
+
+def printed_scale(problem: Problem, kind: str, values: Sequence[float]) -> tuple[float, str]:
+    """As :func:`scaled`, for values of a kind of quantity in printed texts of a problem."""
+    whole, unit = printed_unit(problem, kind)
+    factor, label = scaled([whole * value for value in values], unit)
+    return whole * factor, label
+
+
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
     """A factor for `values`, and `unit` with an SI prefix. In this unit the largest value reads well.
 
@@ -70,9 +87,11 @@ def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
 
 def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, as text with their units."""
-    unit = units(problem)
-    acting = acting_loads([load])
-    return ", ".join(f"{name} = {with_unit(load[name], unit[LOAD_KIND[name]], 5)}" for name in acting) or "no load"
+    parts = []
+    for name in acting_loads([load]):
+        factor, unit = printed_unit(problem, LOAD_KIND[name])
+        parts.append(f"{name} = {with_unit(factor * load[name], unit, 5)}")
+    return ", ".join(parts) or "no load"
 
 
 def with_unit(value: float, unit: str, digits: int = 6) -> str:

@@ -15,7 +15,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.units import acting_loads, scaled, units, with_unit
+from fastpin.model.units import acting_loads, printed_scale, printed_unit, units, with_unit
 from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
@@ -73,6 +73,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         scale = f"beta* = {surfaces.beta_star:.4g} 1/Pa"
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
         size = f"hole radius {with_unit(problem.hole_radius, 'm')}, {kind} {with_unit(problem.clearance, 'm')}"
+        size += "" if problem.thickness is None else f", thickness {with_unit(problem.thickness, 'm')}"
     pin_load = (
         _PIN_LOADS[problem.pin_load] if isinstance(problem.pin_body, Disk) else _BORE_LOADS[problem.pin_body.load]
     )
@@ -163,7 +164,8 @@ def _hub(problem: Problem) -> str:
         return ""
     spring, unit = "", units(problem)
     if problem.hub_stiffness is not None:
-        spring = f" of stiffness {with_unit(problem.hub_stiffness, unit['stiffness'])}"
+        factor, per_angle = printed_unit(problem, "stiffness")
+        spring = f" of stiffness {with_unit(factor * problem.hub_stiffness, per_angle)}"
     if problem.hub_radius is None:
         datum = "the paper's datum" if isinstance(problem.pin_body, Disk) else "the bore"
         return f"{spring} at {datum}"
@@ -216,12 +218,11 @@ def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list
 
     Loads of one kind share a unit and its SI prefix. Values below :data:`ROUNDING` of the largest are printed as 0.
     """
-    unit = units(problem)
     columns = []
     acting = acting_loads(loads)
     for name in acting:
         same_kind = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
-        factor, label = scaled(same_kind, unit[LOAD_KIND[name]])
+        factor, label = printed_scale(problem, LOAD_KIND[name], same_kind)
         noise = ROUNDING * max(map(abs, same_kind))
         values = [0.0 if abs(load[name]) <= noise else load[name] * factor for load in loads]
         columns.append((name, label, [f"{value:.5g}" for value in values]))

@@ -12,7 +12,7 @@ from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, items, whole_number
 from fastpin.model.problem import Problem
-from fastpin.model.units import scaled, units, with_unit
+from fastpin.model.units import printed_scale, printed_unit, units, with_unit
 from fastpin.report.case import ROUNDING, hole_body, load_columns
 from fastpin.report.table import MAX_ROWS, Column, table
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
@@ -112,7 +112,7 @@ def quantity_column(
         return each.label, "deg", [_angle(value) + bar for value, bar in zip(values, bars, strict=True)]
     noise = ROUNDING * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
     cleaned = [0.0 if abs(value) <= noise else value for value in values]
-    factor, label = (_DEGREE, "deg") if each.kind == "width" else scaled(cleaned, units(problem)[each.kind])
+    factor, label = (_DEGREE, "deg") if each.kind == "width" else printed_scale(problem, each.kind, cleaned)
     bars = [_bar(state, factor, name) for state in states]
     return each.label, label, [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)]
 
@@ -185,9 +185,9 @@ def _first_and_last(values: list[float], unit: str, digits: int) -> list[str]:
 def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
     first, last = cycles[0], cycles[-1]
     steady = periodic_from(cycles)
-    kind = units(problem)
-    dissipation = _first_and_last([cycle.dissipation for cycle in cycles], kind["energy"], 4)
-    turned = _first_and_last([cycle.rotation_change for cycle in cycles], kind["rotation"], 3)
+    factor, energy = printed_unit(problem, "energy")
+    dissipation = _first_and_last([factor * cycle.dissipation for cycle in cycles], energy, 4)
+    turned = _first_and_last([cycle.rotation_change for cycle in cycles], units(problem)["rotation"], 3)
     state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
     corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
     where = f"to corner {last.corner + 1:,}"

@@ -68,6 +68,7 @@ def document(
             "hub_stiffness": problem.hub_stiffness,
             "drive": problem.drive,
             "gauge_radius": problem.gauge_radius,
+            "thickness": problem.thickness,
             "pin_body": _body_summary(problem.pin_body),
             "plate_body": _body_summary(problem.plate_body),
             "assembled_clearance": problem.assembled_clearance,

@@ -16,7 +16,7 @@ from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.synonyms import closest
-from fastpin.model.units import scaled, units
+from fastpin.model.units import printed_unit, scaled, units
 from fastpin.report.field_words import field_words
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
@@ -40,6 +40,7 @@ _KIND = {
     "contact.hub_radius": "length",
     "contact.hub_stiffness": "stiffness",
     "contact.gauge_radius": "length",
+    "contact.thickness": "length",
     "pin.E": "traction",
     "plate.E": "traction",
     "pin_body.bore_radius": "length",
@@ -86,7 +87,7 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     unit = _units(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
-        columns.append(_column(name, [row[name] for row in rows], unit.get(_kind(name), "")))
+        columns.append(_column(name, [row[name] for row in rows], _field_unit(plan, name, unit)))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
@@ -260,7 +261,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = scaled(values, unit.get(_kind(name), ""))
+    factor, label = scaled(values, _field_unit(plan, name, unit))
     axis = Axis(_label(field_words(name), label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
 
@@ -306,6 +307,12 @@ def _units(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         return {}
     return {**units(plan.case(plan.points[0]).problem), "angle": "deg"}
+
+
+def _field_unit(plan: Plan, name: str, unit: dict[str, str]) -> str:
+    """Return the unit of a varied field as the plan gives it: loads of a case with a thickness are in N."""
+    kind = _kind(name)
+    return printed_unit(plan.case(plan.points[0]).problem, kind)[1] if kind in unit else ""
 
 
 def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:

@@ -126,6 +126,7 @@ _PROBLEM_FIELDS = (
     "drive",
     "gauge_radius",
     "dimensionless",
+    "thickness",
 )
 
 STATUS_LIMITS = (min(Status), max(Status))

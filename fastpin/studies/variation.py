@@ -137,6 +137,8 @@ def other_units(tables: dict[str, Any], name: str) -> str | None:
             "would count in units of F. Vary contact.clearance (load parameter times F beta*), or take a base case "
             "with load_parameter and loads in units of F"
         )
+    if name == "contact.thickness" and "thickness" not in given:
+        return f"{name}: the base case gives loads in N/m; with a thickness they would be in N; give it a thickness"
     if name in ("contact.hole_radius", "contact.clearance") and "load_parameter" in given:
         return (
             f"{name}: the base case gives a load_parameter, and loads in units of F; vary contact.load_parameter, or "
