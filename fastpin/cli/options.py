@@ -27,6 +27,9 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 STATES_HELP = "last, cycle (the last one), all, or load points such as 2,3.5"
 """Help on the choice of states."""
 
+SHELLS = ("bash", "zsh", "tcsh")
+"""Shells with a script of completion."""
+
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
     "tractions": ("states", "csv", "sketch"),
     "polar": ("states", "csv"),
@@ -69,6 +72,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_compliance(commands)
     add_paper(commands)
     add_verify(commands)
+    add_completion(commands)
     return root, commands.choices
 
 
@@ -419,3 +423,9 @@ def _add_json(command: argparse.ArgumentParser, text: str) -> None:
         const="-",
         help=f"{text}; without FILE, or with -: print it, and no table",
     )
+
+
+def add_completion(commands: Any) -> None:
+    """Add ``completion``."""
+    completion = _command(commands, "completion", "completion", "run", "print a script that completes words in a shell")
+    completion.add_argument("shell", choices=SHELLS, help="the shell")

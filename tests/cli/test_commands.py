@@ -156,7 +156,7 @@ def test_heavy_imports_wait_until_they_are_needed(arguments: list[str], needed: 
 
 HEAVY = (
     "numba", "scipy", "scipy.linalg", "scipy.special", "scipy.fft", "tqdm", "matplotlib", "h5py", "multiprocessing",
-    "jinja2", "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
+    "jinja2", "shtab", "importlib.metadata", "numpy.typing", "numpy.f2py", "numpy.testing", "numpy.random",
 )  # fmt: skip
 """Modules that take long to import. Nothing that is loaded from disk needs them."""
 

@@ -46,10 +46,11 @@ HOMES = {
     "argparse": ("cli",),
     "tqdm": ("cli",),
     "jinja2": ("pages",),
+    "shtab": ("cli",),
 }
 """Packages that only some folders may import."""
 
-OPTIONAL = ("xarray", "pandas", "pylife", "distributed")
+OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab")
 """Packages that may be missing. They are imported inside functions."""
 
 MOST_LINES = 600

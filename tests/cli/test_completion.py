@@ -1,0 +1,61 @@
+"""Completion in shells."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fastpin.cli.main import main
+from fastpin.cli.options import SHELLS
+
+COMPLETE = r"""
+source "$1"; shift
+name=$(complete -p fastpin | sed 's/.*-F \([^ ]*\).*/\1/')
+COMP_WORDS=(fastpin "$@") COMP_CWORD=$#
+"$name" fastpin "${COMP_WORDS[COMP_CWORD]}"
+printf '%s\n' "${COMPREPLY[@]}"
+"""
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_has_a_script(shell: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    script = tmp_path / "script"
+    script.write_text(capsys.readouterr().out)
+    assert "--error-bars" in script.read_text() or shell == "tcsh"
+    if shutil.which(shell):
+        assert subprocess.run([shell, "-n", script], capture_output=True, check=True).stderr == b""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_bash_completes_commands_options_choices_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["completion", "bash"])
+    script = tmp_path / "script"
+    script.write_text(capsys.readouterr().out)
+    (tmp_path / "case.toml").write_text("")
+
+    def completed(*words: str) -> list[str]:
+        command = ["bash", "-c", COMPLETE, "bash", str(script), *words]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+
+    assert completed("sw") == ["sweep"]
+    assert completed("run", "--nod") == ["--nodes"]
+    assert completed("plot", "a.h5", "ho") == ["hoop"]
+    assert completed("check", str(tmp_path / "ca")) == [str(tmp_path / "case.toml")]
+
+
+def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setitem(sys.modules, "shtab", None)
+    assert main(["completion", "bash"]) == 2
+    sentence = "completion: needs the package shtab: pip install 'fastpin[completion]'"
+    assert capsys.readouterr().err == f"fastpin: {sentence}\n"
+
+
+def test_an_unknown_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["completion", "fish"])
+    assert "argument shell: invalid choice: 'fish'" in capsys.readouterr().err
