@@ -6,9 +6,10 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
-from fastpin import casefile, figures, report, studies
-from fastpin.cli.progress import Bar
+from fastpin import casefile, figures, model, report, solver, studies
+from fastpin.cli.progress import Bar, note_duration
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -31,6 +32,7 @@ def run(options: argparse.Namespace) -> int:
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
     check_outputs(outputs, options.case)
     code, trouble = EXIT_OK, ""
+    note_duration(_expected_seconds(case, nodes, increments, options.increment_nodes))
     with Bar(1, "{desc}") as progress_bar:
 
         def progress(done: float, total: float, what: str) -> None:
@@ -58,6 +60,17 @@ def run(options: argparse.Namespace) -> int:
         code = code or EXIT_FAILED
         fail(f"outcome {name} can't be read with {reason}", code)
     return fail(f"{trouble}; {_describe_kept(study)}", written or code) if trouble else written or code
+
+
+def _expected_seconds(case: model.Case, nodes: list[int], increments: list[int], increment_nodes: int | None) -> float:
+    """The seconds of all grids. 0 for numbers that the study will refuse."""
+    grids: list[dict[str, Any]] = [{"nodes": count} for count in nodes]
+    grids += [{"nodes": increment_nodes or nodes[-1], "method": "increment", "increments": each} for each in increments]
+    try:
+        settings = [model.SolveOptions(**each) for each in grids]
+    except InputError:
+        return 0.0
+    return sum(solver.expected_seconds(case.problem, case.history, each) for each in settings)
 
 
 def _describe_kept(study: studies.convergence.Convergence) -> str:

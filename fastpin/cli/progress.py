@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -12,10 +13,32 @@ DELAY = 2.0
 """Seconds after which a bar appears. Most runs are finished before: then tqdm, which takes 60 ms, is not imported."""
 
 
+LONG = 60.0
+"""Seconds above which a user is told before the work begins."""
+
+
+def note_duration(seconds: float, hint: str = "") -> None:
+    """Print a note before work that will take more than a minute. `hint` says how to save time."""
+    if seconds > LONG:
+        print(f"fastpin: note: this will take about {_words(seconds)}{hint}", file=sys.stderr)
+
+
+def _words(seconds: float) -> str:
+    """A duration in words, with one or two digits."""
+    unit, length = next(
+        (unit, length)
+        for unit, length, most in (("minute", 60.0, 90.0), ("hour", 3600.0, 36.0), ("day", 86400.0, math.inf))
+        if seconds < most * length
+    )
+    count = max(round(seconds / length), 1)
+    return f"{count:,} {unit}{'' if count == 1 else 's'}"
+
+
 class Bar:
     """A progress bar of `total` units. It appears on standard error after two seconds, on terminals only.
 
-    `text` is a format with the fields of tqdm, such as ``{n} of {total}``.
+    `text` is a format with the fields of tqdm, such as ``{n} of {total}``, and ``{whole}``, the units that are done to
+    the end.
 
     Attributes
     ----------
@@ -65,8 +88,15 @@ class Bar:
     def _show(self) -> None:
         from tqdm import tqdm
 
+        class WholeUnits(tqdm):  # type: ignore[misc]
+            """A bar that also knows the whole units."""
+
+            @property
+            def format_dict(self) -> dict[str, Any]:
+                return {**super().format_dict, "whole": f"{int(self.n):,}"}
+
         form = f"{{percentage:3.0f}}% |{{bar}}| {self._text}, {{remaining}} left"
-        self._shown = tqdm(
+        self._shown = WholeUnits(
             total=self.total, desc=self._description, leave=False, file=sys.stderr, bar_format=form
         )  # fmt: skip
         self._shown.start_t = self._begin  # the time that remains follows from all of the time before

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fastpin import casefile, figures, report, solver, storage
 from fastpin.cli.options import literal
-from fastpin.cli.progress import Bar, progress_to
+from fastpin.cli.progress import Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -40,7 +40,7 @@ SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "sho
 LISTS = ("arc", "between")
 """Options that take a number or a list of numbers, written with commas."""
 
-PROGRESS = "load point {n:.2f} of {total}"
+PROGRESS = "{whole} of {total:,} load points"
 """Text of the progress bar."""
 
 
@@ -60,6 +60,8 @@ def run(options: argparse.Namespace) -> int:
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
+    seconds = solver.expected_seconds(case.problem, case.history, case.options)
+    note_duration(seconds, f", with {case.options.nodes:,} nodes; half as many take a fifth of the time")
     with Bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:

@@ -11,15 +11,19 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from fastpin import figures, report, studies
+from fastpin import figures, report, solver, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
-from fastpin.cli.progress import Bar, progress_to
+from fastpin.cli.progress import Bar, note_duration, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail
 from fastpin.errors import InputError
+from fastpin.kernels.threads import cores
 from fastpin.storage.files import check_writable
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
+
+MOST_ESTIMATED = 100
+"""Most runs whose times are estimated: reading a case takes a millisecond."""
 
 CLUSTER_SECONDS = 30
 """Longest wait for the answer of a scheduler."""
@@ -53,6 +57,8 @@ def run(options: argparse.Namespace) -> int:
 def _run(
     options: argparse.Namespace, plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None
 ) -> studies.sweep.Summary:
+    if options.dask is None:
+        note_duration(_expected_seconds(plan, directory, shard, options.workers))
     with _executor(options.dask) as executor, Bar(len(plan.points), "run {n} of {total}") as progress_bar:
         progress = progress_to(progress_bar)
         try:
@@ -63,6 +69,18 @@ def _run(
             if error.field == "workers":
                 raise InputError("--workers", error.reason) from None
             raise
+
+
+def _expected_seconds(
+    plan: studies.plan.Plan, directory: Path, shard: tuple[int, int] | None, workers: int | None
+) -> float:
+    """The seconds of the runs that wait. Some of the runs stand for all."""
+    waiting = studies.sweep.status(plan, directory, shard).waiting
+    points = list(plan.runs.values())
+    picked = points[:: -(-len(points) // MOST_ESTIMATED)]
+    cases = [plan.case(point) for point in picked]
+    seconds = [solver.expected_seconds(case.problem, case.history, case.options) for case in cases]
+    return waiting * sum(seconds) / len(seconds) / max(workers or cores(), 1)
 
 
 @contextmanager
