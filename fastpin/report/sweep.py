@@ -237,7 +237,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     factor, label = scaled(
         [number for number in found if number is not None and abs(number) > least], _unit(plan, value, unit)
     )
-    others_words = {other: _value_words(rows, other, unit) for other in others}
+    others_words = {other: _value_words(plan, rows, other, unit) for other in others}
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
@@ -270,12 +270,12 @@ def _label(words: str, unit: str) -> str:
     return f"{words} ({unit})" if unit else words
 
 
-def _value_words(rows: Sequence[Row], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
+def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
     words, given = field_words(field), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
-    factor, label = scaled(given, unit.get(_kind(field), ""))
+    factor, label = scaled(given, _field_unit(plan, field, unit))
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
