@@ -174,7 +174,7 @@ class _Scene:
             most = 1.15 * friction * self.largest or 1.0
             self.panels[1].set_ylim(-most, most)
         self._shade(state)
-        self.panels[-1].set_xlim(*self.frame.limits)
+        self.frame.scale(self.panels[-1])
         self.panels[-1].set_xlabel(ANGLE)
         self.joint.clear()
         draw_sketch(state.problem, load_ranges([state]), Look(ax=self.joint), state, words=False, largest=self.force)

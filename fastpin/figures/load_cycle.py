@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import Frame
-from fastpin.figures.style import angle_axis, line
+from fastpin.figures.style import line
 from fastpin.figures.words import (
     ANGLE,
     ROUNDING,
@@ -117,8 +117,7 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
         panel.set_ylim(0.0, 1.08 * top or 1.0)
         if top == 0.0:
             panel.text(0.5, 0.5, "0: no node slips", ha="center", transform=panel.transAxes)
-        angle_axis(panel)
-        panel.set_xlim(*frame.limits)
+        frame.scale(panel)
     lower.set_xlabel(ANGLE)
     handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(curves)]
     handles.append(Line2D([], [], label=words, **line(2, 2)))

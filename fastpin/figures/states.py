@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
 from scipy.interpolate import PchipInterpolator
 
 from fastpin.errors import InputError
@@ -25,6 +27,15 @@ from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.zones import ALL_ROUND
 from fastpin.storage.store import load, load_points
+
+STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)
+"""Distances of the numbers on an axis of angles, degrees."""
+
+MOST_TICKS = 12
+"""Most numbers on an axis of angles, before its ends are moved to whole steps."""
+
+NEARLY_ROUND = 340.0
+"""Length of an axis, degrees, from which on it goes all round: with further whole steps it would be more than that."""
 
 FINEST = 0.5
 """Largest distance of the points of a drawn curve, degrees."""
@@ -152,7 +163,9 @@ class Frame:
     angle : ndarray
         Angles of these nodes, degrees from the bottom, increasing.
     limits : (float, float)
-        Ends of the axis, degrees.
+        Ends of the axis, degrees; whole steps unless the axis goes all round.
+    step : float
+        Distance of the numbers on the axis, degrees.
     """
 
     def __init__(self, states: Sequence[State]) -> None:
@@ -174,6 +187,17 @@ class Frame:
         self.angle = angle - turn
         margin = 0.04 * (last - first) + 1.0
         self.limits = (max(first - margin, angle[0]) - turn, min(last + margin, angle[-1]) - turn)
+        span = self.limits[1] - self.limits[0]
+        self.step = next(step for step in STEPS if span <= (MOST_TICKS - 1) * step)
+        if span < NEARLY_ROUND:  # both ends of the axis get a number
+            self.limits = (
+                self.step * math.floor(self.limits[0] / self.step), self.step * math.ceil(self.limits[1] / self.step)
+            )  # fmt: skip
+
+    def scale(self, panel: Axes, upright: bool = False) -> None:
+        """Give the axis of angles of a panel its ends and its numbers."""
+        panel.set(**{"ylim" if upright else "xlim": self.limits})
+        (panel.yaxis if upright else panel.xaxis).set_major_locator(MultipleLocator(self.step))
 
     def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return angle, pressure and shear of a drawn state; NaN between its contact zones.

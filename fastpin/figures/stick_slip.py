@@ -127,10 +127,9 @@ def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
             panel.add_collection(shape)
     marked = _draw_marks(panel, boxes, len(states), frame.limits)
     panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
-    panel.set_ylim(*frame.limits)
+    frame.scale(panel, upright=True)
     panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
     panel.set_xlabel(LOAD_POINT)
-    panel.yaxis.set_major_locator(MaxNLocator(nbins=8, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
     panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
     if differing:
         _draw_loads(sheet.axes[0, 0], states, differing)

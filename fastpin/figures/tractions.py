@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.sketch import draw_sketch, load_ranges
@@ -114,8 +113,7 @@ def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> She
     if zones:
         _draw_zones(axes[-1], states, lines, frame)
     sheet.grid("x")
-    axes[-1].set_xlim(*frame.limits)
-    axes[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 2, 3, 4.5, 5, 6, 9, 10]))
+    frame.scale(axes[-1])
     axes[-1].set_xlabel(ANGLE)
     for panel in axes[:-1]:
         panel.tick_params(labelbottom=False)
