@@ -1,0 +1,81 @@
+"""The words on axes and in captions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fastpin import MATERIALS, Material, MaterialPair, Problem
+from fastpin.figures.words import caption, load_text, loads_by_change, quantity, short, without_rounding, wrapped
+from fastpin.model import Bushing, Plate, Ring, Tube
+from tests.support.samples import sample_result
+
+PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress")
+
+
+def plain(text: str) -> str:
+    return text.replace("\N{NO-BREAK SPACE}", " ")
+
+
+@pytest.mark.parametrize(
+    ("words", "unit", "expected"),
+    [
+        ("pressure N", "MPa", "pressure N (MPa)"),
+        ("slip", "um", "slip (µm)"),
+        ("rotation", "F beta*/R", "rotation (F β*/R)"),
+        ("energy", "J/m^2", "energy (J/m²)"),
+        ("friction coefficient", "", "friction coefficient"),
+    ],
+)
+def test_axes_have_a_unit_in_parentheses(words, unit, expected):
+    assert quantity(words, unit) == expected
+
+
+def test_numbers_are_rounded_and_keep_their_units_on_the_line():
+    assert plain(short(0.0123456, "m")) == "12.3 mm"
+    assert plain(short(-2e-6, "m")) == "−2 µm"
+    assert " " not in short(0.0123456, "m")
+    rows = wrapped(" ".join([short(0.0123456, "m")] * 9), 1.2)
+    assert len(rows) > 2
+    assert {word for row in rows for word in row.split(" ")} == {short(0.0123456, "m")}
+
+
+@pytest.mark.parametrize(
+    ("problem", "parts"),
+    [
+        (Problem(PAIR, 0.01, 2e-5, 0.2444), ["plane stress", "friction coefficient 0.244", "hole radius 10 mm"]),
+        (Problem(PAIR, 0.01, 0.0, 0.3), ["neat fit", "pin: steel, force at the centre", "plate: aluminium"]),
+        (Problem(PAIR, 0.01, -2e-5, 0.3), ["interference 20 µm"]),
+        (Problem(PAIR, 0.01, 2e-5, 0.3, pin_body=Tube(3e-3)), ["pin: steel, bore radius 3 mm"]),
+        (Problem(PAIR, 0.01, 2e-5, 0.3, plate_body=Ring(3e-2)), ["plate: aluminium, ring to radius 30 mm"]),
+        (
+            Problem(PAIR, 0.01, 2e-5, 0.3, plate_body=Bushing(MATERIALS["2024-T3"], 12e-3, 1e-5)),
+            ["plate: aluminium with bush of 2024-T3 to radius 12 mm"],
+        ),
+        (Problem(PAIR, 0.01, 2e-5, 0.3, plate_body=Plate((0.0, 0.06))), ["forces balanced at (0 m, 60 mm)"]),
+        (
+            Problem.from_load_parameter(MaterialPair(Material.rigid(), Material(1.0, 0.3)), 0.1, 0.3),
+            ["pin: rigid", "ν = 0.3", "/β*"],
+        ),
+    ],
+)
+def test_captions_name_all_parameters(problem, parts):
+    text = plain(caption(problem))
+    for part in parts:
+        assert part in text
+
+
+def test_the_load_parameter_is_that_of_the_states():
+    result = sample_result([{"P": 1e6}, {"P": 2e6}, {"P": 0.0}])
+    low, high = (result.problem.load_parameter(force) for force in (2e6, 1e6))
+    assert caption(result.problem, result).endswith(f"load parameter {low:.3g} to {high:.3g}")
+    assert caption(result.problem, result[:1]).endswith(f"load parameter {high:.3g}")
+
+
+def test_rounding_is_zero():
+    values = np.array([1.0, -2e-9, 5e-10, np.nan])
+    assert np.array_equal(without_rounding(values), [1.0, -2e-9, 0.0, np.nan], equal_nan=True)
+    assert not without_rounding(values, 1e10)[:3].any()
+    states = sample_result([{"P": 1e6, "Q": 1e-5}, {"P": 1e6, "Q": 2e5}])
+    assert load_text(states, 0, "Q") == "Q = 0"
+    assert loads_by_change(states) == (["P"], ["Q"])
