@@ -143,7 +143,7 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
                 InputWarning(
                     "peak pressure",
                     f"{_mega(peak)} is above the yield strength {_mega(strength)} of the {name}; "
-                    "fastpin is elastic, but a real contact would yield there and spread",
+                    "fastpin is elastic, but a real contact yields there",
                 )
             )
     return found
@@ -269,7 +269,7 @@ def _of_moduli(problem: Problem) -> Iterator[InputWarning]:
         yield InputWarning(
             "E",
             f"{_short(stiff[1])} Pa of the {stiff[0]} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9; "
-            "a body without strain is rigid",
+            "a body that does not deform is rigid",
         )
     elif stiff[1] > MOST_MODULI * soft[1]:
         yield InputWarning(
@@ -364,7 +364,7 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
         if 0.0 < stress < LEAST_STRESS and stress != 1.0:
             yield InputWarning(
                 name,
-                f"{_short(largest[name])} Pa is next to nothing; stresses are in Pa: "
+                f"{_short(largest[name])} Pa is very small; stresses are in Pa: "
                 f"{_short(largest[name])} MPa is {_short(1e6 * largest[name])}",
             )
 
