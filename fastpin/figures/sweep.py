@@ -21,7 +21,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
-from fastpin.figures.words import shown_unit
+from fastpin.figures.words import caption, shown_unit
 from fastpin.model.checks import instance
 from fastpin.report.sweep import Axis, Chart
 
@@ -47,6 +47,16 @@ DECADES = 1.7
 
 Up to twice as many they stand at 1 and 3 times powers of ten, and beyond at powers of ten.
 """
+
+BODY_SECTIONS, BODY_FIELDS = ("pin", "plate", "dundurs", "pin_body", "plate_body"), ("contact.pin_load",)
+"""Sections and fields of a case that change the bodies. A caption leaves out the bodies if one of them varies."""
+
+CAPTION_WORDS = {
+    "contact.friction": ("friction",),
+    "contact.hole_radius": ("hole radius",),
+    "contact.clearance": ("clearance", "interference", "neat fit"),
+}
+"""Words with which the parts of a caption begin that belong to a field."""
 
 PLAIN = 1e-3, 1e5
 """Numbers between these are written in full, others as powers of ten."""
@@ -134,7 +144,7 @@ def _draw_maps(chart: Chart, look: Look) -> Sheet:
     bar.outline.set_linewidth(0.5)
     if isinstance(scale, LogNorm):
         _round_numbers(bar.ax.yaxis, known)
-    sheet.head(look.title)
+    sheet.head(look.title, caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     return sheet
 
@@ -223,9 +233,22 @@ def _draw_curves(chart: Chart, look: Look) -> Sheet:
     if any_failed:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
     some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""
-    sheet.head(look.title)
+    sheet.head(look.title, caption=_fixed_parameters(chart))
     sheet.legend(_by_rows(handles, across), across, some)
     return sheet
+
+
+def _fixed_parameters(chart: Chart) -> str:
+    """The parameters of the joint that do not vary, as text."""
+    if chart.problem is None:
+        return ""
+    parts = re.split("(?<=[,;]) ", caption(chart.problem))
+    if any(field.split(".")[0] in BODY_SECTIONS or field in BODY_FIELDS for field in chart.varied):
+        parts = parts[next(k for k, part in enumerate(parts) if part.startswith("plane ")) :]
+    for field, words in CAPTION_WORDS.items():
+        if field in chart.varied:
+            parts = [part for part in parts if not part.startswith(words)]
+    return " ".join(parts).rstrip(",;")
 
 
 def _by_rows(handles: Sequence[Any], columns: int) -> list[Any]:

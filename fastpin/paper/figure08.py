@@ -36,8 +36,8 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
 def draw(curves: Sequence[Curve]) -> Figure:
     """Draw peak pressure left and the ratio of half-angles right. Colours show the pair, dashes the friction."""
-    figure, axes = panels(1, 2, height=3.1)
-    head(figure, "Plane strain; body force F on the pin, downwards")
+    figure, axes = panels(1, 2, height=3.3)
+    head(figure, "Plane strain; body force F downwards; ρ and ε: half-angles of stick zone and contact")
     lines = {
         (pair, mu): marked(colour, dashes) for colour, pair in enumerate(PAIRS) for dashes, mu in enumerate(FRICTION)
     }
@@ -51,7 +51,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     peak.set_yscale("log")
     peak.set_yticks([0.4, 0.5, 0.7, 1.0, 1.5, 2.0], labels=["0.4", "0.5", "0.7", "1", "1.5", "2"])
     peak.set_yticks([], minor=True)
-    ratio.set_ylabel("stick zone over contact  tan(ρ/2) / tan(ε/2)")
+    ratio.set_ylabel("tan(ρ/2) / tan(ε/2)")
     ratio.set_ylim(0.0, 1.03)
     for panel in axes[0]:
         load_parameter_axis(panel)

@@ -15,6 +15,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
+from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import printed_unit, scaled, units
 from fastpin.report.field_words import field_words
@@ -159,6 +160,10 @@ class Chart:
         rounding are 0.
     missing : int
         Number of points without a value.
+    problem : Problem, optional
+        The joint of the first point.
+    varied : tuple of str
+        The fields of the plan with several values.
     """
 
     title: str
@@ -167,6 +172,8 @@ class Chart:
     y: Axis | None
     parts: list[tuple[str, np.ndarray, np.ndarray]]
     missing: int
+    problem: Problem | None = None
+    varied: tuple[str, ...] = ()
 
 
 def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[str, str | None, list[str]]:
@@ -255,6 +262,8 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
         axes[0][0] if y else None,
         [(name, *arrays) for name, arrays in parts.items()],
         len(rows) - len(found),
+        plan.case(plan.points[0]).problem,
+        tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
     )
 
 

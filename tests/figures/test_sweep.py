@@ -12,6 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
+from fastpin.figures import sweep as sweep_figure
 from fastpin.figures.style import MAX_NAMED
 from fastpin.figures.sweep import cell_edges, plot_sweep
 from fastpin.report.sweep import Axis, Chart, chart
@@ -102,6 +103,17 @@ def test_values_that_span_decades_have_a_logarithmic_scale(
     assert isinstance(figure.axes[0].collections[0].norm, mpl.colors.LogNorm) == (scale == "log")
     curves = plot_sweep(chart(plan, rows, "peak_pressure", "contact.clearance"))
     assert curves.axes[0].get_yscale() == scale
+
+
+def test_parameters_that_do_not_vary_are_in_the_caption(plan: Plan, rows: list[dict[str, Any]]) -> None:
+    found = chart(plan, rows, "peak_pressure")
+    assert found.varied == ("pin.material", "pin.E", "contact.friction", "contact.clearance")
+    assert sweep_figure._fixed_parameters(found) == "plane strain, hole radius 10\N{NO-BREAK SPACE}mm"
+    text = sweep_figure._fixed_parameters(replace(found, varied=("contact.clearance", "load.1.P")))
+    assert text.startswith("pin: steel, body force; plate: E = 69\N{NO-BREAK SPACE}GPa, ν = 0.33; plane strain")
+    assert "friction coefficient 0.2, hole radius" in text
+    assert "clearance" not in text
+    assert "hole radius 10" in plot_sweep(found).get_suptitle()
 
 
 @pytest.fixture

@@ -93,7 +93,7 @@ WORDS = {
     "5": ("aluminium plate", "half-angle of the contact", "half-angle of the stick zone", "clearance/(F β*)", "ρ = ε"),
     "6": ("Ti-6Al-4V pin and plate", "body force F", "L_p$ = 0.01", "friction coefficient 0.1"),
     "7": ("Ti-6Al-4V pin and plate", "L_p$ = 1", "0.6, 0.4, 0.3 (left, middle, right)"),
-    "8": ("Ti-6Al-4V pin and plate", "aluminium pin, Ti-6Al-4V plate", "peak pressure", "stick zone over contact"),
+    "8": ("Ti-6Al-4V pin and plate", "aluminium pin, Ti-6Al-4V plate", "peak pressure", "ρ and ε: half-angles"),
     "9": ("friction coefficient 0.4", "force F at the centre of the pin", "body force F on the whole pin"),
     "10": ("friction coefficient 0.4", "load parameter 0.75", "in F/R", "$s_{xx}$ = +0.80, $s_{yy}$ = −0.80"),
     "11": ("friction coefficient 0.55", "load parameter 0.05", "can't rotate", "η = Q/(μP)$ = 0.5", "(to the right)"),
