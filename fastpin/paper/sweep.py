@@ -33,8 +33,7 @@ LEAST_STICKING = 9
 NODES_RATIO = 1.75
 """Nodes of the grid over the nodes that are asked for.
 
-With 700 nodes, angles differ by 0.003 deg (median) from their values with 1,900 nodes, and peak pressures by 1e-6. The
-grids of 400 equally spaced nodes for a quarter of a decade each, which were used before, had the same differences.
+With 700 nodes, angles differ by 0.003 deg (median) from their values with 1,900 nodes, and peak pressures by 1e-6.
 """
 
 REACH = math.radians(93.0)
