@@ -1,4 +1,4 @@
-"""The reader of case files: from TOML text to a case, or to all faults with their lines.
+"""Case files: from TOML text to a case, or to all faults with their lines, and from a case to text.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -1,0 +1,132 @@
+"""The writer of case files: the text of a case, which :func:`fastpin.casefile.parse_case` reads back.
+
+Numbers are written with all their digits. The case that is read back is the same one to the last bit. A dimensionless
+problem is the exception: its moduli are scaled anew, and may differ in the last digit. The name of a material that is not
+in :data:`fastpin.MATERIALS` is left out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import fields
+
+import numpy as np
+
+from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
+from fastpin.model.case import Case
+from fastpin.model.compliance import Compliance
+from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS
+from fastpin.model.materials import MATERIALS, Material
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+
+PER_LINE = 8
+"""Numbers of a list of loads on one line. Lines stay shorter than 200 letters."""
+
+
+def case_text(case: Case) -> str:
+    """The text of a case file.
+
+    Every corner is written with all its loads. The cycles of the history are not marked.
+
+    Raises
+    ------
+    InputError
+        If the plate is a compliance, which has a file of its own.
+    """
+    blocks = [
+        *([[f"title = {_value(case.title)}"]] if case.title else []),
+        ["[pin]", *_material(case.problem.pair.pin)],
+        ["[plate]", *_material(case.problem.pair.plate)],
+        ["[contact]", *_contact(case.problem)],
+        *_bodies(case.problem),
+        ["[[load]]", *_loads(case.history)],
+        ["[solve]", *_options(case.options)],
+    ]
+    return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
+
+
+def _material(material: Material) -> Iterator[str]:
+    if material.is_rigid:
+        yield "rigid = true"
+        return
+    if MATERIALS.get(material.name) == material:
+        yield f"material = {_value(material.name)}"
+        return
+    yield f"E = {material.E!r}"
+    yield f"nu = {material.nu!r}"
+    if material.fatigue is not None:
+        constants = ", ".join(f"{name} = {_value(value)}" for name, value in material.fatigue.given().items())
+        yield f"fatigue = {{ {constants} }}"
+
+
+def _contact(problem: Problem) -> Iterator[str]:
+    yield f"plane = {_value(problem.pair.plane)}"
+    if problem.dimensionless:
+        yield f"load_parameter = {problem.clearance!r}"
+    else:
+        yield f"hole_radius = {problem.hole_radius!r}"
+        yield f"clearance = {problem.clearance!r}"
+    yield f"friction = {problem.friction!r}"
+    for name in ("pin_load", "rotation", "drive"):
+        yield f"{name} = {_value(getattr(problem, name))}"
+    for name in ("hub_radius", "hub_stiffness", "gauge_radius"):
+        if getattr(problem, name) is not None:
+            yield f"{name} = {getattr(problem, name)!r}"
+
+
+def _bodies(problem: Problem) -> Iterator[list[str]]:
+    pin, plate = problem.pin_body, problem.plate_body
+    if isinstance(pin, Tube):
+        yield ["[pin_body]", f"bore_radius = {pin.bore_radius!r}", f"load = {_value(pin.load)}"]
+    if plate != Plate():
+        yield ["[plate_body]", *_plate_body(plate)]
+
+
+def _plate_body(body: PlateBody, prefix: str = "") -> Iterator[str]:
+    if isinstance(body, Compliance):
+        raise InputError("plate_body", "a compliance has a file of its own: name it in the section [plate_body]")
+    if isinstance(body, Ring):
+        yield f"{prefix}outer_radius = {body.outer_radius!r}"
+        yield f"support = {_value(body.support)}"
+    elif isinstance(body, Bushing):
+        yield from _material(body.material)
+        yield f"outer_radius = {body.outer_radius!r}"
+        yield f"interference = {body.interference!r}"
+        if body.friction is not None:
+            yield f"friction = {body.friction!r}"
+        yield from _plate_body(body.inside, "ring_")
+    elif body.reaction is not None:
+        yield f"reaction = [{body.reaction[0]!r}, {body.reaction[1]!r}]"
+
+
+def _loads(history: LoadHistory) -> Iterator[str]:
+    given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
+    for name, column, is_given in zip(LOADS, history.values().T.tolist(), given, strict=True):
+        if is_given:
+            lines = [", ".join(map(repr, column[k : k + PER_LINE])) for k in range(0, len(column), PER_LINE)]
+            yield f"{name} = [{lines[0]}]" if len(lines) == 1 else "\n".join([f"{name} = [", *_indented(lines), "]"])
+
+
+def _indented(lines: list[str]) -> Iterator[str]:
+    return (f"    {line}," for line in lines)
+
+
+def _options(options: SolveOptions) -> Iterator[str]:
+    usual = SolveOptions()
+    for each in fields(options):
+        value = getattr(options, each.name)
+        if value != getattr(usual, each.name):
+            yield f"{each.name} = {_value(value)}"
+
+
+def _value(value: object) -> str:
+    """A number, text, truth value or list of numbers as TOML."""
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(repr, value))}]"
+    if isinstance(value, str):  # TOML takes the escapes of JSON, and wants one for DEL too
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return str(value).lower() if isinstance(value, bool) else repr(value)
