@@ -1,8 +1,8 @@
 """The writer of case files: the text of a case, which :func:`fastpin.casefile.parse_case` reads back.
 
 Numbers are written with all their digits. The case that is read back is the same one to the last bit. A dimensionless
-problem is the exception: its moduli are scaled anew, and may differ in the last digit. The name of a material that is not
-in :data:`fastpin.MATERIALS` is left out.
+problem is the exception: its moduli are scaled anew, and may differ in the last digit. The name of a material that is
+not in :data:`fastpin.MATERIALS` is left out.
 """
 
 from __future__ import annotations

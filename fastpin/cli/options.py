@@ -67,6 +67,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_stored_commands(commands)
     add_plot(commands)
     add_report(commands)
+    add_live(commands)
     add_converge(commands)
     add_sweep(commands)
     add_compliance(commands)
@@ -230,6 +231,17 @@ def add_report(commands: Any) -> None:
         action="store_true",
         default=None,
         help="of a case file: solve a second time on a grid with half the intervals, for error bars",
+    )
+
+
+def add_live(commands: Any) -> None:
+    """Add ``live``."""
+    live = _command(commands, "live", "live", "run", "lead a contact with the mouse, on a page in the browser")
+    live.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
+    live.add_argument("--nodes", metavar="N", help="number of nodes round the hole, 5 to 1601 (default 201)")
+    live.add_argument("--port", metavar="N", default="0", help="port of this machine (default: any free one)")
+    live.add_argument(
+        "--no-browser", dest="browser", action="store_false", help="print the address, and open no browser"
     )
 
 

@@ -27,6 +27,7 @@ RANKS = {
     "figures": 9,
     "paper": 10,
     "pages": 10,
+    "live": 10,
     "cli": 11,
 }
 """Every folder and its rank. A file imports from its own folder and from lower ranks."""
@@ -47,6 +48,7 @@ HOMES = {
     "tqdm": ("cli",),
     "jinja2": ("pages",),
     "shtab": ("cli",),
+    "aiohttp": ("live",),
 }
 """Packages that only some folders may import."""
 

@@ -1,0 +1,8 @@
+"""The live page: a contact in the browser, led with the mouse, and recordings of it in one file.
+
+The public names stand in ``__init__.pyi``. They are loaded when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

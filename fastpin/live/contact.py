@@ -1,0 +1,340 @@
+"""The contact of a page: it obeys messages by calls of a :class:`fastpin.Session`, and answers with pictures.
+
+Nothing here knows of servers or browsers.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fastpin.casefile import case_text
+from fastpin.errors import FastpinError, InputError
+from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
+from fastpin.live.pictures import packed, picture
+from fastpin.live.protocol import MOST_PICTURES, MOST_UNDONE, Message, refusal
+from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
+from fastpin.model.case import Case
+from fastpin.model.grid import Grid
+from fastpin.model.loads import LOADS
+from fastpin.model.options import SolveOptions
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+from fastpin.solver.errors import ConvergenceError, SolveError
+from fastpin.solver.session import ALL_ROUND, Session
+from fastpin.states.state import State
+from fastpin.version import __version__
+
+NODES = 201
+"""Nodes of a live contact, by default: pressures are then good to 1e-3, and a step takes some milliseconds."""
+
+MOST_PLAYED = 500
+"""Corners of the case's history that the page can play."""
+
+Answer = dict[str, Any]
+
+
+class Mark(NamedTuple):
+    """A place to which the page can go back: a session there, and the numbers of the pictures that led to it."""
+
+    session: Session
+    trail: tuple[int, ...]
+
+
+class StoppedError(FastpinError):
+    """The server ends while a history is followed."""
+
+
+class LiveContact:
+    """A contact that is led by messages, see :mod:`fastpin.live.protocol`.
+
+    Every load is one straight step of :attr:`session`. So the states have the bits of ``fastpin.solve`` with the same
+    history and grid. The first corner of the case is the first step.
+
+    It is not thread-safe, but :meth:`stop` may be called from any thread.
+
+    Parameters
+    ----------
+    case : Case
+    nodes : int
+        Nodes round the hole.
+
+    Attributes
+    ----------
+    session : Session
+        The present place. Calls must not change it.
+    sentence : str
+        Why the first corner of the case was not carried; "" if it was.
+    """
+
+    def __init__(self, case: Case, nodes: int = NODES) -> None:
+        self._case, self._nodes = case, nodes
+        self._scales = Scales(case.problem, case.history)
+        self._past: deque[Mark] = deque(maxlen=MOST_UNDONE)
+        self._future: list[Mark] = []
+        self._pictures: dict[int, Answer] = {}
+        self._trail: list[int] = []
+        self._shown: list[int] = []
+        self._grids: dict[str, tuple[Grid, str]] = {}
+        self._serial, self._gesture = 0, -1
+        self._reference: Answer | None = None
+        self._known: dict[str, Any] = {}
+        self._stop = threading.Event()
+        self.sentence = ""
+        self.session = self._new_session(case.problem)
+        given = case.history.corner(0)[0]
+        try:
+            self._step(self.session, _named(given), 0)
+        except FastpinError as error:
+            self.sentence = str(error)
+
+    def _new_session(self, problem: Problem) -> Session:
+        return Session(problem, self._nodes, arc=ALL_ROUND, undo=0)
+
+    def obey(self, message: Message) -> list[Answer]:
+        """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
+        before = Mark(self.session, tuple(self._trail))
+        try:
+            if message.kind == "hello":
+                self._known, self._shown = {}, []
+            else:
+                getattr(self, f"_obey_{message.kind}")(**message.fields)
+        except InputError as error:
+            self._return_to(before)
+            return [refusal(message.id, error)]
+        except SolveError as error:
+            self._return_to(before)
+            lost = {"load": error.load, "step": error.step, "fraction": error.fraction, "error": type(error).__name__}
+            return [{"kind": "lost", "id": message.id, "sentence": _sentence(error), **lost}]
+        return [self._changes(message.id)]
+
+    def stop(self) -> None:
+        """End a long history that is being followed."""
+        self._stop.set()
+
+    # -- messages --------------------------------------------------------------------------------------------------
+
+    def _obey_load(self, loads: dict[str, float], gesture: int, drag: bool) -> None:
+        is_new = gesture != self._gesture
+        mark = Mark(self.session.copy() if is_new else self.session, tuple(self._trail) if is_new else ())
+        self._step(self.session, loads, gesture)
+        if is_new:
+            self._remember(mark, gesture)
+
+    def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
+        fields = changed_fields(self.session.problem, changes)
+        session = self.session.copy()
+        rows = self._rows(follow)
+        session.change(replay="none", **fields)
+        self._lead(session, rows, gesture)
+
+    def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
+        before, self._nodes = self._nodes, nodes
+        try:
+            self._lead(self._new_session(self.session.problem), self._rows(follow), gesture)
+        except FastpinError:
+            self._nodes = before
+            raise
+
+    def _obey_undo(self) -> None:
+        if not self._past:
+            raise InputError("undo", "there is nothing before to go back to")
+        self._future.append(Mark(self.session, tuple(self._trail)))
+        self._go(self._past.pop())
+
+    def _obey_redo(self) -> None:
+        if not self._future:
+            raise InputError("redo", "nothing was undone")
+        self._past.append(Mark(self.session, tuple(self._trail)))
+        self._go(self._future.pop())
+
+    def _obey_reset(self) -> None:
+        mark = Mark(self.session, tuple(self._trail))
+        session = self.session.copy()
+        session.reset()
+        self.session = session
+        self._trail = []
+        self._remember(mark, -1)
+
+    def _obey_keep(self, on: bool) -> None:
+        if on and not self._trail:
+            raise InputError("keep", "there is no state to keep")
+        self._reference = self._pictures[self._trail[-1]] if on else None
+
+    # -- steps -----------------------------------------------------------------------------------------------------
+
+    def _rows(self, follow: str) -> list[dict[str, float]]:
+        """The loads to follow after a change: all loads of the history again, or the present load alone."""
+        history = self.session.history
+        if history is None:
+            return []
+        given = history.blocks[0].given
+        if follow == "history":
+            return [_named(row) for row in given]
+        present = history.values()[-1]
+        return [_named(np.where(np.all(np.isnan(given), axis=0), np.nan, present))]
+
+    def _lead(self, session: Session, rows: list[dict[str, float]], gesture: int) -> None:
+        """Lead a new session along loads from no load, and make it the present one."""
+        mark = Mark(self.session, tuple(self._trail))
+        self.session, self._trail = session, []
+        allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
+        for row in rows:
+            if self._stop.is_set():
+                raise StoppedError("the server ends")
+            self._step(self.session, {name: value for name, value in row.items() if name in allowed}, gesture)
+        self._remember(mark, gesture)
+
+    def _step(self, session: Session, loads: dict[str, float], gesture: int) -> None:
+        """Follow a load, and take the picture of its state. A contact too narrow for the circle gets its own nodes."""
+        try:
+            state = session.advance(loads)
+        except ConvergenceError:
+            state = self._on_own_nodes(session, loads)
+        self._add(state, gesture)
+
+    def _on_own_nodes(self, before: Session, loads: dict[str, float]) -> State:
+        """Follow the whole history and one more load on nodes that the solver chooses."""
+        given = [] if before.history is None else [_named(row) for row in before.history.blocks[0].given]
+        session = Session(before.problem, self._nodes, undo=0, expected=[*given, loads])
+        for row in [*given, loads]:
+            state = session.advance(row)
+        self.session = session
+        return state
+
+    def _add(self, state: State, gesture: int) -> None:
+        self._serial += 1
+        self._pictures[self._serial] = picture(state, self._serial, gesture, self._grid_name(state.grid))
+        self._trail.append(self._serial)
+        if len(self._pictures) > MOST_PICTURES:
+            oldest = next(iter(self._pictures))
+            del self._pictures[oldest]
+            if self._trail[0] == oldest:
+                del self._trail[0]
+
+    def _grid_name(self, grid: Grid) -> str:
+        for name, (known, _) in self._grids.items():
+            if known is grid or np.array_equal(known.theta, grid.theta):
+                return name
+        name = str(len(self._grids))
+        self._grids[name] = grid, packed(grid.theta)
+        return name
+
+    def _remember(self, mark: Mark, gesture: int) -> None:
+        """Make a place one to go back to. What was undone before is forgotten."""
+        self._past.append(mark)
+        self._future.clear()
+        self._gesture = gesture
+
+    def _go(self, mark: Mark) -> None:
+        self._return_to(mark)
+        self._gesture = -1
+
+    def _return_to(self, mark: Mark) -> None:
+        self.session = mark.session
+        self._trail = [serial for serial in mark.trail if serial in self._pictures]
+
+    # -- answers ---------------------------------------------------------------------------------------------------
+
+    def _changes(self, number: int) -> Answer:
+        """What the page does not know yet."""
+        shown = set(self._trail)
+        drop = next((k for k, serial in enumerate(self._shown) if serial in shown), len(self._shown))
+        rest = self._shown[drop:]
+        keep = next((k for k, pair in enumerate(zip(rest, self._trail, strict=False)) if pair[0] != pair[1]), None)
+        keep = min(len(rest), len(self._trail)) if keep is None else keep
+        self._shown = list(self._trail)
+        answer = {
+            "kind": "pictures", "id": number, "drop": drop, "keep": keep,
+            "add": [self._pictures[serial] for serial in self._trail[keep:]],
+            "undos": len(self._past), "redos": len(self._future), "sentence": self.sentence,
+        }  # fmt: skip
+        self.sentence = ""
+        for name, value in self._news():
+            if name not in self._known or self._known[name] is not value:
+                self._known[name] = value
+                answer[name] = getattr(self, f"{name}_document")()
+        return answer
+
+    def _news(self) -> Iterator[tuple[str, Any]]:
+        yield "case", self.session.problem
+        yield "reference", self._reference
+        yield "grids", len(self._grids)
+
+    def reference_document(self) -> Answer | None:
+        """The picture of the reference; None if there is none."""
+        return self._reference
+
+    def grids_document(self) -> Answer:
+        """The angles of the nodes, rad, by the names of the grids."""
+        return {name: text for name, (_, text) in self._grids.items()}
+
+    def case_document(self) -> Answer:
+        """The problem, its controls and its loads."""
+        return case_document(self._case.title, self.session.problem, self._scales) | {
+            "nodes": self._nodes,
+            "history": [_named(row) for row in self._case.history.values(np.full(len(LOADS), np.nan))[:MOST_PLAYED]],
+        }
+
+    def recording(self) -> Answer:
+        """Everything that a recording of this contact holds."""
+        return {
+            "version": __version__,
+            "case": self.case_document(),
+            "grids": self.grids_document(),
+            "reference": self._reference,
+            "add": [self._pictures[serial] for serial in self._trail],
+        }
+
+    def case_text(self) -> str:
+        """The problem and the history so far as a case file, on the same nodes.
+
+        Raises
+        ------
+        InputError
+            If there is no history yet, or the plate is a compliance.
+        """
+        history, grid = self.session.history, self.session.grid
+        if history is None or grid is None:
+            raise InputError("case", "no load was followed yet")
+        arc = ALL_ROUND if grid.closed else (float(grid.theta[0]), float(grid.theta[-1]))
+        options = replace(SolveOptions(), nodes=grid.size, arc=arc)
+        return case_text(Case(self.session.problem, history, options, self._case.title))
+
+
+def _sentence(error: SolveError) -> str:
+    """The message of an error without the number of the step, which the page does not show."""
+    text = str(error).partition(": ")[2] or str(error)
+    return text[:1].upper() + text[1:]
+
+
+def _named(given: np.ndarray) -> dict[str, float]:
+    """The loads that are given, by name."""
+    return {name: float(value) for name, value in zip(LOADS, given, strict=True) if not np.isnan(value)}
+
+
+def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
+    """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
+    bore = problem.pin_body.bore_radius if isinstance(problem.pin_body, Tube) else 0.0
+    lug, bush = problem.joint.lug, problem.plate_body
+    return {
+        "title": title,
+        "units": units(problem),
+        "dimensionless": problem.dimensionless,
+        "friction": problem.friction,
+        "radius": problem.hole_radius,
+        "clearance": problem.assembled_clearance,
+        "yielded": scales.force * problem.surfaces.beta_star,
+        "bore": bore,
+        "plate": kind_of(problem.plate_body),
+        "bush": bush.outer_radius if isinstance(bush, Bushing) else None,
+        "rim": lug.outer_radius if isinstance(lug, Ring) else None,
+        "axes": vector_axes(problem, scales),
+        "loads": load_controls(problem, scales),
+        "controls": problem_controls(problem, scales),
+    }

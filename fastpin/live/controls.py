@@ -1,0 +1,261 @@
+"""The controls of the page: what a problem lets one change, with limits of the sliders, and what a change means."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from fastpin.errors import InputError
+from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, Plate, Ring, Tube, kind_of
+from fastpin.model.checks import choice, closest, number
+from fastpin.model.compliance import Compliance
+from fastpin.model.history import LoadHistory, check_loads
+from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
+
+OWN = "other"
+"""The choice of a material that is not in :data:`fastpin.MATERIALS`: its E and nu are given."""
+
+RIGID = "rigid"
+"""The choice of a rigid material."""
+
+MOST_FRICTION = 1.2
+"""End of the slider of friction. Dry metals hardly have more; the field beside takes any."""
+
+USUAL_STRAIN = 1e-3
+"""Strain of a usual load, where the case has none to go by."""
+
+PLATES = {"plate": "infinite plate", "ring": "ring lug", "bushing": "plate with a bush"}
+"""Kinds of plates that can be chosen."""
+
+MISFITS = 1.5
+"""End of the slider of the clearance, in parts of the clearance or of the displacement under the usual force."""
+
+
+class Scales:
+    """Sizes of the loads and displacements of a case. They stay as they are while the problem changes.
+
+    Attributes
+    ----------
+    force : float
+        Largest force on the pin in the history, N/m; that of the strain 1e-3 if there is none.
+    displacement : float
+        Largest prescribed displacement, or else the clearance and the displacement under the force together, m.
+    stress : float
+        Bearing stress of the force or largest remote stress, whichever is larger, Pa.
+    """
+
+    def __init__(self, problem: Problem, history: LoadHistory) -> None:
+        largest = dict(zip(LOADS, abs(history.distinct()).max(axis=0).tolist(), strict=True))
+        natural = problem.natural_loads()
+        self.force = math.hypot(largest["P"], largest["Q"]) or USUAL_STRAIN * natural["force"]
+        yielded = self.force * problem.surfaces.beta_star
+        self.displacement = max(largest["ux"], largest["uy"]) or abs(problem.assembled_clearance) + yielded
+        self.stress = max(0.5 * self.force / problem.hole_radius, *(largest[name] for name in ("sxx", "syy", "sxy")))
+        self.moment = max(largest["M"], max(problem.friction, 0.1) * self.force * problem.hole_radius)
+        self.rotation = max(largest["rotation"], yielded / problem.hole_radius)
+        self.misfit = max(abs(problem.clearance), yielded)
+
+    def of_load(self, name: str) -> float:
+        """The size of a load."""
+        kind = LOAD_KIND[name]
+        return float(getattr(self, {"traction": "stress"}.get(kind, kind)))
+
+
+def load_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+    """The loads that the problem allows, with their units and sizes."""
+    unit = units(problem)
+    found = []
+    for name, kind in LOAD_KIND.items():
+        try:
+            check_loads(problem, LoadHistory([{name: scales.of_load(name)}]))
+        except InputError:
+            continue
+        found.append({"name": name, "unit": unit[kind], "size": scales.of_load(name)})
+    return found
+
+
+def problem_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+    """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
+    unit = units(problem)
+    misfit = MISFITS * scales.misfit
+    plate = problem.plate_body
+    found = [
+        _slider("contact", "friction", problem.friction, "", 0.0, MOST_FRICTION),
+        _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
+        _chooser("contact", "plane", problem.pair.plane, PLANES),
+        *_material("pin", problem.pair.pin),
+        *_pin(problem, unit["length"]),
+        *_material("plate", problem.pair.plate),
+    ]
+    if isinstance(plate, Compliance):
+        return found
+    return found + _plate(problem, unit)
+
+
+def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields of the problem that changes of controls mean.
+
+    Parameters
+    ----------
+    problem : Problem
+    changes : mapping
+        New values by the names of controls.
+
+    Returns
+    -------
+    dict
+        Arguments of :meth:`fastpin.Session.change`.
+
+    Raises
+    ------
+    InputError
+        If there is no such control, or a value can't be used.
+    """
+    for name in changes:
+        if name not in NAMES:
+            raise InputError(name, f"is no control of the page{closest(name, NAMES)}")
+    fields: dict[str, Any] = {}
+    for name in ("friction", "clearance", "pin_load", "rotation"):
+        if name in changes:
+            fields[name] = changes[name]
+    if changes.keys() & {"plane", *_names_of_material("pin"), *_names_of_material("plate")}:
+        fields["pair"] = MaterialPair(
+            _changed_material(problem.pair.pin, "pin", changes),
+            _changed_material(problem.pair.plate, "plate", changes),
+            changes.get("plane", problem.pair.plane),
+        )
+    if changes.keys() & {"pin_bore", "bore_load"}:
+        fields["pin_body"] = _changed_pin(problem, changes)
+        if fields["pin_body"] != Disk():
+            fields["pin_load"] = "centre"  # the load of a hollow pin is a field of its body
+    if changes.keys() & {"plate_body", "outer_radius", "support", "interference", *_names_of_material("bush")}:
+        fields["plate_body"] = _changed_plate(problem, changes)
+    return fields
+
+
+def _names_of_material(body: str) -> tuple[str, ...]:
+    return f"{body}_material", f"{body}_E", f"{body}_nu"
+
+
+NAMES = (
+    "friction",
+    "clearance",
+    "plane",
+    "pin_load",
+    "rotation",
+    "pin_bore",
+    "bore_load",
+    "plate_body",
+    "outer_radius",
+    "support",
+    "interference",
+    *(name for body in ("pin", "plate", "bush") for name in _names_of_material(body)),
+)
+"""Names of all controls of problems."""
+
+
+def _slider(group: str, name: str, value: float | None, unit: str, least: float, most: float) -> dict[str, Any]:
+    return {"group": group, "name": name, "value": value, "unit": unit, "least": least, "most": most}
+
+
+def _chooser(group: str, name: str, value: str, choices: Mapping[str, str] | tuple[str, ...]) -> dict[str, Any]:
+    names = dict(choices) if isinstance(choices, Mapping) else {word: word for word in choices}
+    return {"group": group, "name": name, "value": value, "choices": names}
+
+
+def _material(body: str, material: Material) -> list[dict[str, Any]]:
+    known = MATERIALS.get(material.name)
+    alike = known is not None and (known.E, known.nu) == (material.E, material.nu)
+    chosen = RIGID if material.is_rigid else material.name if alike else OWN
+    found = [_chooser(body, f"{body}_material", chosen, (*MATERIALS, *([RIGID] * (body != "bush")), OWN))]
+    if not material.is_rigid:
+        found.append(_slider(body, f"{body}_E", material.E, "Pa", 0.1 * material.E, 3.0 * material.E))
+        found.append(_slider(body, f"{body}_nu", material.nu, "", 0.0, 0.5))
+    return found
+
+
+def _changed_material(material: Material, body: str, changes: Mapping[str, Any]) -> Material:
+    name, modulus, ratio = _names_of_material(body)
+    if name in changes:
+        chosen = choice(name, changes[name], (*MATERIALS, RIGID, OWN))
+        if chosen != OWN:
+            return Material.rigid() if chosen == RIGID else MATERIALS[chosen]
+        if material.is_rigid:  # a rigid body has no moduli to go on from
+            material = MATERIALS["steel"]
+        return Material(material.E, material.nu, fatigue=material.fatigue)
+    if not changes.keys() & {modulus, ratio}:
+        return material
+    return Material(changes.get(modulus, material.E), changes.get(ratio, material.nu))
+
+
+def _pin(problem: Problem, length: str) -> list[dict[str, Any]]:
+    body, radius = problem.pin_body, problem.hole_radius
+    bore = body.bore_radius if isinstance(body, Tube) else 0.0
+    found = [_slider("pin", "pin_bore", bore, length, 0.0, 0.9 * radius)]
+    if isinstance(body, Tube):
+        found.append(_chooser("pin", "bore_load", body.load, TUBE_LOADS))
+    elif not problem.held and problem.drive == "force":
+        found.append(_chooser("pin", "pin_load", problem.pin_load, ("centre", "body")))
+    if problem.pin_load != "body" and problem.hub_radius is None and problem.hub_stiffness is None:
+        found.append(_chooser("pin", "rotation", problem.rotation, ("free", "fixed")))
+    return found
+
+
+def _changed_pin(problem: Problem, changes: Mapping[str, Any]) -> Disk | Tube:
+    body = problem.pin_body
+    bore = number("pin_bore", changes.get("pin_bore", body.bore_radius if isinstance(body, Tube) else 0.0))
+    if bore == 0.0:
+        return Disk()
+    return Tube(bore, changes.get("bore_load", body.load if isinstance(body, Tube) else "uniform"))
+
+
+def _plate(problem: Problem, unit: dict[str, str]) -> list[dict[str, Any]]:
+    body, radius = problem.plate_body, problem.hole_radius
+    found = [_chooser("plate", "plate_body", kind_of(body), PLATES)]
+    if isinstance(body, (Ring, Bushing)):
+        found.append(_slider("plate", "outer_radius", body.outer_radius, unit["length"], 1.05 * radius, 4.0 * radius))
+    if isinstance(body, Ring):
+        found.append(_chooser("plate", "support", body.support, SUPPORTS))
+    if isinstance(body, Bushing):
+        most = max(2.0 * body.interference, abs(problem.clearance), 1e-3 * radius * (not problem.dimensionless))
+        found.append(_slider("plate", "interference", body.interference, unit["displacement"], 0.0, most))
+        found += _material("bush", body.material)
+    return found
+
+
+def _changed_plate(problem: Problem, changes: Mapping[str, Any]) -> Plate | Ring | Bushing:
+    body, radius = problem.plate_body, problem.hole_radius
+    if isinstance(body, Compliance):
+        raise InputError("plate_body", "the compliance of a finite plate can't be changed on the page")
+    kind = choice("plate_body", changes.get("plate_body", kind_of(body)), tuple(PLATES))
+    if kind != kind_of(body):
+        if kind == "plate":
+            return Plate()
+        if kind == "ring":
+            return Ring(2.0 * radius)
+        return Bushing(problem.pair.plate if not problem.pair.plate.is_rigid else MATERIALS["steel"], 1.25 * radius)
+    values = {name: changes[name] for name in ("outer_radius", "support", "interference") if name in changes}
+    if isinstance(body, Plate):
+        if values:
+            raise InputError(min(values), "an infinite plate has no outer radius, support or interference")
+        return body
+    if isinstance(body, Bushing) and changes.keys() & set(_names_of_material("bush")):
+        values["material"] = _changed_material(body.material, "bush", changes)
+    wrong = values.keys() - vars(body).keys()
+    if wrong:
+        raise InputError(min(wrong), f"is no field of a {PLATES[kind]}")
+    return replace(body, **values)
+
+
+def vector_axes(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+    """The loads that the mouse moves along x and along y: their sign in this direction, and their size."""
+    names = [("ux" if driven else force, sign) for driven, force, sign in
+             zip(problem.driven, ("Q", "P"), (1.0, -1.0), strict=True)]  # fmt: skip
+    if problem.driven[1]:
+        names[1] = ("uy", 1.0)
+    return [{"load": name, "sign": sign, "size": scales.of_load(name)} for name, sign in names]

@@ -1,0 +1,86 @@
+"""The picture of a state: everything that the page draws of it, JSON-ready."""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import Any
+
+import numpy as np
+
+from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.report.summary import json_ready
+from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.state import State
+
+HOOP_ANGLES = 181
+"""Angles of the curve of the hoop stress: every two degrees round the hole, the first and the last at the top."""
+
+
+def packed(values: np.ndarray, kind: str = "<f4") -> str:
+    """An array as base64 of little-endian numbers: "<f4" is float32, "i1" int8."""
+    return base64.b64encode(np.asarray(values).astype(kind).tobytes()).decode("ascii")
+
+
+def hoop_angles() -> np.ndarray:
+    """The angles of the curve of the hoop stress, rad."""
+    return np.linspace(-1.5 * math.pi, 0.5 * math.pi, HOOP_ANGLES)
+
+
+def picture(state: State, serial: int, gesture: int, grid: str) -> dict[str, Any]:
+    """The picture of a state.
+
+    Parameters
+    ----------
+    state : State
+    serial : int
+        The number of the picture in its session.
+    gesture : int
+        The gesture that led to the state.
+    grid : str
+        The name of the state's grid.
+
+    Returns
+    -------
+    dict
+        Numbers in SI units, or in the units of a dimensionless problem. Angles are in degrees from the bottom of the
+        hole. The entry "loops" has a pair for each load: the load, and the displacement on which it does work.
+    """
+    rigid = state.problem.surfaces.plate.is_rigid
+    return {
+        "serial": serial,
+        "gesture": gesture,
+        "grid": grid,
+        **json_ready(_numbers(state)),
+        "pressure": packed(state.pressure),
+        "shear": packed(state.shear),
+        "gap": packed(state.gap),
+        "slip_distance": packed(state.slip),
+        "status": packed(state.status, "i1"),
+        "hoop": None if rigid else packed(state.hoop_stress("plate", hoop_angles())),
+    }
+
+
+def _numbers(state: State) -> dict[str, Any]:
+    loops = LoadCycle((state, state)).loops
+    return {
+        "load": state.load,
+        "moment": state.resultants["M"],
+        "dx": state.dx,
+        "dy": state.dy,
+        "rotation": state.rotation,
+        "dissipation": state.dissipation,
+        "peak_pressure": state.peak_pressure,
+        "peak_pressure_angle": _degrees(state.peak_pressure_angle),
+        "peak_shear": state.peak_shear,
+        "peak_shear_angle": _degrees(state.peak_shear_angle),
+        "contact": [interval_from_bottom(*ends) for ends in state.contact],
+        "stick": [interval_from_bottom(*ends) for ends in state.stick],
+        "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
+        "residual": max(state.residuals.values()),
+        "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
+    }
+
+
+def _degrees(angle: float) -> float:
+    return from_bottom(angle) if math.isfinite(angle) else math.nan

@@ -1,0 +1,153 @@
+"""The messages between page and server, and their limits.
+
+Both sides send JSON objects, one in each message of a websocket. The page sends these; ``id`` is a whole number that
+comes back in the answer:
+
+=========  ==========================================================================================================
+kind       fields
+=========  ==========================================================================================================
+hello      ``session``: the name of the session that the page had before, or "". The first message.
+load       ``loads``: loads by name, SI. ``gesture``: a whole number; loads of one gesture are undone together.
+           ``drag``: true while the mouse moves. Of several loads of a drag that wait, the latest one is followed.
+change     ``changes``: new values by the names of controls. ``follow``: "load" or "history". ``gesture`` as above.
+nodes      ``nodes``: the number of nodes. ``follow`` as above.
+undo       Back to the state before the last gesture.
+redo       Forward again.
+reset      No load, no history. It can be undone.
+keep       ``on``: keep the present state as the reference, or forget the reference.
+=========  ==========================================================================================================
+
+The server answers each message with one of these:
+
+=========  ==========================================================================================================
+welcome    To hello. ``session``: the name of the session; ``version`` of fastpin.
+pictures   The history of the page changes: ``drop`` pictures at its beginning go, the next ``keep`` stay, those behind
+           them go, and the pictures ``add`` are appended. ``grids``: angles of the nodes by the name of a grid.
+           ``undos``, ``redos``: gestures that can be undone and redone. ``case``: the problem and its controls, if they
+           have changed. ``reference``: the reference, if it has changed. ``sentence``: a remark, or "".
+refused    Input that can't be used. ``field`` and ``sentence`` say why. Nothing has changed.
+lost       A load that nothing carries, or that the solver has lost. ``sentence`` says why, ``load`` where, ``fraction``
+           which part of the step was carried. The contact is at the state before.
+skipped    A load of a drag that was passed over because a later one came.
+=========  ==========================================================================================================
+
+Arrays are little-endian float32 (the status: int8) in base64. Numbers outside arrays have all their digits. NaN is
+null. A message that is no such message is answered by "refused".
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, choice, number, string, true_or_false, whole_number
+from fastpin.model.grid import LEAST_NODES
+
+MOST_BYTES = 16_384
+"""Most bytes of a message from the page. The largest has nine loads; it is shorter than 1,000."""
+
+MOST_A_SECOND = 240
+"""Most messages of a connection in a second. A page sends one for each picture, at most 120 a second."""
+
+MOST_WAITING = 64
+"""Most messages of a connection that wait. Loads of a drag count once."""
+
+MOST_CONNECTIONS = 16
+"""Most open connections. Each page has one."""
+
+MOST_SESSIONS = 8
+"""Most sessions, each of them a contact with its history: up to 60 MB."""
+
+MOST_PICTURES = 2_000
+"""Pictures of a history that are remembered: a minute of dragging, up to 12 MB with 201 nodes."""
+
+MOST_UNDONE = 200
+"""Gestures that can be undone."""
+
+MOST_LIVE_NODES = 1_601
+"""Most nodes of a live contact. A step then takes half a second."""
+
+MOST_NUMBER = 2**53
+"""Largest whole number that a page can send: beyond, JavaScript's numbers have gaps."""
+
+FOLLOW = ("load", "history")
+"""What follows a change of the problem: one straight step to the present load, or all loads again."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """A message from the page: its kind, its number, and its fields."""
+
+    kind: str
+    id: int
+    fields: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def is_drag(self) -> bool:
+        """Whether a later load may take the place of this one."""
+        return self.kind == "load" and bool(self.fields["drag"])
+
+
+def _loads(name: str, value: object) -> dict[str, float]:
+    return {load: number(load, one) for load, one in _table(name, value).items()}
+
+
+def _table(name: str, value: object) -> dict[str, Any]:
+    if not isinstance(value, dict) or not value:
+        raise InputError(name, f"must be an object with at least one entry, not {as_toml(value)}")
+    return value
+
+
+def _whole(name: str, value: object) -> int:
+    return whole_number(name, value, 0, MOST_NUMBER)
+
+
+def _follow(name: str, value: object) -> str:
+    return choice(name, value, FOLLOW)
+
+
+def _nodes(name: str, value: object) -> int:
+    return whole_number(name, value, LEAST_NODES, MOST_LIVE_NODES)
+
+
+FIELDS: dict[str, dict[str, Any]] = {
+    "hello": {"session": string},
+    "load": {"loads": _loads, "gesture": _whole, "drag": true_or_false},
+    "change": {"changes": _table, "follow": _follow, "gesture": _whole},
+    "nodes": {"nodes": _nodes, "follow": _follow, "gesture": _whole},
+    "undo": {},
+    "redo": {},
+    "reset": {},
+    "keep": {"on": true_or_false},
+}
+"""The fields of each kind of message, and their checks."""
+
+
+def read_message(text: str) -> Message:
+    """Read a message from the page.
+
+    Raises
+    ------
+    InputError
+        If the text is no message. The error names the field.
+    """
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InputError("message", "is no JSON") from None
+    if not isinstance(found, dict):
+        raise InputError("message", f"must be an object, not {as_toml(found)}")
+    kind = choice("kind", found.get("kind"), tuple(FIELDS))
+    number_of_message = _whole("id", found.get("id"))
+    unknown = found.keys() - FIELDS[kind].keys() - {"kind", "id"}
+    if unknown:
+        raise InputError("message", f"has an unknown field {as_toml(min(unknown))}")
+    fields = {name: check(name, found.get(name)) for name, check in FIELDS[kind].items()}
+    return Message(kind, number_of_message, fields)
+
+
+def refusal(number_of_message: int | None, error: InputError) -> dict[str, Any]:
+    """The answer to input that can't be used. The number is None where a message has none."""
+    return {"kind": "refused", "id": number_of_message, "field": error.field, "sentence": str(error)}

@@ -1,0 +1,48 @@
+"""The recording of a finished run: the page with the states of a result, in one HTML file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fastpin.errors import InputError
+from fastpin.live.contact import case_document
+from fastpin.live.controls import Scales
+from fastpin.live.page import recorded_page
+from fastpin.live.pictures import packed, picture
+from fastpin.live.protocol import MOST_PICTURES
+from fastpin.model.case import Case
+from fastpin.states.state import State
+from fastpin.version import __version__
+
+
+def record_page(case: Case, states: Sequence[State]) -> str:
+    """The text of an HTML file that replays states, without server and network.
+
+    Of more than :data:`fastpin.live.protocol.MOST_PICTURES` states an even choice is taken, with the first and the
+    last one.
+
+    Parameters
+    ----------
+    case : Case
+        The case of the states.
+    states : sequence of State
+        In the order of the history, on one grid.
+
+    Raises
+    ------
+    InputError
+        If there is no state.
+    """
+    if not len(states):
+        raise InputError("states", "there is no state to record")
+    count = min(len(states), MOST_PICTURES)
+    places = [round(k * (len(states) - 1) / max(count - 1, 1)) for k in range(count)]
+    chosen = [states[place] for place in places]
+    recording = {
+        "version": __version__,
+        "case": case_document(case.title, case.problem, Scales(case.problem, case.history)),
+        "grids": {"0": packed(chosen[0].theta)},
+        "reference": None,
+        "add": [picture(state, serial, state.step, "0") for serial, state in enumerate(chosen, start=1)],
+    }
+    return recorded_page(recording)

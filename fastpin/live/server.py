@@ -1,0 +1,420 @@
+"""The server of the live page, on this machine only.
+
+The page and its websocket stand under a random token. Host and Origin are checked, so no other page of the browser can
+reach the server. docs/live.md lists the limits; their numbers stand in :mod:`fastpin.live.protocol`.
+
+Contacts are computed in one thread, one after the other. The loop of the server stays free meanwhile.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import functools
+import hmac
+import json
+import logging
+import secrets
+import socket
+import time
+from collections import deque
+from collections.abc import AsyncIterator, Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from aiohttp import WSCloseCode, WSMsgType, web
+
+from fastpin.errors import FastpinError, InputError
+from fastpin.live.contact import LiveContact
+from fastpin.live.page import live_page, page_files, recorded_page
+from fastpin.live.protocol import (
+    MOST_A_SECOND,
+    MOST_BYTES,
+    MOST_CONNECTIONS,
+    MOST_SESSIONS,
+    MOST_WAITING,
+    Message,
+    read_message,
+    refusal,
+)
+from fastpin.version import __version__
+
+ADDRESS = "127.0.0.1"
+"""The only address on which the server listens: that of this machine, for this machine."""
+
+TOKEN_BYTES = 16
+"""Random bytes of the token: 128 bits can't be guessed."""
+
+HEARTBEAT = 20.0
+"""Seconds between two pings of a websocket. A page that has gone without a word is noticed after this time."""
+
+POLICY = (
+    "default-src 'none'; script-src 'self' {map}; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self' ws://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""The Content-Security-Policy of the page: its own files only, and no script in the HTML but the import map."""
+
+HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+"""Headers of all answers."""
+
+log = logging.getLogger("fastpin.live")
+
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class Mailbox:
+    """The messages of one connection that wait. Of several loads of a drag the latest one stays."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[Message] = deque()
+        self._arrived = asyncio.Event()
+
+    def put(self, message: Message) -> Message | None:
+        """Add a message. Return the one whose place it takes, if any.
+
+        Raises
+        ------
+        InputError
+            If too many messages wait.
+        """
+        last = self._waiting[-1] if self._waiting else None
+        if last is not None and message.is_drag and last.is_drag and _gesture(last) == _gesture(message):
+            self._waiting[-1] = message
+            return last
+        if len(self._waiting) >= MOST_WAITING:
+            raise InputError("message", f"more than {MOST_WAITING} messages wait; this one is dropped")
+        self._waiting.append(message)
+        self._arrived.set()
+        return None
+
+    async def get(self) -> Message:
+        """The next message."""
+        while not self._waiting:
+            self._arrived.clear()
+            await self._arrived.wait()
+        return self._waiting.popleft()
+
+
+def _gesture(message: Message) -> int:
+    return int(message.fields["gesture"])
+
+
+class RateLimit:
+    """Whether a message may come now: at most so many in a second, counted in a moving window."""
+
+    def __init__(self, most: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self._times: deque[float] = deque(maxlen=most)
+        self._clock = clock
+
+    def allows(self) -> bool:
+        """Count a message, if it may come."""
+        now = self._clock()
+        if len(self._times) == self._times.maxlen and now - self._times[0] < 1.0:
+            return False
+        self._times.append(now)
+        return True
+
+
+class Sessions:
+    """The contacts of all pages by name. A page that comes back finds its contact again."""
+
+    def __init__(self, make: Callable[[], LiveContact]) -> None:
+        self._make = make
+        self._contacts: dict[str, LiveContact] = {}
+        self._open: set[str] = set()
+
+    def find(self, name: str) -> str | None:
+        """Take the contact of this name, if it is there and no other page has it."""
+        if name not in self._contacts or name in self._open:
+            return None
+        self._contacts[name] = self._contacts.pop(name)  # the latest one is the last to be dropped
+        self._open.add(name)
+        return name
+
+    def add(self) -> tuple[str, LiveContact]:
+        """Make a new contact. The oldest contact without a page is dropped, if there are too many.
+
+        Raises
+        ------
+        InputError
+            If all contacts have pages.
+        """
+        if len(self._contacts) >= MOST_SESSIONS:
+            idle = next((name for name in self._contacts if name not in self._open), None)
+            if idle is None:
+                raise InputError(
+                    "session", f"{MOST_SESSIONS} pages are open, no more are served; close one, and reload"
+                )
+            del self._contacts[idle]
+        name, contact = secrets.token_urlsafe(TOKEN_BYTES), self._make()
+        self._contacts[name] = contact
+        self._open.add(name)
+        return name, contact
+
+    def release(self, name: str) -> None:
+        """Note that a page has gone. Its contact stays."""
+        self._open.discard(name)
+
+    def __getitem__(self, name: str) -> LiveContact:
+        return self._contacts[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._contacts
+
+    def stop(self) -> None:
+        """End all long histories."""
+        for contact in self._contacts.values():
+            contact.stop()
+
+
+class Server:
+    """The server of the page. ``make`` makes the contact of a new page.
+
+    Attributes
+    ----------
+    token : str
+        The part of the address that nobody else knows.
+    address : str
+        The address of the page; "" before :meth:`running`.
+    """
+
+    def __init__(self, make: Callable[[], LiveContact]) -> None:
+        self.token = secrets.token_urlsafe(TOKEN_BYTES)
+        self.address = ""
+        self._hosts: tuple[str, ...] = ()
+        self._sessions = Sessions(make)
+        self._files = page_files()
+        self._page, self._map = live_page()
+        self._connections = 0
+        self._sockets: set[web.WebSocketResponse] = set()
+        self._thread = ThreadPoolExecutor(1, "fastpin")
+
+    @contextlib.asynccontextmanager
+    async def running(self, port: int = 0) -> AsyncIterator[Server]:
+        """Listen on a port; 0 means any free one.
+
+        Raises
+        ------
+        InputError
+            If the port can't be used.
+        """
+        application = web.Application(client_max_size=MOST_BYTES, middlewares=[self._guard])
+        application.router.add_get("/{token}/", self._send_page)
+        application.router.add_get("/{token}/socket", self._talk)
+        application.router.add_get("/{token}/save/{session}/{file}", self._save)
+        application.router.add_get("/{token}/{file:.*}", self._send_file)
+        runner = web.AppRunner(application, access_log=None, shutdown_timeout=1.0)
+        listening = bound_socket(port)
+        try:
+            await runner.setup()
+            host = f"{ADDRESS}:{listening.getsockname()[1]}"
+            self._hosts = host, host.replace(ADDRESS, "localhost")
+            self.address = f"http://{host}/{self.token}/"
+            await web.SockSite(runner, listening).start()
+            yield self
+        finally:
+            self._sessions.stop()
+            for page in list(self._sockets):
+                await page.close(code=WSCloseCode.GOING_AWAY, message=b"the server ends")
+            await runner.cleanup()
+            listening.close()
+            self._thread.shutdown(wait=True, cancel_futures=True)
+
+    # -- requests --------------------------------------------------------------------------------------------------
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Refuse requests for another host, from another page, or without the token."""
+        origin = request.headers.get("Origin")
+        if request.headers.get("Host") not in self._hosts:
+            response: web.StreamResponse = _refused(403, "This server answers to its own address only.")
+        elif origin is not None and origin not in [f"http://{host}" for host in self._hosts]:
+            response = _refused(403, "Another page may not use this server.")
+        elif not hmac.compare_digest(request.match_info.get("token", "").encode(), self.token.encode()):
+            response = _refused(403, "The address lacks the token: take the address that fastpin live has printed.")
+        else:
+            try:
+                response = await handler(request)
+            except web.HTTPException as error:
+                response = _refused(error.status, error.reason)
+        if not response.prepared:
+            response.headers.update(HEADERS)
+        return response
+
+    async def _send_page(self, request: web.Request) -> web.Response:
+        policy = POLICY.format(map=self._map, host=request.headers["Host"])
+        headers = {"Content-Security-Policy": policy}
+        return web.Response(text=self._page, content_type="text/html", headers=headers)
+
+    async def _send_file(self, request: web.Request) -> web.Response:
+        found = self._files.get(request.match_info["file"])
+        if found is None:
+            return _refused(404, "There is no such file.")
+        return web.Response(body=found[0], content_type=found[1], charset="utf-8")
+
+    async def _save(self, request: web.Request) -> web.Response:
+        """Send the history of a page as a case file, or as a recording."""
+        name, file = request.match_info["session"], request.match_info["file"]
+        if name not in self._sessions or file not in ("case.toml", "recording.html"):
+            return _refused(404, "There is no such history.")
+        contact = self._sessions[name]
+
+        def text() -> str:
+            return contact.case_text() if file == "case.toml" else recorded_page(contact.recording())
+
+        try:
+            body = await self._compute(text)
+        except InputError as error:
+            return _refused(409, str(error))
+        headers = {"Content-Disposition": f'attachment; filename="{file}"'}
+        return web.Response(text=body, content_type="application/octet-stream", headers=headers)
+
+    async def _compute(self, work: Callable[[], Any]) -> Any:
+        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
+
+    # -- websockets ------------------------------------------------------------------------------------------------
+
+    async def _talk(self, request: web.Request) -> web.StreamResponse:
+        if request.headers.get("Origin") is None:
+            return _refused(403, "Only the page may use this server.")
+        if self._connections >= MOST_CONNECTIONS:
+            return _refused(503, f"{MOST_CONNECTIONS} pages are open, no more are served; close one, and reload.")
+        page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=HEARTBEAT, compress=False)
+        self._connections += 1
+        try:
+            await page.prepare(request)
+            self._sockets.add(page)
+            await self._serve_page(page)
+        finally:
+            self._connections -= 1
+            self._sockets.discard(page)
+        return page
+
+    async def _serve_page(self, page: web.WebSocketResponse) -> None:
+        mailbox, limit = Mailbox(), RateLimit(MOST_A_SECOND)
+        working = asyncio.create_task(self._work(page, mailbox))
+        try:
+            async for received in page:
+                if received.type != WSMsgType.TEXT:
+                    await _send(page, refusal(None, InputError("message", "must be text")))
+                elif limit.allows():
+                    await self._receive(page, mailbox, received.data)
+                # What comes faster is dropped without an answer: answers would be a flood of their own.
+        finally:
+            working.cancel()
+            with contextlib.suppress(asyncio.CancelledError, ConnectionError):
+                await working
+
+    async def _receive(self, page: web.WebSocketResponse, mailbox: Mailbox, text: str) -> None:
+        message = None
+        try:
+            message = read_message(text)
+            skipped = mailbox.put(message)
+            if skipped is not None:
+                await _send(page, {"kind": "skipped", "id": skipped.id})
+        except InputError as error:
+            await _send(page, refusal(None if message is None else message.id, error))
+
+    async def _work(self, page: web.WebSocketResponse, mailbox: Mailbox) -> None:
+        """Obey the messages of a page, one after the other."""
+        name = ""
+        try:
+            while True:
+                message = await mailbox.get()
+                try:
+                    if not name:
+                        name = await self._greet(page, message)
+                    contact = self._sessions[name]
+                    text = await self._compute(functools.partial(_answers, contact, message))
+                except InputError as error:
+                    text = [json.dumps(refusal(message.id, error))]
+                for one in text:
+                    await page.send_str(one)
+        except (ConnectionError, RuntimeError):  # the page has gone
+            log.debug("a page has gone")
+        finally:
+            self._sessions.release(name)
+
+    async def _greet(self, page: web.WebSocketResponse, message: Message) -> str:
+        """Find the contact of a page, or make one. Return its name."""
+        if message.kind != "hello":
+            raise InputError("kind", "the first message must be hello")
+        name = self._sessions.find(message.fields["session"])
+        if name is None:
+            name = (await self._compute(self._sessions.add))[0]
+        await _send(page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__})
+        return name
+
+
+def _answers(contact: LiveContact, message: Message) -> list[str]:
+    """The answers of a contact as text. Whatever goes wrong is an answer too, and the page lives on."""
+    try:
+        return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in contact.obey(message)]
+    except FastpinError as error:
+        return [json.dumps(refusal(message.id, InputError("contact", str(error))))]
+    except Exception as error:
+        log.exception("a message failed")
+        words = f"the message failed unexpectedly ({type(error).__name__}); the contact is where it was"
+        return [json.dumps(refusal(message.id, InputError("contact", words)))]
+
+
+async def _send(page: web.WebSocketResponse, answer: dict[str, Any]) -> None:
+    with contextlib.suppress(ConnectionError, RuntimeError):  # the page has gone
+        await page.send_str(json.dumps(answer, allow_nan=False))
+
+
+def _refused(status: int, sentence: str) -> web.Response:
+    return web.Response(status=status, text=f"{sentence}\n", headers=HEADERS)
+
+
+def bound_socket(port: int) -> socket.socket:
+    """A socket on a port of this machine; 0 means any free one.
+
+    Raises
+    ------
+    InputError
+        If the port can't be used.
+    """
+    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind((ADDRESS, port))
+        found.listen(MOST_CONNECTIONS)
+    except OSError as error:
+        found.close()
+        reason = (error.strerror or str(error)).lower()
+        raise InputError("port", f"{port} can't be used: {reason}; choose another one, or leave it out") from None
+    return found
+
+
+def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
+    """Serve the page until Ctrl-C.
+
+    Parameters
+    ----------
+    make : callable
+        ``make()`` returns the contact of a new page.
+    port : int
+        0 means any free port.
+    ready : callable
+        ``ready(address)`` is called once the page can be opened.
+
+    Raises
+    ------
+    InputError
+        If the port can't be used.
+    """
+
+    async def run() -> None:
+        async with Server(make).running(port) as server:
+            ready(server.address)
+            await asyncio.Event().wait()
+
+    with contextlib.suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(run())

@@ -1,0 +1,162 @@
+// Curves round the hole: pressure, shear with its bounds, hoop stress. Stick and slip are shaded.
+
+import { INK, PRESSURE, REFERENCE, SOFT, ofStatus } from "live/colours";
+import { peak } from "live/drawing";
+import { digits, scaled } from "live/units";
+
+const FONT = "11px system-ui, sans-serif";
+const GRID = { stroke: "#e6e9ec", width: 1 };
+const DEGREES = [-180, -135, -90, -45, 0, 45, 90, 135, 180];
+
+export function axis(more = {}) {
+  return { stroke: SOFT, font: FONT, grid: GRID, ticks: { ...GRID, size: 4 }, ...more };
+}
+
+export function angleAxis(more = {}) {
+  return axis({ splits: () => DEGREES, values: (_, splits) => splits.map((angle) => `${angle}°`.replace("-", "−")), size: 24, ...more });
+}
+
+export function valueAxis(more = {}) {
+  return axis({ size: 48, values: (_, splits) => splits.map((value) => digits(value, 6).replace(/\.?0+$/, (tail) => (tail.includes(".") ? "" : tail))), ...more });
+}
+
+// A chart that fills its element, and follows the size of it.
+export function chart(element, options, data) {
+  const size = () => ({ width: Math.max(element.clientWidth, 80), height: Math.max(element.clientHeight, 80) });
+  const made = new uPlot({ ...size(), legend: { show: false }, padding: [8, 16, 0, 0], ...options }, data, element);
+  new ResizeObserver(() => made.setSize(size())).observe(element);
+  return made;
+}
+
+const CURVES = {
+  pressure: [["reference", REFERENCE, 2], ["pressure", INK, 2]],
+  shear: [["reference", REFERENCE, 2], ["upper", PRESSURE, 1], ["lower", PRESSURE, 1], ["shear", INK, 2]],
+  hoop: [["reference", REFERENCE, 2], ["hoop", INK, 2]],
+};
+
+export class RoundCharts {
+  constructor(history) {
+    this.history = history;
+    this.peaks = { pressure: 0, shear: 0, high: 0, low: 0 }; // in SI units; they change seldom, so that axes do not flicker
+    this.ranges = {};
+    this.charts = {};
+    for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name);
+  }
+
+  make(name) {
+    const series = CURVES[name];
+    return chart(document.getElementById(`${name}-chart`), {
+      scales: { x: { time: false, range: [-180, 180] }, y: { range: () => this.ranges[name] ?? [0, 1] } },
+      axes: [angleAxis(), valueAxis()],
+      cursor: { sync: { key: "round" }, drag: { x: false, y: false }, points: { show: false } },
+      series: [{}, ...series.map(([label, stroke, width]) => ({ label, stroke, width, points: { show: false } }))],
+      hooks: { drawClear: [(plot) => this.shade(plot, name === "hoop")], setCursor: [(plot) => this.read(plot, name)] },
+    }, [[-180, 180], ...series.map(() => [null, null])]);
+  }
+
+  shade(plot, faint) {
+    const picture = this.history.shown;
+    if (!picture) return;
+    const { left, top, width, height } = plot.bbox;
+    const zones = [...picture.stick.map((ends) => [...ends, 0]), ...picture.slip];
+    plot.ctx.save();
+    plot.ctx.beginPath();
+    plot.ctx.rect(left, top, width, height);
+    plot.ctx.clip();
+    plot.ctx.globalAlpha = faint ? 0.1 : 0.17;
+    for (const [start, stop, sign] of zones) {
+      plot.ctx.fillStyle = ofStatus(sign);
+      for (const turn of [-360, 0, 360]) {
+        const from = plot.valToPos(start + turn, "x", true), to = plot.valToPos(stop + turn, "x", true);
+        if (to > left && from < left + width) plot.ctx.fillRect(from, top, to - from, height);
+      }
+    }
+    plot.ctx.restore();
+  }
+
+  show() {
+    const { shown, reference, case: given } = this.history;
+    const unit = given.units.traction, mu = given.friction;
+    const both = [shown, reference].filter(Boolean);
+    const largest = (of) => Math.max(0, ...both.map(of));
+    this.peaks.pressure = peak(this.peaks.pressure, largest((one) => one.peak_pressure));
+    this.peaks.shear = peak(this.peaks.shear, largest((one) => Math.max(Math.abs(one.peak_shear), mu * one.peak_pressure)));
+    const scale = scaled(this.peaks.pressure, unit);
+    this.fill("pressure", scale.factor, (one, k) => one.pressure[k], []);
+    this.fill("shear", scale.factor, (one, k) => one.shear[k], [mu, -mu]);
+    this.fillHoop(both, unit);
+    for (const name of ["pressure", "shear"]) this.label(name, scale.unit);
+  }
+
+  label(name, unit) {
+    document.getElementById(`${name}-unit`).textContent = unit ? `[${unit}]` : "";
+  }
+
+  // The curves at the nodes, in the order of the angle. A whole circle ends where it begins.
+  fill(name, factor, value, bounds) {
+    const { shown, reference } = this.history;
+    const same = reference && shown && reference.nodes === shown.nodes;
+    const base = shown ?? reference;
+    const chart = this.charts[name];
+    if (!base) {
+      chart.setData([[-180, 180], ...CURVES[name].map(() => [null, null])]);
+      return;
+    }
+    const { order, degrees, whole } = base.nodes;
+    const x = order.map((k) => degrees[k]);
+    if (whole) x.push(x[0] + 360);
+    const along = (of) => {
+      const found = order.map((k) => factor * of(k));
+      if (whole) found.push(found[0]);
+      return found;
+    };
+    const others = reference && !same ? resampled(reference, base, (k) => factor * value(reference, k), whole) : null;
+    const before = !reference ? x.map(() => null) : same ? along((k) => value(reference, k)) : others;
+    const limits = bounds.map((mu) => (shown ? along((k) => mu * shown.pressure[k]) : x.map(() => null)));
+    const top = factor * this.peaks[name] || 1;
+    this.ranges[name] = [name === "shear" ? -top : 0, top];
+    chart.setData([x, before, ...limits, shown ? along((k) => value(shown, k)) : x.map(() => null)]);
+  }
+
+  fillHoop(both, unit) {
+    const { shown, reference } = this.history;
+    const known = both.filter((one) => one.hoop);
+    const element = document.getElementById("hoop-chart").parentElement;
+    element.style.display = known.length ? "" : "none";
+    if (!known.length) return;
+    const high = Math.max(...known.map((one) => Math.max(...one.hoop))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop)));
+    this.peaks.high = peak(this.peaks.high, high);
+    this.peaks.low = peak(this.peaks.low, -low);
+    const scale = scaled(Math.max(this.peaks.high, this.peaks.low), unit);
+    this.ranges.hoop = [-scale.factor * this.peaks.low || -0.1, scale.factor * this.peaks.high];
+    const count = known[0].hoop.length, x = Array.from({ length: count }, (_, k) => -180 + (360 * k) / (count - 1));
+    const along = (one) => (one?.hoop ? Array.from(one.hoop, (value) => scale.factor * value) : x.map(() => null));
+    this.charts.hoop.setData([x, along(reference), along(shown)]);
+    this.label("hoop", scale.unit);
+  }
+
+  // The values under the mouse stand behind the unit.
+  read(plot, name) {
+    const { idx } = plot.cursor;
+    const place = document.getElementById(`${name}-unit`);
+    const unit = place.textContent.split("  ")[0];
+    const value = idx === null || idx === undefined ? null : plot.data.at(-1)[idx];
+    place.textContent = value === null || value === undefined ? unit : `${unit}  ${digits(value)} at ${digits(plot.data[0][idx], 3)}°`;
+  }
+}
+
+// The values of a picture with other nodes, at the nodes of `base`: those of the nearest node.
+function resampled(picture, base, value, whole) {
+  const { degrees } = picture.nodes;
+  const found = base.nodes.order.map((k) => {
+    let best = 0;
+    degrees.forEach((angle, j) => { if (away(angle, base.nodes.degrees[k]) < away(degrees[best], base.nodes.degrees[k])) best = j; });
+    return value(best);
+  });
+  if (whole) found.push(found[0]);
+  return found;
+}
+
+function away(one, other) {
+  return Math.abs(((one - other + 540) % 360) - 180);
+}

@@ -1,0 +1,14 @@
+// Colours of Okabe and Ito: distinct for all kinds of colour vision.
+
+export const STICK = "#0072b2";
+export const POSITIVE = "#e69f00";
+export const NEGATIVE = "#cc79a7";
+export const REFERENCE = "#a9b0b6";
+export const INK = "#1d2730";
+export const SOFT = "#5b6670";
+export const WARNING = "#d55e00";
+export const PRESSURE = "#7d93a5";
+
+export function ofStatus(status) {
+  return status === 0 ? STICK : status > 0 ? POSITIVE : NEGATIVE;
+}

@@ -1,0 +1,135 @@
+// Sliders and fields: loads, and everything of the problem that can be changed.
+
+import { newGesture } from "live/lead";
+import { digits, scaled } from "live/units";
+
+const GROUPS = { loads: "Loads", contact: "Contact", pin: "Pin", plate: "Plate", bush: "Bush", solver: "Solver" };
+const NAMES = {
+  P: "P, down", Q: "Q, right", M: "M, moment", ux: "ux, right", uy: "uy, up", rotation: "rotation",
+  sxx: "σxx remote", syy: "σyy remote", sxy: "σxy remote", friction: "friction μ", clearance: "clearance",
+  plane: "plane", pin_load: "force acts", pin_bore: "bore radius", bore_load: "force in bore", plate_body: "plate",
+  outer_radius: "outer radius", support: "rim", interference: "press fit",
+};
+const LABELS = { material: "material", E: "modulus E", nu: "Poisson ν" };
+const WORDS = { centre: "at its centre", body: "as body force", strain: "plane strain", stress: "plane stress" };
+const LOAD_ENDS = 1.5; // ends of the sliders of loads, in parts of the usual load
+
+export class Controls {
+  constructor(history, leader, before) {
+    Object.assign(this, { history, leader, before });
+    this.place = document.getElementById("sliders");
+    this.shown = new Map();
+    this.follow = "load";
+  }
+
+  // Make the controls of a problem.
+  make() {
+    const { loads, controls, nodes } = this.history.case;
+    const active = document.activeElement?.dataset?.key;
+    this.shown.clear();
+    const groups = new Map(Object.keys(GROUPS).map((name) => [name, []]));
+    for (const load of loads) {
+      const most = LOAD_ENDS * load.size;
+      const control = { name: load.name, unit: load.unit, least: -most, most, value: 0 };
+      groups.get("loads").push(this.slider(control, (value, gesture) => this.leader.drag({ [load.name]: value }, gesture)));
+    }
+    for (const control of controls) {
+      const send = (value, gesture) => this.leader.change({ [control.name]: value }, gesture, this.follow);
+      groups.get(control.group).push(control.choices ? this.chooser(control, send) : this.slider(control, send));
+    }
+    groups.get("solver").push(this.solver(nodes), this.rule());
+    const parts = [];
+    for (const [name, lines] of groups) {
+      if (!lines.length) continue;
+      const heading = document.createElement("h2");
+      heading.textContent = GROUPS[name];
+      parts.push(heading, ...lines);
+    }
+    this.place.replaceChildren(...parts);
+    if (active) this.place.querySelector(`[data-key="${active}"]`)?.focus();
+    this.show();
+  }
+
+  // Put the present loads into their sliders.
+  show() {
+    const load = this.history.latest?.load ?? {};
+    for (const [name, set] of this.shown) set(load[name] ?? 0);
+  }
+
+  slider(control, send) {
+    const line = element("div", "control"), label = element("label");
+    const { factor, unit } = scaled(Math.max(Math.abs(control.least), Math.abs(control.most)), control.unit);
+    const range = element("input"), field = element("input"), right = element("span");
+    range.type = "range";
+    Object.assign(range, { min: control.least, max: control.most, step: "any", value: control.value });
+    range.dataset.key = `${control.name} slider`;
+    field.type = "number";
+    field.step = "any";
+    field.dataset.key = control.name;
+    field.id = `field-${control.name}`;
+    label.htmlFor = field.id;
+    label.textContent = nameOf(control.name);
+    range.setAttribute("aria-label", label.textContent);
+    const note = element("span", "unit");
+    note.textContent = unit;
+    right.append(field, " ", note);
+    line.append(label, right, range);
+    let gesture = null;
+    const put = (value) => {
+      if (document.activeElement !== field) field.value = plain(value * factor);
+      if (gesture === null) range.value = value;
+    };
+    const move = (value) => {
+      this.before();
+      gesture ??= newGesture();
+      send(value, gesture);
+    };
+    range.addEventListener("input", () => { move(Number(range.value)); field.value = plain(range.value * factor); });
+    range.addEventListener("change", () => { gesture = null; });
+    range.addEventListener("dblclick", () => { if (control.least < 0) { range.value = 0; move(0); gesture = null; } });
+    field.addEventListener("change", () => {
+      if (field.value !== "") move(Number(field.value) / factor);
+      gesture = null;
+    });
+    if (control.value !== undefined) put(control.value);
+    if (this.history.case.loads.some((load) => load.name === control.name)) this.shown.set(control.name, put);
+    return line;
+  }
+
+  chooser(control, send) {
+    const line = element("label", "choice");
+    const select = element("select");
+    select.dataset.key = control.name;
+    for (const [value, words] of Object.entries(control.choices)) select.append(new Option(WORDS[words] ?? words, value));
+    select.value = control.value;
+    select.addEventListener("change", () => { this.before(); send(select.value, newGesture()); });
+    line.append(nameOf(control.name), select);
+    return line;
+  }
+
+  solver(nodes) {
+    const choices = Object.fromEntries([...new Set([101, 201, 401, 801, nodes])].sort((a, b) => a - b).map((n) => [n, `${n}`]));
+    return this.chooser({ name: "nodes", value: `${nodes}`, choices }, (value, gesture) =>
+      this.leader.send("nodes", { nodes: Number(value), follow: this.follow, gesture }));
+  }
+
+  rule() {
+    const choices = { load: "straight to the load", history: "whole history again" };
+    return this.chooser({ name: "after a change", value: this.follow, choices }, (value) => { this.follow = value; });
+  }
+}
+
+function nameOf(name) {
+  return NAMES[name] ?? LABELS[name.split("_").at(-1)] ?? name;
+}
+
+function element(kind, className = "") {
+  const made = document.createElement(kind);
+  if (className) made.className = className;
+  return made;
+}
+
+// A number as a field holds it.
+function plain(value) {
+  return digits(Number(value), 4).replace("−", "-").replace("e−", "e-");
+}

@@ -1,0 +1,335 @@
+// The pin in its hole: bodies to scale, gaps enlarged, tractions and zones on the arc, the load as an arrow.
+
+import { INK, PRESSURE, REFERENCE, SOFT, WARNING, ofStatus } from "live/colours";
+import { OPEN } from "live/history";
+import { digits } from "live/units";
+
+const REACH = 0.62; // length of the arrow of a load of usual size, in hole radii
+const HIGH = 0.42; // height of the largest pressure, in hole radii
+const GAP = 0.05; // width in which a usual clearance is drawn, in hole radii
+const ARROWS = 8; // degrees between two arrows of the shear
+const LONG = 0.17; // length of the largest arrow of the shear, in hole radii
+
+export class Drawing {
+  constructor(canvas, note) {
+    this.canvas = canvas;
+    this.note = note;
+    this.context = canvas.getContext("2d");
+    this.most = 0; // pressure that is drawn at full height
+    this.lost = null; // a load that nothing carries
+    this.target = null; // the load under the mouse
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  show(history) {
+    this.history = history;
+    this.draw();
+  }
+
+  // Pixels per hole radius, and the centre.
+  frame() {
+    const { case: given } = this.history;
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    const outer = Math.max(given.rim ?? 0, given.bush ?? 0) / given.radius;
+    const view = Math.max(1.55, outer > 0 && outer < 3.2 ? 1.06 * outer : 0);
+    return { x: width / 2, y: height / 2, radius: Math.min(width, height) / 2 / view, width, height };
+  }
+
+  // The place of a load on the canvas: the tip of its arrow.
+  tip(load) {
+    const { x, y, radius } = this.frame();
+    const [right, up] = this.history.case.axes;
+    const along = (axis) => (axis.sign * load[axis.load] * REACH * radius) / axis.size;
+    return [x + along(right), y - along(up)];
+  }
+
+  // The loads at a place of the canvas.
+  loadsAt(px, py) {
+    const { x, y, radius } = this.frame();
+    const [right, up] = this.history.case.axes;
+    const value = (axis, pixels) => (axis.sign * pixels * axis.size) / (REACH * radius);
+    return { [right.load]: value(right, px - x), [up.load]: value(up, y - py) };
+  }
+
+  draw() {
+    if (!this.history?.case) return;
+    const scale = window.devicePixelRatio || 1;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (this.canvas.width !== Math.round(width * scale)) this.canvas.width = Math.round(width * scale);
+    if (this.canvas.height !== Math.round(height * scale)) this.canvas.height = Math.round(height * scale);
+    const pen = this.context;
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    pen.lineJoin = "round";
+    const frame = this.frame(), picture = this.history.shown;
+    this.bodies(pen, frame);
+    this.pin(pen, frame, picture);
+    if (picture) {
+      this.most = peak(this.most, picture.peak_pressure);
+      const { reference } = this.history;
+      if (reference) this.pressure(pen, frame, reference, null, REFERENCE);
+      this.pressure(pen, frame, picture, "rgba(125,147,165,.35)", PRESSURE);
+      this.zones(pen, frame, picture);
+      this.shear(pen, frame, picture);
+      this.remote(pen, frame, picture);
+    }
+    this.trail(pen, frame);
+    this.loads(pen, frame, picture);
+  }
+
+  bodies(pen, { x, y, radius, width, height }) {
+    const { case: given } = this.history;
+    const circle = (size, colour) => {
+      pen.beginPath();
+      pen.arc(x, y, size, 0, 2 * Math.PI);
+      pen.fillStyle = colour;
+      pen.fill();
+    };
+    pen.fillStyle = given.rim ? "#ffffff" : "#e6e4df";
+    pen.fillRect(0, 0, width, height);
+    if (given.rim) {
+      circle((radius * given.rim) / given.radius, "#e6e4df");
+      pen.strokeStyle = "#8d8a83";
+      pen.lineWidth = 1.5;
+      pen.stroke();
+    }
+    if (given.bush) {
+      circle((radius * given.bush) / given.radius, "#dccaa4");
+      pen.strokeStyle = "#a48f5f";
+      pen.lineWidth = 1;
+      pen.stroke();
+    }
+    circle(radius, "#ffffff");
+    pen.strokeStyle = "#8d8a83";
+    pen.lineWidth = 1;
+    pen.stroke();
+  }
+
+  // The pin: the hole less its gap, which is enlarged.
+  pin(pen, { x, y, radius }, picture) {
+    const { case: given } = this.history;
+    const usual = Math.max(Math.abs(given.clearance), 0.3 * given.yielded);
+    const times = (GAP * given.radius) / usual; // how much gaps are enlarged
+    this.note.textContent = given.dimensionless ? "gap enlarged" : `gap drawn ${digits(times, 2)} times larger`;
+    const width = (gap) => radius * (1 - Math.min((gap * times) / given.radius, 0.4));
+    pen.beginPath();
+    if (picture) {
+      const { nodes } = picture;
+      nodes.theta.forEach((angle, k) => {
+        const size = width(picture.gap[k]);
+        pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
+      });
+      if (!nodes.whole) {
+        // beyond the arc the pin is drawn as rigid
+        const first = nodes.theta.at(-1), turn = 2 * Math.PI - (first - nodes.theta[0]);
+        for (let k = 1; k < 60; k++) {
+          const angle = first + (turn * k) / 60;
+          const gap = given.clearance - picture.dx * Math.cos(angle) - picture.dy * Math.sin(angle);
+          const size = width(Math.max(gap, 0));
+          pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
+        }
+      }
+    } else {
+      pen.arc(x, y, width(Math.max(given.clearance, 0)), 0, 2 * Math.PI);
+    }
+    pen.closePath();
+    pen.fillStyle = "#c3ced8";
+    pen.fill();
+    pen.strokeStyle = "#7a8894";
+    pen.lineWidth = 1;
+    pen.stroke();
+    const angle = picture ? picture.rotation * times : 0;
+    const inner = (radius * given.bore) / given.radius;
+    pen.strokeStyle = "#aab7c2";
+    for (const turn of [0, 0.5 * Math.PI, Math.PI, 1.5 * Math.PI]) {
+      const direction = [Math.cos(angle + turn), -Math.sin(angle + turn)];
+      pen.beginPath();
+      pen.moveTo(x + inner * direction[0], y + inner * direction[1]);
+      pen.lineTo(x + 0.78 * radius * direction[0], y + 0.78 * radius * direction[1]);
+      pen.stroke();
+    }
+    if (given.bore > 0) {
+      pen.beginPath();
+      pen.arc(x, y, inner, 0, 2 * Math.PI);
+      pen.fillStyle = "#ffffff";
+      pen.fill();
+      pen.strokeStyle = "#7a8894";
+      pen.stroke();
+    }
+  }
+
+  pressure(pen, { x, y, radius }, picture, fill, stroke) {
+    for (const run of closedRuns(picture)) {
+      const out = run.map((k) => {
+        const size = radius * (1 + (HIGH * picture.pressure[k]) / this.most), angle = picture.nodes.theta[k];
+        return [x + size * Math.cos(angle), y - size * Math.sin(angle)];
+      });
+      const ends = [run.at(-1), run[0]].map((k) => picture.nodes.theta[k]);
+      pen.beginPath();
+      for (const place of out) pen.lineTo(...place);
+      pen.strokeStyle = stroke;
+      pen.lineWidth = 1.5;
+      pen.stroke();
+      if (fill) {
+        if (run.length === picture.status.length) {
+          pen.closePath();
+          pen.moveTo(x + radius, y);
+          pen.arc(x, y, radius, 0, 2 * Math.PI, true);
+        } else {
+          pen.arc(x, y, radius, -ends[0], -ends[1]);
+        }
+        pen.fillStyle = fill;
+        pen.fill("evenodd");
+      }
+    }
+  }
+
+  // A band along the edge of the hole in the colours of stick and slip.
+  zones(pen, { x, y, radius }, picture) {
+    const { theta } = picture.nodes;
+    const half = 0.5 * (theta[1] - theta[0]);
+    pen.lineWidth = Math.max(5, 0.028 * radius);
+    picture.status.forEach((status, k) => {
+      if (status === OPEN) return;
+      pen.beginPath();
+      pen.arc(x, y, radius, -theta[k] - half * 1.05, -theta[k] + half * 1.05);
+      pen.strokeStyle = ofStatus(status);
+      pen.stroke();
+    });
+  }
+
+  // Arrows along the pin: the shear traction on it.
+  shear(pen, { x, y, radius }, picture) {
+    const { theta, degrees } = picture.nodes;
+    const size = picture.nodes.theta.length;
+    const stride = Math.max(1, Math.round(ARROWS / Math.abs(degrees[Math.min(2, size - 1)] - degrees[1] || 1)));
+    pen.lineWidth = 2;
+    for (let k = 0; k < size; k += stride) {
+      const shear = picture.shear[k] / (this.most * Math.max(this.history.case.friction, 1e-3));
+      if (picture.status[k] === OPEN || Math.abs(shear) < 0.03) continue;
+      const angle = theta[k], long = LONG * Math.max(-1.2, Math.min(1.2, shear));
+      const ring = 0.87 * radius;
+      const middle = [x + ring * Math.cos(angle), y - ring * Math.sin(angle)];
+      const along = [-Math.sin(angle) * long * radius, -Math.cos(angle) * long * radius];
+      arrow(pen, middle[0] - along[0] / 2, middle[1] - along[1] / 2, middle[0] + along[0] / 2, middle[1] + along[1] / 2, INK, 7);
+    }
+  }
+
+  // Arrows at the borders: the remote stresses.
+  remote(pen, { x, y, width, height }, picture) {
+    const size = this.history.case.loads.find((load) => load.name === "sxx")?.size;
+    if (!size) return;
+    const long = (value) => (26 * value) / size;
+    const { sxx, syy, sxy } = picture.load;
+    pen.lineWidth = 2;
+    for (const part of [-0.6, 0, 0.6]) {
+      for (const side of [-1, 1]) {
+        const [left, top] = [x + side * (width / 2 - 34), y + side * (height / 2 - 34)];
+        const row = y + part * (height / 2 - 40), line = x + part * (width / 2 - 40);
+        if (sxx) arrow(pen, left, row, left + side * long(sxx), row, SOFT, 5, sxx < 0);
+        if (syy) arrow(pen, line, top, line, top + side * long(syy), SOFT, 5, syy < 0);
+        if (sxy) {
+          arrow(pen, left + side * 8, row + long(sxy) / 2, left + side * 8, row - side * long(sxy), SOFT, 5);
+          arrow(pen, line, top + side * 8, line - side * long(sxy), top + side * 8, SOFT, 5);
+        }
+      }
+    }
+  }
+
+  // The way of the load so far.
+  trail(pen) {
+    const { pictures, place, reference } = this.history;
+    pen.strokeStyle = "rgba(213,94,0,.45)";
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    const { x, y } = this.frame();
+    if (place < pictures.length && pictures.length < 2000) pen.moveTo(x, y);
+    for (let k = 0; k <= place; k++) pen.lineTo(...this.tip(pictures[k].load));
+    pen.stroke();
+    if (reference) {
+      const [px, py] = this.tip(reference.load);
+      pen.beginPath();
+      pen.arc(px, py, 10, 0, 2 * Math.PI);
+      pen.strokeStyle = SOFT;
+      pen.lineWidth = 2;
+      pen.setLineDash([3, 3]);
+      pen.stroke();
+      pen.setLineDash([]);
+    }
+  }
+
+  loads(pen, { x, y, radius }, picture) {
+    const load = picture?.load ?? Object.fromEntries(this.history.case.axes.map((axis) => [axis.load, 0]));
+    const [px, py] = this.tip(load);
+    pen.lineWidth = 4;
+    pen.strokeStyle = WARNING;
+    if (Math.hypot(px - x, py - y) > 8) arrow(pen, x, y, px, py, WARNING, 11);
+    pen.beginPath();
+    pen.arc(px, py, 7, 0, 2 * Math.PI);
+    pen.fillStyle = "#ffffff";
+    pen.fill();
+    pen.lineWidth = 3;
+    pen.strokeStyle = WARNING;
+    pen.stroke();
+    const moment = this.history.case.loads.find((one) => one.name === "M");
+    if (picture && moment && picture.load.M) {
+      const sweep = Math.max(-5.5, Math.min(5.5, (2.5 * picture.load.M) / moment.size));
+      const ring = 0.3 * radius;
+      pen.beginPath();
+      pen.arc(x, y, ring, 0, -sweep, sweep > 0);
+      pen.lineWidth = 3;
+      pen.stroke();
+      const end = [x + ring * Math.cos(sweep), y - ring * Math.sin(sweep)], way = Math.sign(sweep) * 10;
+      arrow(pen, ...end, end[0] - way * Math.sin(sweep), end[1] - way * Math.cos(sweep), WARNING, 9);
+    }
+    if (this.lost) {
+      const [lx, ly] = this.tip({ ...load, ...this.lost });
+      pen.setLineDash([6, 5]);
+      pen.lineWidth = 2.5;
+      arrow(pen, x, y, lx, ly, INK, 9);
+      pen.setLineDash([]);
+    }
+  }
+}
+
+// A largest value that follows `value` only if it leaves the range from a third to the whole: no flicker.
+export function peak(before, value) {
+  return value > before || value < before / 3 ? value * 1.15 || before || 1 : before;
+}
+
+// The runs of neighbouring closed nodes, as lists of nodes. A run may go across the end of a whole circle.
+function closedRuns(picture) {
+  const { status, nodes } = picture, size = status.length, found = [];
+  const open = status.findIndex((one) => one === OPEN);
+  if (open < 0) return [[...Array(size).keys()]];
+  let run = [];
+  for (let k = 0; k <= size; k++) {
+    const node = nodes.whole ? (open + k) % size : k;
+    const closed = (nodes.whole || k < size) && status[node] !== OPEN;
+    if (closed) run.push(node);
+    else if (run.length) {
+      found.push(run);
+      run = [];
+    }
+  }
+  return found;
+}
+
+function arrow(pen, x, y, tx, ty, colour, head, backwards = false) {
+  if (backwards) [x, y, tx, ty] = [tx, ty, x, y];
+  const long = Math.hypot(tx - x, ty - y);
+  if (long < 1) return;
+  const [cos, sin] = [(tx - x) / long, (ty - y) / long], size = Math.min(head, long);
+  const neck = [tx - size * cos, ty - size * sin];
+  pen.strokeStyle = pen.fillStyle = colour;
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(...neck);
+  pen.stroke();
+  pen.beginPath();
+  pen.moveTo(tx, ty);
+  pen.lineTo(neck[0] - 0.5 * size * sin, neck[1] + 0.5 * size * cos);
+  pen.lineTo(neck[0] + 0.5 * size * sin, neck[1] - 0.5 * size * cos);
+  pen.closePath();
+  pen.fill();
+}

@@ -1,0 +1,85 @@
+// Hysteresis loops: a load against the displacement on which it does work, over the steps of the history.
+
+import { axis, chart, valueAxis } from "live/charts";
+import { INK, REFERENCE, WARNING } from "live/colours";
+import { digits, scaled } from "live/units";
+
+const KINDS = { P: "force", Q: "force", M: "moment" };
+const MOVES = { P: "way", Q: "way", M: "rotation" };
+
+export class LoopChart {
+  constructor(history) {
+    this.history = history;
+    this.select = document.getElementById("loop-load");
+    this.unit = document.getElementById("loop-unit");
+    this.limits = { x: [-1, 1], y: [-1, 1] };
+    const line = (plot, number) => this.line(plot, number);
+    const values = (_, splits) => splits.map((value) => digits(Math.abs(value) < 1e-9 ? 0 : value, 3).replace(/\.0+$/, ""));
+    this.chart = chart(document.getElementById("loop-chart"), {
+      mode: 2,
+      scales: { x: { time: false, range: () => this.limits.x }, y: { range: () => this.limits.y } },
+      axes: [axis({ size: 24, space: 55, values }), valueAxis({ size: 44 })],
+      cursor: { show: false },
+      series: [null, { paths: line, stroke: INK }, { paths: line, stroke: WARNING }, { paths: line, stroke: REFERENCE }],
+    }, [null, [[], []], [[], []], [[], []]]);
+    this.select.addEventListener("change", () => this.show());
+  }
+
+  line(plot, number) {
+    const [x, y] = plot.data[number], pen = plot.ctx, ratio = window.devicePixelRatio || 1;
+    pen.save();
+    pen.beginPath();
+    pen.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
+    pen.clip();
+    pen.beginPath();
+    for (let k = 0; k < x.length; k++) pen.lineTo(plot.valToPos(x[k], "x", true), plot.valToPos(y[k], "y", true));
+    pen.lineWidth = 1.5 * ratio;
+    pen.strokeStyle = [null, INK, WARNING, REFERENCE][number];
+    if (x.length === 1) {
+      pen.beginPath();
+      pen.arc(plot.valToPos(x[0], "x", true), plot.valToPos(y[0], "y", true), 4 * ratio, 0, 2 * Math.PI);
+      pen.fillStyle = pen.strokeStyle;
+      pen.fill();
+    } else pen.stroke();
+    pen.restore();
+    return null;
+  }
+
+  names(picture) {
+    const names = Object.keys(picture.loops);
+    const listed = Array.from(this.select.options, (option) => option.value);
+    if (names.join() === listed.join()) return;
+    const chosen = names.includes(this.select.value) ? this.select.value : "Q";
+    this.select.replaceChildren(...names.map((name) => new Option(name, name)));
+    this.select.value = chosen;
+  }
+
+  show() {
+    const { pictures, place, shown, reference, case: given } = this.history;
+    if (!shown) {
+      this.chart.setData([null, [[], []], [[], []], [[], []]]);
+      this.unit.textContent = "";
+      return;
+    }
+    this.names(shown);
+    const name = this.select.value;
+    const points = pictures.slice(0, place + 1).map((picture) => picture.loops[name]).filter(Boolean);
+    const way = points.map((pair) => pair[1]), load = points.map((pair) => pair[0]);
+    const most = (values) => values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
+    const unit = { load: given.units[KINDS[name] ?? "traction"], way: KINDS[name] ? (name === "M" ? given.units.rotation : given.units.displacement) : "" };
+    const x = scaled(most(way), unit.way), y = scaled(most(load), unit.load);
+    const scale = (values, by) => values.map((value) => value * by.factor);
+    const data = [scale(way, x), scale(load, y)], before = reference?.loops[name];
+    const mark = before ? [[before[1] * x.factor], [before[0] * y.factor]] : [[], []];
+    this.limits = { x: around([...data[0], ...mark[0]]), y: around([...data[1], ...mark[1]]) };
+    this.chart.setData([null, data, [data[0].slice(-1), data[1].slice(-1)], mark]);
+    const other = KINDS[name] ? `${MOVES[name]} [${x.unit}]` : "its displacement";
+    this.unit.textContent = `[${y.unit}] over ${other}`;
+  }
+}
+
+function around(values) {
+  const low = values.reduce((a, b) => Math.min(a, b), 0), high = values.reduce((a, b) => Math.max(a, b), 0);
+  const room = 0.07 * (high - low) || 1;
+  return [low - room, high + room];
+}

@@ -1,0 +1,219 @@
+// The page: a live contact at a server, or a recording that is replayed.
+
+import { RoundCharts } from "live/charts";
+import { Controls } from "live/controls";
+import { Drawing } from "live/drawing";
+import { download, image, loadsText } from "live/files";
+import { History } from "live/history";
+import { Leader } from "live/lead";
+import { Link } from "live/link";
+import { LoopChart } from "live/loops";
+import { MapChart } from "live/map";
+import { showNumbers } from "live/numbers";
+import { Player } from "live/play";
+import { Pointer } from "live/pointer";
+import { withUnit } from "live/units";
+
+const SAME = 1e-9; // relative difference of two loads that count as the same
+const recorded = document.getElementById("recording");
+const at = (id) => document.getElementById(id);
+
+const history = new History();
+const drawing = new Drawing(at("drawing"), at("scale-note"));
+const charts = new RoundCharts(history);
+const loops = new LoopChart(history);
+const map = new MapChart(history);
+const times = []; // when pictures were drawn and how long it took, ms: for measurements
+let waiting = false, link = null, leader = null, player = null, controls = null;
+
+// Draw at the next frame; several calls before it count once.
+function show() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(draw);
+}
+
+function draw() {
+  waiting = false;
+  if (!history.case) return;
+  const began = performance.now();
+  drawing.show(history);
+  charts.show();
+  loops.show();
+  map.show();
+  showNumbers(history);
+  showTimeline();
+  showLesson();
+  times.push([began, performance.now() - began, history.shown?.serial ?? 0]);
+  if (times.length > 5000) times.splice(0, 1000);
+}
+
+function showTimeline() {
+  const count = history.pictures.length;
+  at("scrub").max = Math.max(count - 1, 0);
+  at("scrub").value = Math.max(history.place, 0);
+  at("scrub").disabled = at("replay").disabled = count < 2;
+  at("step").textContent = count ? `step ${history.place + 1} of ${count}` : "no steps";
+  at("undo").disabled = !history.undos;
+  at("redo").disabled = !history.redos;
+  at("keep").setAttribute("aria-pressed", String(Boolean(history.reference)));
+  at("keep").textContent = history.reference ? "Forget reference" : "Keep as reference";
+}
+
+// The contact remembers its way: say so where the load is that of the reference.
+function showLesson() {
+  const { shown, reference, case: given } = history;
+  let words = "";
+  if (shown && reference && shown !== reference && shown.nodes === reference.nodes && shown.serial !== reference.serial) {
+    const names = given.loads.map((load) => load.name);
+    if (names.every((name) => near(shown.load[name], reference.load[name], given.loads.find((load) => load.name === name).size))) {
+      const most = shown.shear.reduce((found, value, k) => Math.max(found, Math.abs(value - reference.shear[k])), 0);
+      const unit = given.units.traction, part = most / Math.max(Math.abs(reference.peak_shear), 1e-300);
+      words = part > 1e-6
+        ? `Same load as the reference, reached in another way: the shear differs by up to ${withUnit(most, unit, 3)}. The contact remembers its way.`
+        : "Same load and same tractions as the reference.";
+    }
+  }
+  if (at("lesson").textContent !== words) at("lesson").textContent = words;
+}
+
+function near(one, other, size) {
+  return Math.abs(one - other) <= SAME * size;
+}
+
+function say(sentence, kind = "") {
+  at("message").hidden = !sentence;
+  at("message").className = kind;
+  at("sentence").textContent = sentence;
+  at("csv").hidden = kind !== "gone";
+}
+
+function news(answer) {
+  if (answer.kind === "welcome") return;
+  if (answer.kind === "pictures") {
+    const isNew = history.take(answer);
+    drawing.lost = null;
+    if (isNew) {
+      at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
+      document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
+      controls?.make();
+    } else controls?.show();
+    if (answer.sentence) say(answer.sentence);
+    else if (at("message").className !== "gone") say("");
+    show();
+  } else if (answer.kind === "lost") {
+    drawing.lost = answer.load;
+    const part = answer.fraction > 0 && answer.fraction < 1 ? ` (after ${(100 * answer.fraction).toFixed(0)} % of this step)` : "";
+    say(`${answer.sentence}${part}. The contact stays at the last load that was carried.`);
+    controls?.show();
+    show();
+  } else if (answer.kind === "refused") {
+    say(answer.sentence);
+    controls?.make();
+  }
+}
+
+function status(word) {
+  at("connection").className = word === "connected" ? "" : "away";
+  at("connection").textContent = { connected: "connected", again: "connecting again …", lost: "no server" }[word];
+  if (word === "lost") say("The server has ended. The history stays on this page: its loads can be saved. Start fastpin live again for a new page.", "gone");
+  else if (word === "connected" && at("message").className === "gone") say("");
+}
+
+// Before the user moves something: playing stops, and the latest state is shown.
+function before() {
+  player?.stop();
+  if (!history.isLatest) {
+    history.place = history.pictures.length - 1;
+    show();
+  }
+}
+
+function listen() {
+  const click = (id, work) => at(id).addEventListener("click", work);
+  const ask = (kind, fields) => () => { before(); link.ask(kind, fields); };
+  click("dismiss", () => say(""));
+  click("save-image", async () => download("fastpin.png", await image(history.case?.title || "fastpin")));
+  click("csv", () => download("loads.csv", new Blob([loadsText(history)], { type: "text/csv" })));
+  click("keep", () => {
+    if (!recorded) return link.ask("keep", { on: !history.reference });
+    history.reference = history.reference ? null : history.shown;
+    return show();
+  });
+  at("scrub").addEventListener("input", () => {
+    player.stop();
+    history.place = Number(at("scrub").value);
+    show();
+  });
+  click("replay", replay);
+  if (recorded) return;
+  click("undo", ask("undo"));
+  click("redo", ask("redo"));
+  click("reset", ask("reset"));
+  for (const [id, file] of [["save-case", "case.toml"], ["save-recording", "recording.html"]]) click(id, () => save(file));
+  for (const [id, name] of [["play-case", "playCase"], ["play-cycle", "playCycle"], ["play-turn", "playTurn"], ["play-two", "playTwo"]]) {
+    click(id, () => { before(); player[name](); });
+  }
+  click("stop", () => player.stop());
+}
+
+async function save(file) {
+  try {
+    const answer = await fetch(`save/${link.session}/${file}`);
+    if (answer.ok) download(file, await answer.blob());
+    else say(await answer.text());
+  } catch {
+    say("The file can't be saved: the server does not answer.", "gone");
+  }
+}
+
+function replay() {
+  if (player.plays) player.stop();
+  else player.replay(show);
+}
+
+function keys(event) {
+  if (event.target.matches("input, select, textarea")) return;
+  const letter = event.key.toLowerCase(), control = event.ctrlKey || event.metaKey;
+  if (control && letter === "z" && !recorded) at(event.shiftKey ? "redo" : "undo").click();
+  else if (control && letter === "y" && !recorded) at("redo").click();
+  else if (event.key === " " && !event.target.matches("button")) replay();
+  else if (recorded && (event.key === "ArrowLeft" || event.key === "ArrowRight")) {
+    const way = event.key === "ArrowRight" ? 1 : -1;
+    history.place = Math.max(0, Math.min(history.pictures.length - 1, history.place + way));
+    show();
+  } else return;
+  event.preventDefault();
+}
+
+function legend() {
+  const entries = [["pressure", "pressure (outwards)"], ["shear", "shear on the pin"], ["stick", "sticks"],
+    ["positive", "slips counter-clockwise"], ["negative", "slips clockwise"], ["reference", "reference"]];
+  for (const [name, words] of entries) {
+    const item = document.createElement("li");
+    item.className = name;
+    item.textContent = words;
+    at("legend").append(item);
+  }
+}
+
+function playing() {
+  at("stop").disabled = !player.plays;
+  at("replay").textContent = player.plays ? "❚❚" : "▶";
+}
+
+legend();
+if (recorded) {
+  document.body.classList.add("replaying");
+  player = new Player(history, null, null, playing);
+  news({ kind: "pictures", ...JSON.parse(recorded.textContent) });
+} else {
+  link = new Link(news, status);
+  leader = new Leader(link);
+  player = new Player(history, leader, link, playing);
+  controls = new Controls(history, leader, before);
+  new Pointer(drawing, history, leader, before);
+}
+listen();
+document.addEventListener("keydown", keys);
+window.fastpin = { history, drawing, charts, loops, map, link, leader, player, times };

@@ -1,0 +1,54 @@
+// The table of key numbers of the state that is shown.
+
+import { degrees, digits, withUnit } from "live/units";
+
+export function showNumbers(history) {
+  const body = document.querySelector("#numbers tbody"), picture = history.shown;
+  const rows = picture ? cells(picture, history.case) : [["no load", ""]];
+  const lines = [];
+  for (let k = 0; k < rows.length; k += 2) {
+    const line = document.createElement("tr");
+    for (const [name, value] of [rows[k], rows[k + 1] ?? ["", ""]]) {
+      const label = document.createElement("td"), number = document.createElement("td");
+      label.textContent = name;
+      number.textContent = value;
+      line.append(label, number);
+    }
+    lines.push(line);
+  }
+  body.replaceChildren(...lines);
+}
+
+function cells(picture, { units, loads, axes }) {
+  const unit = (kind, value) => withUnit(value, units[kind]);
+  const acting = loads.filter(({ name }) => picture.load[name] || axes.some(({ load }) => load === name));
+  const reactions = ["P", "Q"].filter((name) => !loads.some((load) => load.name === name));
+  return [
+    ...acting.map((load) => [`${load.name}`, withUnit(picture.load[load.name], load.unit)]),
+    ...reactions.map((name) => [`${name} (reaction)`, unit("force", picture.load[name])]),
+    ["peak pressure", unit("traction", picture.peak_pressure)],
+    ["at", degrees(picture.peak_pressure_angle)],
+    ["peak shear", unit("traction", picture.peak_shear)],
+    ["at", degrees(picture.peak_shear_angle)],
+    ["contact", width(picture.contact)],
+    ["of it sticks", share(picture.stick, picture.contact)],
+    ["pin moves right", unit("displacement", picture.dx)],
+    ["pin moves up", unit("displacement", picture.dy)],
+    ["pin turns", unit("rotation", picture.rotation)],
+    ["dissipated", unit("energy", picture.dissipation)],
+    ...(picture.hoop ? [["hoop stress, largest", unit("traction", Math.max(...picture.hoop))]] : []),
+    ["contact conditions", `±${digits(picture.residual, 1)}`],
+  ];
+}
+
+function total(intervals) {
+  return intervals.reduce((sum, [start, stop]) => sum + stop - start, 0);
+}
+
+function width(intervals) {
+  return intervals.length ? `${degrees(total(intervals))}${intervals.length > 1 ? ` in ${intervals.length} parts` : ""}` : "none";
+}
+
+function share(stick, contact) {
+  return contact.length ? `${digits((100 * total(stick)) / total(contact), 3)} %` : "–";
+}

@@ -1,0 +1,34 @@
+// Numbers with units and SI prefixes, as the tables of fastpin print them.
+
+const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
+const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "deg"]);
+
+// A factor and a unit in which values up to `largest` read well.
+export function scaled(largest, unit) {
+  if (WITHOUT.has(unit) || !(largest > 0) || !isFinite(largest)) return { factor: 1, unit: shown(unit) };
+  const exponent = Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(largest * (1 + 1e-12)) / 3)));
+  return { factor: 10 ** -exponent, unit: PREFIXES[exponent] + unit };
+}
+
+function shown(unit) {
+  return unit.replace("beta*", "β*").replace("^2", "²");
+}
+
+// A number with so many significant digits and without an exponent where that reads well.
+export function digits(value, count = 4) {
+  if (value === null || !isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(count - 1).replace("-", "−");
+  return value.toFixed(Math.max(0, count - 1 - Math.floor(Math.log10(size)))).replace("-", "−");
+}
+
+export function withUnit(value, unit, count = 4) {
+  if (value === null || !isFinite(value)) return "–";
+  const scale = scaled(Math.abs(value), unit);
+  return `${digits(value * scale.factor, count)} ${scale.unit}`.trim();
+}
+
+export function degrees(value, count = 1) {
+  return value === null ? "–" : `${value.toFixed(count).replace("-", "−")}°`;
+}
