@@ -91,7 +91,7 @@ class LiveContact:
         try:
             self._step(self.session, _named(given), 0)
         except FastpinError as error:
-            self.sentence = str(error)
+            self.sentence = _sentence(error)
 
     def _new_session(self, problem: Problem) -> Session:
         return Session(problem, self._nodes, arc=ALL_ROUND, undo=0)
@@ -111,6 +111,9 @@ class LiveContact:
             self._return_to(before)
             lost = {"load": error.load, "step": error.step, "fraction": error.fraction, "error": type(error).__name__}
             return [{"kind": "lost", "id": message.id, "sentence": _sentence(error), **lost}]
+        except BaseException:
+            self._return_to(before)
+            raise
         return [self._changes(message.id)]
 
     def stop(self) -> None:
@@ -307,9 +310,11 @@ class LiveContact:
         return case_text(Case(self.session.problem, history, options, self._case.title))
 
 
-def _sentence(error: SolveError) -> str:
-    """The message of an error without the number of the step, which the page does not show."""
-    text = str(error).partition(": ")[2] or str(error)
+def _sentence(error: FastpinError) -> str:
+    """The message of an error. The number of the step is left out: the page does not show it."""
+    text = str(error)
+    if isinstance(error, SolveError):
+        text = text.partition(": ")[2] or text
     return text[:1].upper() + text[1:]
 
 

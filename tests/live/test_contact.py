@@ -1,0 +1,307 @@
+"""The contact of a page: messages in, pictures out, and the states of fastpin.solve."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin import casefile
+from fastpin.live import contact as contact_module
+from fastpin.live.protocol import MOST_UNDONE
+from fastpin.model.bodies import Bushing, Ring, Tube
+from fastpin.states.state import State
+from tests.support.live_pages import NODES, Page, contact, floats, message
+
+P, Q = 2.42e6, 7.26e5
+ARRAYS = {"pressure": "pressure", "shear": "shear", "gap": "gap"}
+
+
+def drag(page: Page, gesture: int, count: int = 12, turn: float = 1.0) -> None:
+    """Move the load along an arc."""
+    for k in range(count):
+        angle = turn * (k + 1) / count
+        page.tell("load", loads={"P": P * math.cos(angle), "Q": P * math.sin(angle)}, gesture=gesture, drag=True)
+
+
+def assert_shown(picture: dict, state: State) -> None:
+    """A picture shows a state: numbers to the last bit, arrays as float32."""
+    assert picture["load"] == state.load
+    assert (picture["dx"], picture["dy"], picture["rotation"]) == (state.dx, state.dy, state.rotation)
+    assert (picture["peak_pressure"], picture["dissipation"]) == (state.peak_pressure, state.dissipation)
+    for name, field in ARRAYS.items():
+        assert np.array_equal(floats(picture[name]), getattr(state, field).astype("<f4"))
+
+
+def test_a_page_begins_with_the_first_corner_of_the_case() -> None:
+    page = Page(contact())
+    (picture,) = page.pictures
+    assert picture["load"]["P"] == P
+    assert page.latest["case"]["title"].startswith("Ti-6Al-4V")
+    assert (page.latest["undos"], page.latest["redos"], page.latest["sentence"]) == (0, 0, "")
+    json.dumps(page.latest, allow_nan=False)
+
+
+def test_a_drag_has_the_states_of_solve_bit_by_bit() -> None:
+    page = Page(contact())
+    drag(page, 5)
+    page.tell("load", loads={"Q": -Q}, gesture=6)
+    session = page.live.session
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert len(result) == len(page.pictures) == 14
+    for picture, state in zip(page.pictures, result, strict=True):
+        assert_shown(picture, state)
+    last = result[-1]
+    for name in ("pressure", "shear", "gap", "slip", "status"):
+        assert np.array_equal(getattr(session.state, name), getattr(last, name))
+
+
+def test_the_same_load_in_two_ways_has_two_shears() -> None:
+    page = Page(contact())
+    page.tell("load", loads={"Q": Q}, gesture=1)
+    page.tell("load", loads={"Q": 0.3 * Q}, gesture=2)
+    first = page.pictures[-1]
+    page.tell("keep", on=True)
+    assert page.latest["reference"]["serial"] == first["serial"]
+    page.tell("reset")
+    assert page.pictures == []
+    page.tell("load", loads={"P": P, "Q": 0.3 * Q}, gesture=3)
+    second = page.pictures[-1]
+    assert second["load"] == first["load"]
+    apart = np.abs(floats(first["shear"]) - floats(second["shear"])).max()
+    assert apart > 0.3 * abs(second["peak_shear"])
+    page.tell("keep", on=False)
+    assert page.latest["reference"] is None
+
+
+def test_undo_takes_back_a_gesture_and_redo_brings_it_again() -> None:
+    page = Page(contact())
+    drag(page, 5, 6)
+    after_drag = page.pictures
+    page.tell("load", loads={"Q": -Q}, gesture=6)
+    page.tell("change", changes={"friction": 0.2}, gesture=7)
+    assert (page.latest["undos"], len(page.pictures)) == (3, 1)
+    page.tell("undo")
+    assert page.latest["case"]["friction"] == 0.4
+    page.tell("undo")
+    assert page.pictures == after_drag
+    page.tell("undo")
+    assert len(page.pictures) == 1
+    assert page.tell("undo")["sentence"] == "undo: there is nothing before to go back to"
+    for _ in range(2):
+        page.tell("redo")
+    assert page.pictures[:-1] == after_drag
+    page.tell("load", loads={"Q": 0.0}, gesture=8)  # goes on from there, and forgets what was undone
+    assert page.tell("redo")["sentence"] == "redo: nothing was undone"
+    session = page.live.session
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert_shown(page.pictures[-1], result[-1])
+
+
+def test_a_load_after_undo_is_not_joined_to_the_gesture_before() -> None:
+    page = Page(contact())
+    drag(page, 5, 3)
+    page.tell("undo")
+    drag(page, 5, 3)
+    page.tell("undo")
+    assert len(page.pictures) == 1
+
+
+def test_reset_can_be_undone() -> None:
+    page = Page(contact())
+    drag(page, 5, 3)
+    before = page.pictures
+    page.tell("reset")
+    assert page.live.session.state is None
+    page.tell("undo")
+    assert page.pictures == before
+
+
+@pytest.mark.parametrize("follow", ["load", "history"])
+def test_a_change_of_the_problem_follows_the_load_or_the_history(follow: str) -> None:
+    page = Page(contact())
+    drag(page, 5, 6)
+    page.tell("change", changes={"friction": 0.25, "clearance": 3e-5}, follow=follow)
+    session = page.live.session
+    assert (session.problem.friction, session.problem.clearance) == (0.25, 3e-5)
+    assert len(page.pictures) == (1 if follow == "load" else 7)
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert_shown(page.pictures[-1], result[-1])
+
+
+def test_bodies_and_materials_can_be_changed() -> None:
+    page = Page(contact())
+    page.tell("change", changes={"pin_bore": 4e-3})
+    assert page.live.session.problem.pin_body == Tube(4e-3, "uniform")
+    page.tell("change", changes={"plate_body": "ring"})
+    page.tell("change", changes={"outer_radius": 0.03})
+    assert page.live.session.problem.plate_body == Ring(0.03)
+    page.tell("change", changes={"plate_body": "bushing"})
+    page.tell("change", changes={"bush_material": "steel"})
+    page.tell("change", changes={"interference": 1e-5})
+    bush = page.live.session.problem.plate_body
+    assert isinstance(bush, Bushing)
+    assert (bush.material.E, bush.interference) == (210e9, 1e-5)
+    page.tell("change", changes={"pin_material": "rigid"})
+    page.tell("change", changes={"plate_E": 200e9, "plane": "stress"})
+    pair = page.live.session.problem.pair
+    assert (pair.pin.is_rigid, pair.plate.E, pair.plane) == (True, 200e9, "stress")
+    page.tell("change", changes={"pin_bore": 0.0})
+    page.tell("change", changes={"plate_body": "plate"})
+    assert not page.live.session.problem.has_bodies
+    assert page.latest["case"]["plate"] == "plate"
+
+
+def test_every_control_can_be_sent_back_unchanged() -> None:
+    for changes in ({}, {"pin_bore": 4e-3}, {"plate_body": "ring"}, {"plate_body": "bushing"}):
+        page = Page(contact())
+        if changes:
+            page.tell("change", changes=changes)
+        before = page.live.session.problem
+        for control in page.latest["case"]["controls"]:
+            answer = page.tell("change", changes={control["name"]: control["value"]})
+            assert answer["kind"] == "pictures", answer
+        problem = page.live.session.problem
+        assert (problem.pair.pin.E, problem.pair.plate.E) == (before.pair.pin.E, before.pair.plate.E)
+        assert (problem.pin_body, problem.plate_body) == (before.pin_body, before.plate_body)
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "sentence"),
+    [
+        ("load", {"loads": {"R": 1.0}}, "R: corner 1: unknown load"),
+        ("load", {"loads": {"M": 1e3}}, "M: a body-loaded pin can't carry a moment"),
+        ("load", {"loads": {"P": 1e300}}, "P: must lie between"),
+        ("change", {"changes": {"friction": -1}}, "friction: must not be negative"),
+        ("change", {"changes": {"friction": None}}, "friction: must be a number"),
+        ("change", {"changes": {"colour": 1}}, "colour: is no control of the page"),
+        ("change", {"changes": {"pin_material": "wood"}}, "pin_material: must be"),
+        ("change", {"changes": {"plane": []}}, "plane: must be"),
+        ("change", {"changes": {"outer_radius": 1.0}}, "outer_radius: an infinite plate has no outer radius"),
+        ("change", {"changes": {"pin_bore": 0.0099}}, "bore_radius: must be at most"),
+    ],
+)
+def test_input_that_cannot_be_used_is_refused_and_changes_nothing(kind: str, fields: dict, sentence: str) -> None:
+    page = Page(contact())
+    before = page.live.session.state
+    answer = page.tell(kind, **fields)
+    assert (answer["kind"], answer["id"]) == ("refused", 1)
+    assert answer["sentence"].startswith(sentence)
+    assert page.live.session.state is before
+    assert page.tell("load", loads={"Q": Q})["kind"] == "pictures"
+
+
+FREE = """
+[pin]
+material = "steel"
+[plate]
+material = "steel"
+[contact]
+hole_radius = 0.01
+clearance = 1e-5
+friction = 0.3
+[[load]]
+P = 1e6
+"""
+
+
+def test_a_load_that_nothing_carries_is_lost_and_the_state_before_stays() -> None:
+    page = Page(contact(FREE))
+    before = page.live.session.state
+    answer = page.tell("load", loads={"M": 1e6}, gesture=4)
+    assert (answer["kind"], answer["error"]) == ("lost", "NoEquilibriumError")
+    assert "nothing holds the pin any more" in answer["sentence"].lower()
+    assert 0.0 < answer["fraction"] < 1.0
+    assert 0.0 < answer["load"]["M"] < 1e6
+    assert page.live.session.state is before
+    page.tell("load", loads={"M": 100.0}, gesture=4)
+    page.tell("undo")
+    assert page.pictures[-1]["load"]["M"] == 0.0
+
+
+def test_a_case_that_fails_at_once_says_why() -> None:
+    page = Page(contact(FREE.replace("P = 1e6", "P = 1e6\nM = 1e6")))
+    assert page.pictures == []
+    assert page.latest["sentence"].startswith("The moment is 100 times force times radius")
+    assert page.tell("load", loads={"P": 1e6})["kind"] == "pictures"
+    assert page.latest["sentence"] == ""
+
+
+def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own() -> None:
+    text = FREE.replace("clearance = 1e-5", "clearance = 1e-3").replace("P = 1e6", "P = 1e4")
+    page = Page(contact(text, 21))
+    assert page.latest["sentence"] == ""
+    session = page.live.session
+    assert np.count_nonzero(session.state.pressure) > 5
+    page.tell("load", loads={"Q": 1e3}, gesture=2)
+    result = fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+    assert page.live.session.state.peak_pressure == pytest.approx(result[-1].peak_pressure, rel=1e-9)
+
+
+def test_other_nodes_keep_the_load() -> None:
+    page = Page(contact())
+    drag(page, 5, 4)
+    load = page.pictures[-1]["load"]
+    page.tell("nodes", nodes=101)
+    assert page.live.session.grid.size == 101
+    assert page.pictures[-1]["load"] == load
+    page.tell("undo")
+    assert page.live.session.grid.size == NODES
+
+
+def test_displacements_can_be_led() -> None:
+    text = FREE.replace("friction = 0.3", 'friction = 0.3\ndrive = "both"').replace("P = 1e6", "uy = -2e-5")
+    page = Page(contact(text))
+    assert [axis["load"] for axis in page.latest["case"]["axes"]] == ["ux", "uy"]
+    page.tell("load", loads={"ux": 1e-6}, gesture=2)
+    assert page.pictures[-1]["load"]["P"] > 0.0
+
+
+def test_a_new_page_gets_the_whole_history() -> None:
+    page = Page(contact())
+    drag(page, 5, 4)
+    other = Page(page.live)
+    assert other.pictures == page.pictures
+    assert set(other.latest["grids"]) == {picture["grid"] for picture in page.pictures}
+
+
+def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(contact_module, "MOST_PICTURES", 20)
+    page = Page(contact(nodes=21))
+    drag(page, 5, 30)
+    assert len(page.pictures) == 20
+    assert page.live.session.history is not None
+    assert len(page.live.session.history) == 31
+    for gesture in range(10, 10 + MOST_UNDONE + 20):
+        page.tell("load", loads={"Q": 1e3 * gesture}, gesture=gesture)
+    assert page.latest["undos"] == MOST_UNDONE
+    assert len(page.live._pictures) == 20
+    for _ in range(25):
+        page.tell("undo")
+    assert page.pictures == []  # they are forgotten, but the contact is there
+    assert page.live.session.state is not None
+    page.tell("load", loads={"Q": 5.0}, gesture=1)
+    assert page.pictures[-1]["load"]["Q"] == 5.0
+
+
+def test_the_saved_case_has_the_same_states() -> None:
+    page = Page(contact())
+    drag(page, 5, 6)
+    case = casefile.parse_case(page.live.case_text())
+    result = fastpin.solve(case.problem, case.history, **case.options.keywords())
+    assert np.array_equal(result.grid.theta, page.live.session.grid.theta)
+    assert np.array_equal(result[-1].shear, page.live.session.state.shear)
+    assert result[-1].load == page.live.session.state.load
+    page.tell("reset")
+    with pytest.raises(fastpin.InputError, match="no load was followed yet"):
+        page.live.case_text()
+
+
+def test_a_long_history_can_be_stopped() -> None:
+    live = contact()
+    live.stop()
+    with pytest.raises(contact_module.StoppedError):
+        live.obey(message("change", changes={"friction": 0.3}))

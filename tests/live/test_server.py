@@ -1,0 +1,454 @@
+"""The server of the page: what it sends, whom it refuses, and what it survives."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import re
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from typing import Any
+
+import aiohttp
+import pytest
+
+from fastpin import casefile
+from fastpin.cli import live as live_command
+from fastpin.cli.main import main
+from fastpin.errors import InputError
+from fastpin.live import server as server_module
+from fastpin.live.contact import LiveContact
+from fastpin.live.page import page_files
+from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_CONNECTIONS, MOST_SESSIONS, Message
+from fastpin.live.server import Server
+from tests.support.live_pages import contact, served
+
+WAIT = 20.0
+"""Seconds after which an answer is missing. Other processes may slow the machine down."""
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[Server]:
+    with served() as running:
+        yield running
+
+
+CLOSED = (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED, aiohttp.WSMsgType.ERROR)
+
+
+def host_of(server: Server) -> str:
+    return server.address.split("/")[2]
+
+
+def ask(work: Callable[[aiohttp.ClientSession], Awaitable[Any]]) -> Any:
+    """Do some work with a client."""
+
+    async def run() -> Any:
+        async with aiohttp.ClientSession() as client:
+            return await asyncio.wait_for(work(client), WAIT)
+
+    return asyncio.run(run())
+
+
+def get(address: str, **headers: str) -> tuple[int, str, Any]:
+    """Return status, text and headers of an answer."""
+
+    async def work(client: aiohttp.ClientSession) -> tuple[int, str, Any]:
+        async with client.get(address, headers={name.replace("_", "-"): text for name, text in headers.items()}) as got:
+            return got.status, await got.text(), got.headers
+
+    return ask(work)
+
+
+class Talk:
+    """A websocket as a page has it."""
+
+    def __init__(self, page: aiohttp.ClientWebSocketResponse) -> None:
+        self.page, self.number = page, 0
+
+    async def send(self, kind: str, **fields: Any) -> int:
+        self.number += 1
+        await self.page.send_str(json.dumps({"kind": kind, "id": self.number, **fields}))
+        return self.number
+
+    async def answer(self, number: int | None) -> dict[str, Any]:
+        """Return the answer to a message; others are passed over."""
+        while True:
+            found = json.loads((await self.page.receive()).data)
+            if found["id"] == number and found["kind"] != "welcome":
+                return found
+
+    async def tell(self, kind: str, **fields: Any) -> dict[str, Any]:
+        return await self.answer(await self.send(kind, **fields))
+
+    async def hello(self, session: str = "") -> tuple[str, dict[str, Any]]:
+        """Return the name of the session, and the pictures."""
+        await self.send("hello", session=session)
+        welcome = json.loads((await self.page.receive()).data)
+        assert welcome["kind"] == "welcome", welcome
+        return welcome["session"], await self.answer(welcome["id"])
+
+
+async def connect(client: aiohttp.ClientSession, server: Server, origin: str = "") -> Talk:
+    headers = {"Origin": origin or f"http://{host_of(server)}"}
+    return Talk(await client.ws_connect(f"{server.address}socket", headers=headers, max_msg_size=0))
+
+
+# -- files and checks --------------------------------------------------------------------------------------------------
+
+
+def test_the_page_and_its_files_are_sent(server: Server) -> None:
+    status, text, headers = get(server.address)
+    assert status == 200
+    for name in re.findall(r'(?:src|href)="([^":]+)"', text):
+        status, body, found = get(server.address + name)
+        assert (status, body.encode()) == (200, page_files()[name][0])
+        assert found["Content-Type"] == f"{page_files()[name][1]}; charset=utf-8"
+    policy = headers["Content-Security-Policy"]
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+    assert (headers["X-Content-Type-Options"], headers["Referrer-Policy"]) == ("nosniff", "no-referrer")
+
+
+def test_no_file_of_the_page_names_another_address() -> None:
+    for name, (body, _) in page_files().items():
+        if not name.startswith("vendor/"):
+            assert not re.search(rb"https?://(?!www\.w3\.org)", body), name
+
+
+@pytest.mark.parametrize("path", ["", "nothing/", "nothing/socket", "nothing/main.js"])
+def test_without_the_token_nothing_is_sent(server: Server, path: str) -> None:
+    status, text, _ = get(f"http://{host_of(server)}/{path}")
+    assert status == 403
+    assert text == "The address lacks the token: take the address that fastpin live has printed.\n"
+
+
+PATHS = ("../server.py", "%2e%2e/server.py", "..%2fserver.py", "static/../../server.py", "/etc/passwd",
+         "vendor/../../server.py", "page.html", "vendor", "save/x/case.toml", "main.js/")  # fmt: skip
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_paths_lead_to_the_listed_files_only(server: Server, path: str) -> None:
+    host, port = host_of(server).split(":")
+    with socket.create_connection((host, int(port))) as raw:  # a client would shorten the path
+        request = f"GET /{server.token}/{path} HTTP/1.1\r\nHost: {host}:{port}\r\nConnection: close\r\n\r\n"
+        raw.sendall(request.encode())
+        answer = b"".join(iter(lambda: raw.recv(65_536), b""))
+    assert answer.split(b" ")[1] in (b"403", b"404")
+    assert b"import" not in answer
+
+
+@pytest.mark.parametrize("host", ["example.org", "127.0.0.1", "127.0.0.1:1", "0.0.0.0:80", "localhost"])
+def test_another_host_is_refused(server: Server, host: str) -> None:
+    status, text, _ = get(server.address, Host=host)
+    assert (status, text) == (403, "This server answers to its own address only.\n")
+
+
+def test_localhost_is_this_machine_too(server: Server) -> None:
+    port = host_of(server).split(":")[1]
+    assert get(server.address, Host=f"localhost:{port}", Origin=f"http://localhost:{port}")[0] == 200
+
+
+@pytest.mark.parametrize("origin", ["http://example.org", "null", "https://127.0.0.1", ""])
+def test_another_origin_is_refused(server: Server, origin: str) -> None:
+    assert get(server.address, Origin=origin)[:2] == (403, "Another page may not use this server.\n")
+
+    async def work(client: aiohttp.ClientSession) -> int:
+        with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+            await client.ws_connect(f"{server.address}socket", headers={"Origin": origin})
+        return caught.value.status
+
+    assert ask(work) == 403
+
+
+def test_a_websocket_needs_an_origin(server: Server) -> None:
+    assert get(f"{server.address}socket")[:2] == (403, "Only the page may use this server.\n")
+
+
+def test_the_server_listens_on_this_machine_only(server: Server) -> None:
+    port = int(host_of(server).split(":")[1])
+    others = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), port, socket.AF_INET)} - {"127.0.0.1"}
+    for address in others:
+        if not address.startswith("127."):
+            with pytest.raises(OSError, match=r"refused|timed out"):
+                socket.create_connection((address, port), 2.0)
+
+
+# -- talks -------------------------------------------------------------------------------------------------------------
+
+
+def test_a_load_is_answered_by_its_picture(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, server)
+        _, first = await talk.hello()
+        answer = await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=True)
+        assert (len(first["add"]), answer["keep"], len(answer["add"])) == (1, 1, 1)
+        assert answer["add"][0]["load"]["Q"] == 1e5
+
+    ask(work)
+
+
+def test_a_page_that_comes_back_finds_its_contact(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, server)
+        name, _ = await talk.hello()
+        await talk.tell("load", loads={"Q": 2e5}, gesture=1, drag=False)
+        twin = await connect(client, server)  # a copy of the tab: a contact of its own
+        other, _ = await twin.hello(name)
+        assert other != name
+        await talk.page.close()
+        for _ in range(100):  # until the server has noticed
+            again = await connect(client, server)
+            found, pictures = await again.hello(name)
+            if found == name:
+                break
+            await again.page.close()
+            await asyncio.sleep(0.02)
+        assert found == name
+        assert pictures["add"][-1]["load"]["Q"] == 2e5
+
+    ask(work)
+
+
+BAD = ["", "{", "[]", "null", '"load"', '{"kind": "load", "id": 1}', '{"kind": "hello", "id": 1, "session": 5}', "\x00",
+       '{"kind": "load", "id": 1, "loads": {"__class__": 1}, "gesture": 1, "drag": true}', "[" * 5_000]  # fmt: skip
+
+
+def test_bad_messages_are_answered_and_survived(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, server)
+        await talk.send("undo")  # before hello
+        assert "the first message must be hello" in (await talk.answer(1))["sentence"]
+        await talk.hello()
+        for text in BAD:
+            await talk.page.send_str(text)
+            answer = json.loads((await talk.page.receive()).data)
+            assert (answer["kind"], bool(answer["sentence"])) == ("refused", True)
+        await talk.page.send_bytes(b"\xff\x00")
+        assert json.loads((await talk.page.receive()).data)["sentence"] == "message: must be text"
+        assert (await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
+
+    ask(work)
+
+
+def test_a_message_of_10_mb_ends_its_connection_only(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        other = await connect(client, server)
+        await other.hello()
+        talk = await connect(client, server)
+        await talk.hello()
+        with contextlib.suppress(ConnectionError):  # the server closes before all is sent
+            await talk.page.send_str("x" * 10_000_000)
+        assert (await talk.page.receive()).type in CLOSED
+        assert (await other.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
+
+    ask(work)
+
+
+def test_the_longest_message_of_a_page_is_far_below_the_limit() -> None:
+    loads = dict.fromkeys(("P", "Q", "M", "sxx", "syy", "rotation", "sxy", "ux", "uy"), -1.2345678901234568e-300)
+    assert (
+        len(json.dumps({"kind": "load", "id": 2**53, "loads": loads, "gesture": 2**53, "drag": False}))
+        < MOST_BYTES / 10
+    )
+
+
+def test_a_thousand_messages_a_second_neither_pile_up_nor_stop_another_page(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        other = await connect(client, server)
+        await other.hello()
+        talk = await connect(client, server)
+        await talk.hello()
+        began = time.monotonic()
+        for k in range(1_000):
+            await talk.send("load", loads={"Q": 100.0 * k}, gesture=1, drag=True)
+        spent = time.monotonic() - began
+        answer = await other.tell("load", loads={"Q": 1e5}, gesture=1, drag=False)
+        assert answer["kind"] == "pictures"
+        kinds: list[str] = []
+        await asyncio.sleep(1.1)  # the next second has begun
+        number = await talk.send("undo")
+        while True:
+            found = json.loads((await talk.page.receive()).data)
+            kinds.append(found["kind"])
+            if found["id"] == number:
+                break
+        assert found["kind"] == "pictures"
+        assert kinds.count("pictures") + kinds.count("skipped") <= MOST_A_SECOND * (spent + 1.0) + 1
+        assert kinds.count("skipped") > 0
+
+    ask(work)
+
+
+def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    obey = LiveContact.obey
+
+    def slow(self: LiveContact, message: Message) -> list[dict[str, Any]]:
+        time.sleep(0.05)
+        return obey(self, message)
+
+    monkeypatch.setattr(LiveContact, "obey", slow)
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, running)
+        await talk.hello()
+        began = time.monotonic()
+        for k in range(100):
+            last = await talk.send("load", loads={"Q": 1000.0 * k}, gesture=1, drag=True)
+            await asyncio.sleep(0.002)
+        answer = await talk.answer(last)
+        assert answer["add"][-1]["load"]["Q"] == 99_000.0  # the latest load is followed,
+        assert time.monotonic() - began < 0.5 * 100 * 0.05  # and most of the others are not
+
+    with served() as running:
+        ask(work)
+
+
+def test_a_hundred_connections_are_not_too_many() -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        taken, refused = [], 0
+        for _ in range(100):
+            try:
+                taken.append(await connect(client, running))
+            except aiohttp.WSServerHandshakeError as error:
+                refused += error.status == 503
+        assert (len(taken), refused) == (MOST_CONNECTIONS, 100 - MOST_CONNECTIONS)
+        sentences = []
+        for talk in taken:
+            await talk.send("hello", session="")
+            sentences.append(json.loads((await talk.page.receive()).data))
+        assert [one["kind"] for one in sentences].count("welcome") == MOST_SESSIONS
+        assert f"{MOST_SESSIONS} pages are open" in sentences[-1]["sentence"]
+        for talk in taken:
+            await talk.page.close()
+        talk = await connect(client, running)  # the contacts of pages that have gone make room
+        for _ in range(100):
+            await talk.send("hello", session="")
+            if json.loads((await talk.page.receive()).data)["kind"] == "welcome":
+                break
+            await asyncio.sleep(0.02)
+        else:
+            raise AssertionError("no room")
+
+    with served(lambda: contact(nodes=21)) as running:
+        ask(work)
+
+
+def test_an_unexpected_error_is_answered_and_survived(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, running)
+        await talk.hello()
+        monkeypatch.setattr(LiveContact, "_obey_undo", broken)
+        assert "failed unexpectedly (ZeroDivisionError)" in (await talk.tell("undo"))["sentence"]
+        assert (await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
+
+    with served() as running:
+        ask(work)
+    assert "a message failed" in caplog.text
+
+
+def test_history_and_recording_are_sent_as_files(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> str:
+        talk = await connect(client, server)
+        name, _ = await talk.hello()
+        await talk.tell("load", loads={"Q": 3e5}, gesture=1, drag=False)
+        return name
+
+    name = ask(work)
+    status, text, headers = get(f"{server.address}save/{name}/case.toml")
+    assert status == 200
+    assert headers["Content-Disposition"] == 'attachment; filename="case.toml"'
+    assert casefile.parse_case(text).history.values()[-1, 1] == 3e5
+    status, text, _ = get(f"{server.address}save/{name}/recording.html")
+    assert (status, 'id="recording"' in text) == (200, True)
+
+
+# -- the command -------------------------------------------------------------------------------------------------------
+
+
+def test_a_port_in_use_is_refused_with_one_sentence(server: Server, capsys: pytest.CaptureFixture[str]) -> None:
+    port = host_of(server).split(":")[1]
+    assert main(["live", "--no-browser", "--port", port]) == 2
+    sentence = f"fastpin: --port: {port} can't be used: address already in use; choose another one, or leave it out\n"
+    assert capsys.readouterr().err == sentence
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--port", "70000"], "--port: must be a whole number from 0 to 65535, not 70000"),
+        (["--nodes", "many"], '--nodes: must be a whole number from 5 to 1601, not "many"'),
+        (["nothing.toml"], "nothing.toml: can't be read: No such file or directory"),
+    ],
+)
+def test_wrong_arguments(arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["live", "--no-browser", *arguments]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_without_its_package_the_command_says_how_to_install_it() -> None:
+    program = (
+        "import sys; sys.modules['aiohttp'] = None; from fastpin.cli.main import main; "
+        "sys.exit(main(['live', '--no-browser']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert done.stderr == "fastpin: the live page needs the package aiohttp: pip install 'fastpin[live]'\n"
+
+
+def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
+        assert (make().session.grid.size, port) == (31, 0)
+        ready("http://127.0.0.1:1/token/")
+
+    opened: list[str] = []
+
+    def no_browser(address: str) -> bool:
+        opened.append(address)
+        return False
+
+    monkeypatch.setattr(live_command.live, "serve", serve)
+    monkeypatch.setattr("webbrowser.open", no_browser)
+    assert main(["live", "--nodes", "31"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out == "live page: http://127.0.0.1:1/token/\nCtrl-C ends it\n"
+    assert printed.err == "note: no browser was found; open the address above in one\n"
+    assert opened == ["http://127.0.0.1:1/token/"]
+
+
+def test_the_mailbox_has_an_end() -> None:
+    mailbox = server_module.Mailbox.__new__(server_module.Mailbox)
+    with asyncio.Runner() as runner:
+
+        async def fill() -> None:
+            mailbox.__init__()  # type: ignore[misc]
+            for k in range(server_module.MOST_WAITING):
+                assert mailbox.put(Message("undo", k)) is None
+            with pytest.raises(InputError, match="more than 64 messages wait"):
+                mailbox.put(Message("undo", 99))
+            first = await mailbox.get()
+            assert first.id == 0
+
+        runner.run(fill())
+
+
+def test_ctrl_c_ends_the_server() -> None:
+    command = [sys.executable, "-m", "fastpin", "live", "--no-browser", "--nodes", "21"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[-1]
+        assert get(address)[0] == 200
+        process.send_signal(2)
+        _, trouble = process.communicate(timeout=WAIT)
+    assert (process.returncode, trouble) == (0, "")
