@@ -194,21 +194,18 @@ class LiveContact:
         self._remember(mark, gesture)
 
     def _step(self, session: Session, loads: dict[str, float], gesture: int) -> None:
-        """Follow a load, and take the picture of its state. A contact too narrow for the circle gets its own nodes."""
+        """Follow a load, and take the picture of its state.
+
+        If the contact of the first load is too narrow for nodes all round, the solver chooses the nodes.
+        """
         try:
             state = session.advance(loads)
         except ConvergenceError:
-            state = self._on_own_nodes(session, loads)
+            if session.history is not None:
+                raise
+            self.session = Session(session.problem, self._nodes, undo=0)
+            state = self.session.advance(loads)
         self._add(state, gesture)
-
-    def _on_own_nodes(self, before: Session, loads: dict[str, float]) -> State:
-        """Follow the whole history and one more load on nodes that the solver chooses."""
-        given = [] if before.history is None else [_named(row) for row in before.history.blocks[0].given]
-        session = Session(before.problem, self._nodes, undo=0, expected=[*given, loads])
-        for row in [*given, loads]:
-            state = session.advance(row)
-        self.session = session
-        return state
 
     def _add(self, state: State, gesture: int) -> None:
         self._serial += 1

@@ -1,7 +1,7 @@
 // Sliders and fields: loads, and everything of the problem that can be changed.
 
 import { newGesture } from "live/lead";
-import { digits, scaled } from "live/units";
+import { digits, inBaseUnit, scaled } from "live/units";
 
 const GROUPS = { loads: "Loads", contact: "Contact", pin: "Pin", plate: "Plate", bush: "Bush", solver: "Solver" };
 const NAMES = {
@@ -58,7 +58,8 @@ export class Controls {
 
   slider(control, send) {
     const line = element("div", "control"), label = element("label");
-    const { factor, unit } = scaled(Math.max(Math.abs(control.least), Math.abs(control.most)), control.unit);
+    const scale = scaled(Math.max(Math.abs(control.least), Math.abs(control.most)), control.unit);
+    const { factor, unit } = scale;
     const range = element("input"), field = element("input"), right = element("span");
     range.type = "range";
     Object.assign(range, { min: control.least, max: control.most, step: "any", value: control.value });
@@ -88,7 +89,7 @@ export class Controls {
     range.addEventListener("change", () => { gesture = null; });
     range.addEventListener("dblclick", () => { if (control.least < 0) { range.value = 0; move(0); gesture = null; } });
     field.addEventListener("change", () => {
-      if (field.value !== "") move(Number(field.value) / factor);
+      if (field.value !== "") move(inBaseUnit(field.value, scale));
       gesture = null;
     });
     if (control.value !== undefined) put(control.value);

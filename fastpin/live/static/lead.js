@@ -12,6 +12,7 @@ export class Leader {
     this.link = link;
     this.busy = false;
     this.next = null;
+    this.asked = 0; // when the latest message that is answered was sent, ms
   }
 
   // Follow a load. While one is on its way, the latest of the others waits.
@@ -30,7 +31,9 @@ export class Leader {
       return;
     }
     this.busy = true;
+    const asked = performance.now();
     await this.link.ask(kind, fields);
+    this.asked = asked;
     this.busy = false;
     if (this.next) {
       const next = this.next;

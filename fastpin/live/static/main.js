@@ -23,7 +23,7 @@ const drawing = new Drawing(at("drawing"), at("scale-note"));
 const charts = new RoundCharts(history);
 const loops = new LoopChart(history);
 const map = new MapChart(history);
-const times = []; // when pictures were drawn and how long it took, ms: for measurements
+const times = []; // when pictures were asked for and drawn, ms: for measurements
 let waiting = false, link = null, leader = null, player = null, controls = null;
 
 // Draw at the next frame; several calls before it count once.
@@ -44,7 +44,7 @@ function draw() {
   showNumbers(history);
   showTimeline();
   showLesson();
-  times.push([began, performance.now() - began, history.shown?.serial ?? 0]);
+  times.push({ began, drawn: performance.now(), asked: leader?.asked ?? 0, serial: history.shown?.serial ?? 0 });
   if (times.length > 5000) times.splice(0, 1000);
 }
 

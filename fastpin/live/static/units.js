@@ -5,9 +5,14 @@ const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^
 
 // A factor and a unit in which values up to `largest` read well.
 export function scaled(largest, unit) {
-  if (WITHOUT.has(unit) || !(largest > 0) || !isFinite(largest)) return { factor: 1, unit: shown(unit) };
+  if (WITHOUT.has(unit) || !(largest > 0) || !isFinite(largest)) return { factor: 1, exponent: 0, unit: shown(unit) };
   const exponent = Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(largest * (1 + 1e-12)) / 3)));
-  return { factor: 10 ** -exponent, unit: PREFIXES[exponent] + unit };
+  return { factor: 10 ** -exponent, exponent, unit: PREFIXES[exponent] + unit };
+}
+
+// The number that a text in such a unit means. 1 MPa is 1e6 Pa to the last digit.
+export function inBaseUnit(text, { exponent }) {
+  return /e/i.test(text) ? Number(text) * 10 ** exponent : Number(`${text}e${exponent}`);
 }
 
 function shown(unit) {

@@ -1,0 +1,521 @@
+"""The live page in a real browser, without a screen.
+
+These tests need Chromium and its driver. They run where FASTPIN_BROWSER is set, as in ``.ci/run``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+import fastpin
+from fastpin import casefile
+from fastpin.live.contact import LiveContact
+from fastpin.live.recording import record_page
+from fastpin.live.server import Server
+from tests.support.live_pages import contact, served
+
+BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
+if not os.environ.get("FASTPIN_BROWSER"):
+    pytest.skip("tests in a browser: set FASTPIN_BROWSER=1, as .ci/run does", allow_module_level=True)
+if BROWSER is None or DRIVER is None:
+    pytest.skip("tests in a browser: apt-get install chromium chromium-driver", allow_module_level=True)
+
+pytestmark = pytest.mark.browser
+
+SWITCHES = ("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking",
+            "disable-component-update", "disable-sync", "hide-scrollbars")  # fmt: skip
+WAIT = 20.0
+"""Seconds after which something is missing. Other processes may slow the machine down."""
+
+SLOWEST = 60.0
+"""Milliseconds that 95 % of the updates with 201 nodes may take."""
+
+
+@pytest.fixture(scope="module")
+def chrome(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(BROWSER)
+    folder = tmp_path_factory.mktemp("chromium")
+    for switch in (*SWITCHES, f"user-data-dir={folder}", "window-size=1400,1043"):
+        options.add_argument(f"--{switch}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    options.add_experimental_option("prefs", {"download.default_directory": str(folder)})
+    driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
+    driver.folder = folder
+    yield driver
+    driver.quit()
+
+
+class Tab:
+    """A tab of the browser that shows the page of a server."""
+
+    def __init__(self, chrome: webdriver.Chrome, server: Server | None) -> None:
+        self.chrome, self.server = chrome, server
+        chrome.switch_to.new_window("tab")
+        self.handle = chrome.current_window_handle
+        if server is not None:
+            chrome.get(server.address)
+            self.wait("return fastpin.history.case !== null && fastpin.times.length > 0")
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        self.chrome.switch_to.window(self.handle)
+        return self.chrome.execute_script(script, *arguments)
+
+    def wait(self, script: str, *arguments: Any, seconds: float = WAIT) -> Any:
+        """Wait until a script returns something true, and return it."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if found := self.run(script, *arguments):
+                return found
+            time.sleep(0.02)
+        raise AssertionError(f"nothing came of: {script}; the page says: {self.message}")
+
+    def click(self, name: str) -> None:
+        self.chrome.switch_to.window(self.handle)
+        self.chrome.find_element(By.ID, name).click()
+
+    def keys(self, name: str, *keys: str) -> None:
+        self.chrome.switch_to.window(self.handle)
+        self.chrome.find_element(By.ID, name).send_keys(*keys)
+
+    def set(self, key: str, value: object, event: str = "change") -> None:
+        """Set a field, a slider or a choice, as a user does."""
+        self.run(
+            "const place = document.querySelector(`[data-key='${arguments[0]}']`); place.value = arguments[1];"
+            "place.dispatchEvent(new Event(arguments[2], {bubbles: true}))", key, value, event,
+        )  # fmt: skip
+
+    def mouse(self, kind: str, x: float, y: float, buttons: int = 1) -> None:
+        self.chrome.execute_cdp_cmd(
+            "Input.dispatchMouseEvent",
+            {"type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1},
+        )
+
+    def tip(self) -> tuple[float, float]:
+        """The place of the arrow's tip in the window."""
+        x, y = self.run(
+            "const box = fastpin.drawing.canvas.getBoundingClientRect(); window.scrollTo(0, 0);"
+            "const tip = fastpin.drawing.tip(fastpin.history.latest.load); return [box.x + tip[0], box.y + tip[1]]"
+        )
+        return x, y
+
+    def drag(self, path: Callable[[float], tuple[float, float]], events: int, pause: float = 0.0) -> None:
+        """Drag the arrow's tip along a path, in pixels from where it is."""
+        x, y = self.tip()
+        self.mouse("mousePressed", x, y)
+        for k in range(1, events + 1):
+            right, down = path(k / events)
+            self.mouse("mouseMoved", x + right, y + down)
+            time.sleep(pause)
+        self.mouse("mouseReleased", x + path(1.0)[0], y + path(1.0)[1], 0)
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until nothing is under way, and all is drawn."""
+        self.wait("return !fastpin.leader.busy && fastpin.link.waiting.size === 0 && !fastpin.player.plays")
+        self.chrome.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
+
+    @property
+    def message(self) -> str:
+        return str(
+            self.run(
+                "const place = document.getElementById('message');"
+                "return place.hidden ? '' : document.getElementById('sentence').textContent"
+            )
+        )
+
+    @property
+    def live(self) -> LiveContact:
+        """The contact of the page, in the server."""
+        assert self.server is not None
+        return self.server._sessions[self.run("return fastpin.link.session")]
+
+    def curve(self, name: str) -> np.ndarray:
+        """The data of a chart, shape (series, points); a gap is NaN."""
+        data = json.loads(
+            self.run(
+                "return JSON.stringify(fastpin.charts.charts[arguments[0]].data.map((one) => Array.from(one)))", name
+            )
+        )
+        return np.array(data, dtype=float)
+
+    def trouble(self) -> list[str]:
+        """Messages of the browser's console."""
+        return [entry["message"] for entry in self.chrome.get_log("browser")]
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[Server]:
+    with served(lambda: contact(nodes=101)) as running:
+        yield running
+
+
+@pytest.fixture(autouse=True)
+def _close_tabs(chrome: webdriver.Chrome) -> Iterator[None]:
+    """Close the tabs of a test at its end."""
+    chrome.get_log("browser")
+    yield
+    for handle in chrome.window_handles[1:]:
+        chrome.switch_to.window(handle)
+        chrome.close()
+    chrome.switch_to.window(chrome.window_handles[0])
+
+
+@pytest.fixture
+def tab(chrome: webdriver.Chrome, server: Server) -> Tab:
+    return Tab(chrome, server)
+
+
+def circle(part: float) -> tuple[float, float]:
+    """A drag to the right, up and back."""
+    return 70.0 * np.sin(np.pi * part), -25.0 * (1.0 - np.cos(np.pi * part))
+
+
+def solved(live: LiveContact) -> fastpin.Result:
+    """The result of the history of a page, in Python."""
+    session = live.session
+    return fastpin.solve(session.problem, session.history, grid=session.grid, keep="corners")
+
+
+def test_a_drag_has_the_state_of_the_same_history_in_python_bit_by_bit(tab: Tab) -> None:
+    tab.drag(circle, 40)
+    state, result = tab.live.session.state, solved(tab.live)
+    assert len(result) > 5
+    for name in ("pressure", "shear", "gap", "slip", "status"):
+        assert np.array_equal(getattr(state, name), getattr(result[-1], name))
+    assert tab.run("return fastpin.history.latest.load") == state.load
+    assert tab.run("return fastpin.history.latest.dissipation") == state.dissipation
+    assert tab.trouble() == []
+
+
+def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
+    tab.drag(circle, 20)
+    state = solved(tab.live)[-1]
+    angle, _, pressure = tab.curve("pressure")
+    degrees = np.degrees(state.theta) + 90.0
+    assert np.allclose(angle[:-1], degrees, atol=1e-4)
+    assert angle[-1] == pytest.approx(180.0, abs=1e-4)
+    close = {"rtol": 1e-6, "atol": 1e-6 * state.pressure.max() * 1e-6}  # float32, in MPa
+    assert np.allclose(pressure[:-1], 1e-6 * state.pressure, **close)
+    _, _, upper, lower, shear = tab.curve("shear")
+    assert np.allclose(shear[:-1], 1e-6 * state.shear, **close)
+    assert np.allclose(upper[:-1], 0.4e-6 * state.pressure, **close)
+    assert np.array_equal(lower, -upper)
+    where, _, hoop = tab.curve("hoop")
+    assert np.allclose(hoop, 1e-6 * state.hoop_stress("plate", np.radians(where - 90.0)), rtol=1e-5, atol=1e-4)
+    shown = tab.run("return document.getElementById('numbers').textContent")
+    assert f"{1e-6 * state.peak_pressure:.4g} MPa" in shown
+
+
+def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
+    tab.click("play-cycle")
+    time.sleep(0.2)
+    tab.settle()
+    (way, load) = tab.run("return fastpin.loops.chart.data[1]")
+    cycle = solved(tab.live).cycle(first=1, last=len(way))
+    loop = cycle.loops["Q"]
+    assert np.allclose(way, 1e6 * loop.displacement, rtol=1e-9, atol=1e-9)
+    assert np.allclose(load, 1e-3 * loop.load)
+
+
+def test_undo_redo_and_reset(tab: Tab) -> None:
+    start = tab.run("return fastpin.history.latest.load")
+    tab.drag(circle, 10)
+    there = tab.run("return fastpin.history.latest.load")
+    tab.click("undo")
+    tab.settle()
+    assert tab.run("return fastpin.history.latest.load") == start
+    tab.keys("drawing", Keys.CONTROL, "y")
+    tab.settle()
+    assert tab.run("return fastpin.history.latest.load") == there
+    tab.click("reset")
+    tab.settle()
+    assert tab.run("return fastpin.history.pictures.length") == 0
+    tab.keys("drawing", Keys.CONTROL, "z")
+    tab.settle()
+    assert tab.run("return fastpin.history.latest.load") == there
+
+
+def test_arrow_keys_move_the_load(tab: Tab) -> None:
+    load = tab.run("return fastpin.history.latest.load")
+    size = tab.run("return fastpin.history.case.axes[0].size")
+    tab.keys("drawing", Keys.ARROW_RIGHT)
+    tab.settle()
+    moved = tab.run("return fastpin.history.latest.load")
+    assert (moved["P"], moved["Q"]) == (load["P"], pytest.approx(0.02 * size))
+    tab.keys("drawing", Keys.SHIFT + Keys.ARROW_UP)
+    tab.settle()
+    assert tab.run("return fastpin.history.latest.load.P") == pytest.approx(load["P"] - 0.1 * size)
+    assert tab.run("return fastpin.history.undos") == 2
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "field", "found"),
+    [
+        ("friction", "0.25", "friction", 0.25),
+        ("clearance", "40", "clearance", 4e-5),
+        ("friction slider", "0.3", "friction", 0.3),
+        ("pin_bore", "4", "has_bodies", True),
+        ("plate_body", "ring", "has_bodies", True),
+    ],
+)
+def test_fields_and_sliders_change_the_problem(tab: Tab, key: str, value: str, field: str, found: object) -> None:
+    tab.set(key, value, "input" if "slider" in key else "change")
+    tab.settle()
+    assert getattr(tab.live.session.problem, field) == pytest.approx(found)
+    state = solved(tab.live)[-1]
+    assert tab.run("return fastpin.history.latest.peak_pressure") == state.peak_pressure
+    assert tab.message == ""
+
+
+def test_load_sliders_and_remote_stress(tab: Tab) -> None:
+    tab.set("sxx", "50")
+    tab.settle()
+    tab.set("Q slider", "300000", "input")
+    tab.settle()
+    load = tab.live.session.state.load
+    assert (load["sxx"], load["Q"]) == (50e6, 300000.0)
+
+
+def test_wrong_input_gets_a_sentence_on_the_page_and_the_page_lives_on(tab: Tab) -> None:
+    tab.set("friction", "-1")
+    tab.settle()
+    assert tab.message == "friction: must not be negative, not -1"
+    assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
+    tab.drag(circle, 5)
+    assert tab.message == ""
+
+
+def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
+    tab.click("play-two")
+    time.sleep(0.2)
+    tab.settle()
+    words = tab.run("return document.getElementById('lesson').textContent")
+    assert words.startswith("Same load as the reference, reached in another way: the shear differs by up to")
+    _, before, _, _, shear = tab.curve("shear")
+    straight = np.nanmax(np.abs(before - shear))
+    assert f"{straight:.3g} MPa" in words
+    # The page's reference is the state of one straight step, and its curve the state of the detour.
+    problem, load = tab.live.session.problem, tab.live.session.state.load
+    result = fastpin.solve(problem, [{"P": load["P"], "Q": load["Q"]}], grid=tab.live.session.grid)
+    assert np.allclose(before[:-1], 1e-6 * result[-1].shear, rtol=1e-5, atol=1e-4)
+
+
+def test_the_case_is_played_and_the_history_scrubbed(tab: Tab) -> None:
+    tab.click("play-case")
+    time.sleep(0.2)
+    tab.settle()
+    assert tab.run("return fastpin.history.latest.load.Q") == 7.26e5
+    count = tab.run("return fastpin.history.pictures.length")
+    assert (
+        tab.run(
+            "const place = document.getElementById('scrub'); place.value = 3;"
+            "place.dispatchEvent(new Event('input')); return fastpin.history.place"
+        )
+        == 3
+    )
+    time.sleep(0.1)
+    assert tab.run("return document.getElementById('step').textContent") == f"step 4 of {count}"
+    tab.keys("drawing", Keys.ARROW_LEFT)  # goes on from the latest state, not from the one that is shown
+    tab.settle()
+    assert tab.run("return fastpin.history.isLatest && fastpin.history.pictures.length") == count + 1
+
+
+def test_two_tabs_have_two_contacts(tab: Tab, chrome: webdriver.Chrome, server: Server) -> None:
+    other = Tab(chrome, server)
+    tab.drag(circle, 5)
+    assert tab.live is not other.live
+    assert other.run("return fastpin.history.pictures.length") == 1
+    other.drag(circle, 5)
+    assert np.array_equal(solved(other.live)[-1].shear, other.live.session.state.shear)
+
+
+def test_a_lost_connection_comes_back_with_its_history(tab: Tab) -> None:
+    tab.drag(circle, 10)
+    before = tab.run("return fastpin.history.pictures.map((one) => one.serial)")
+    tab.run("fastpin.link.socket.close()")
+    tab.wait("return !fastpin.link.open")
+    tab.wait("return fastpin.link.open && fastpin.link.waiting.size === 0")
+    assert tab.run("return fastpin.history.pictures.map((one) => one.serial)") == before
+    tab.drag(circle, 5)
+    assert tab.run("return fastpin.history.pictures.length") > len(before)
+    assert tab.message == ""
+
+
+def test_a_reloaded_page_has_its_history(tab: Tab) -> None:
+    tab.drag(circle, 10)
+    before = tab.run("return fastpin.history.pictures.map((one) => one.serial)")
+    tab.chrome.refresh()
+    tab.wait("return window.fastpin?.history.case && fastpin.link.waiting.size === 0")
+    assert tab.run("return fastpin.history.pictures.map((one) => one.serial)") == before
+
+
+def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome) -> None:
+    command = [sys.executable, "-m", "fastpin", "live", "--no-browser", "--nodes", "61"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[-1]
+        tab = Tab(chrome, None)
+        chrome.get(address)
+        tab.wait("return window.fastpin?.history.case !== null && fastpin.times.length > 0")
+        tab.keys("drawing", Keys.ARROW_RIGHT)
+        tab.settle()
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    tab.wait("return document.getElementById('connection').textContent === 'no server'")
+    assert tab.message.startswith("The server has ended. The history stays on this page")
+    assert tab.run("return fastpin.history.pictures.length") == 2
+    tab.keys("drawing", Keys.ARROW_RIGHT)  # no harm
+    tab.click("csv")
+    file = chrome.folder / "loads.csv"
+    for _ in range(200):
+        if file.exists():
+            break
+        time.sleep(0.02)
+    loads = fastpin.LoadHistory.from_csv(file).values()
+    assert loads.shape[0] == 2
+    assert loads[-1, 0] == 2.42e6
+    chrome.get_log("browser")  # the refused connections
+
+
+FREE = """
+[pin]
+material = "steel"
+[plate]
+material = "steel"
+[contact]
+hole_radius = 0.01
+clearance = 1e-5
+friction = 0.3
+[[load]]
+P = 1e6
+"""
+
+
+def test_a_load_that_nothing_carries_says_so(chrome: webdriver.Chrome) -> None:
+    with served(lambda: contact(FREE, 61)) as running:
+        tab = Tab(chrome, running)
+        tab.set("M", "5")
+        tab.settle()
+        before = tab.live.session.state
+        assert "spins" in tab.message
+        assert tab.message.endswith("The contact stays at the last load that was carried.")
+        tab.drag(circle, 5)
+        assert tab.message == ""
+        assert tab.live.session.state is not before
+
+
+def test_a_case_that_fails_at_once_says_so_on_the_page(chrome: webdriver.Chrome) -> None:
+    with served(lambda: contact(FREE + "M = 1e6\n", 61)) as running:
+        tab = Tab(chrome, running)
+        assert "the pin spins" in tab.message
+        assert tab.run("return fastpin.history.pictures.length") == 0
+        tab.set("P", "1")
+        tab.settle()
+        assert (tab.message, tab.live.session.state.load["P"]) == ("", pytest.approx(1e6, rel=1e-15))
+
+
+def test_case_picture_and_recording_are_saved(tab: Tab, chrome: webdriver.Chrome) -> None:
+    tab.drag(circle, 10)
+    files = [chrome.folder / name for name in ("case.toml", "recording.html", "fastpin.png")]
+    for name in ("save-case", "save-recording", "save-image"):
+        tab.click(name)
+    end = time.monotonic() + WAIT
+    while not all(file.exists() for file in files) and time.monotonic() < end:
+        time.sleep(0.02)
+    case = casefile.read_case(files[0])
+    result = fastpin.solve(case.problem, case.history, **case.options.keywords())
+    assert np.array_equal(result[-1].shear, tab.live.session.state.shear)
+    assert files[2].read_bytes().startswith(b"\x89PNG")
+    assert_replays(chrome, files[1], tab.run("return fastpin.history.pictures.length"))
+
+
+def assert_replays(chrome: webdriver.Chrome, file: Path, count: int) -> None:
+    """A recording is replayed from a file, without server and without trouble."""
+    tab = Tab(chrome, None)
+    chrome.get_log("browser")
+    chrome.get(file.as_uri())
+    tab.wait("return window.fastpin?.times.length > 0")
+    assert tab.run("return fastpin.history.pictures.length") == count
+    tab.run("fastpin.history.place = 0")
+    tab.click("replay")
+    tab.wait("return fastpin.history.isLatest && !fastpin.player.plays")
+    assert tab.trouble() == []
+    assert not tab.run("return performance.getEntriesByType('resource').some((one) => one.name.startsWith('http'))")
+
+
+def test_the_recording_of_a_run_is_replayed(chrome: webdriver.Chrome, tmp_path: Path) -> None:
+    case = casefile.builtin_case()
+    result = fastpin.solve(case.problem, case.history, nodes=61, between=4)
+    file = tmp_path / "page.html"
+    file.write_text(record_page(case, list(result)), encoding="utf-8")
+    assert_replays(chrome, file, len(result))
+
+
+@pytest.mark.parametrize("size", [(1400, 900), (800, 900)])
+def test_nothing_lies_beyond_the_window(chrome: webdriver.Chrome, server: Server, size: tuple[int, int]) -> None:
+    chrome.set_window_size(size[0], size[1] + 143)
+    tab = Tab(chrome, server)
+    tab.drag(circle, 5)
+    wide, inner = tab.run("return [document.documentElement.scrollWidth, innerWidth]")
+    assert wide <= inner
+    boxes = tab.run(
+        "return Array.from(document.querySelectorAll('button, canvas, input, select'), (one) => "
+        "{const box = one.getBoundingClientRect();"
+        " return [one.id || one.dataset.key || one.className, box.left, box.right, box.width]})"
+    )
+    assert [box for box in boxes if box[3] > 0 and not 0 <= box[1] <= box[2] <= inner] == []
+    chrome.set_window_size(1400, 1043)
+
+
+DRAG = """
+const [x, y, frames, done] = arguments, begin = fastpin.times.length;
+let k = 0;
+function move() {  // a mouse sends an event for each frame
+  const part = k / frames, [right, down] = [60 * Math.sin(6 * Math.PI * part), -20 * Math.sin(4 * Math.PI * part)];
+  fastpin.drawing.canvas.dispatchEvent(new PointerEvent("pointermove", {clientX: x + right, clientY: y + down}));
+  if (++k <= frames) requestAnimationFrame(move);
+  else setTimeout(() => done(fastpin.times.slice(begin)), 500);
+}
+move();
+"""
+"""Moves the pressed mouse in the page itself: the driver would be too slow."""
+
+
+@pytest.mark.parametrize("nodes", [101, 201, 401])
+def test_updates_come_fast_enough_for_a_drag(
+    chrome: webdriver.Chrome, nodes: int, record_property: Callable[[str, object], None]
+) -> None:
+    """From the message of the page to its picture, while the mouse moves. With 401 nodes the time is only reported."""
+    with served(lambda: contact(nodes=nodes)) as running:
+        tab = Tab(chrome, running)
+        tab.drag(circle, 20)  # the first steps load compiled code
+        x, y = tab.tip()
+        tab.mouse("mousePressed", x, y)
+        times = chrome.execute_async_script(DRAG, x, y, 300)
+        tab.mouse("mouseReleased", x, y, 0)
+    updates = [one["drawn"] - one["asked"] for one in times]
+    between = np.diff([one["drawn"] for one in times])
+    slow, median = np.quantile(updates, 0.95), np.median(updates)
+    rate = f"{len(times)} updates, {1e3 / np.median(between):.0f} a second"
+    text = f"{nodes} nodes: {rate}, median {median:.0f} ms, 95 % {slow:.0f} ms"
+    record_property("updates", text)
+    print(text)
+    assert len(times) > 20
+    assert slow < (SLOWEST if nodes <= 201 else 4.0 * SLOWEST), text
