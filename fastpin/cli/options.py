@@ -374,6 +374,9 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
     command.add_argument("--states", metavar="WHICH", help=f"of --plot: {STATES_HELP}")
     command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
     command.add_argument(
+        "--record", metavar="FILE", type=Path, help="write a page (html) that replays the states; more with --between"
+    )
+    command.add_argument(
         "--cycle-csv", metavar="FILE", type=Path, help="write slip, tractions and friction energy in the last cycle"
     )
     command.add_argument("-v", "--verbose", action="count", default=0, help="log each step; -vv: more")

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fastpin import casefile, figures, report, solver, storage
+from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli.options import literal
 from fastpin.cli.progress import Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
@@ -218,7 +218,9 @@ def _start(options: argparse.Namespace) -> solver.Result | None:
 
 def _check_outputs(options: argparse.Namespace) -> None:
     """Check before the work that all output files can be written."""
-    names = ("json", "plot", "cycles", "cycle_csv", "output")
+    names = ("json", "plot", "cycles", "cycle_csv", "record", "output")
+    if options.record is not None and options.record.suffix.lower() not in (".html", ".htm"):
+        raise InputError("--record", f"the page's name must end in .html, not {options.record.name!r}")
     check_outputs({_flag(name): getattr(options, name) for name in names}, getattr(options, "case", None))
 
 
@@ -229,8 +231,10 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     count = storage.state_count(options.output)
     if options.json is not None:
         return _write_result(case, options, storage.load(options.output), ended)
-    picked = visible_rows(count)
-    result = storage.load(options.output, states=picked)
+    picked = set(visible_rows(count))
+    if options.record is not None:
+        picked |= set(live.recorded_places(count))
+    result = storage.load(options.output, states=sorted(picked))
     return _write_result(case, options, result, ended, hidden=count - len(picked))
 
 
@@ -256,6 +260,7 @@ def _write_result(
     if result is not None and len(result):
         states = result
         writers.append((options.plot, lambda path: _plot(case, options, states, hidden, path)))
+        writers.append((options.record, lambda path: write_text(path, live.record_page(case, states, error or ""))))
     if result is not None and result.cycles:
         with_cycles = result
         writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))

@@ -15,11 +15,16 @@ from fastpin.states.state import State
 from fastpin.version import __version__
 
 
-def record_page(case: Case, states: Sequence[State]) -> str:
+def recorded_places(count: int) -> list[int]:
+    """The places of the states that a recording shows, out of `count`: an even choice with the first and the last."""
+    chosen = min(count, MOST_PICTURES)
+    return [round(k * (count - 1) / max(chosen - 1, 1)) for k in range(chosen)]
+
+
+def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
     """The text of an HTML file that replays states, without server and network.
 
-    Of more than :data:`fastpin.live.protocol.MOST_PICTURES` states an even choice is taken, with the first and the
-    last one.
+    Of more than :data:`fastpin.live.protocol.MOST_PICTURES` states an even choice is taken.
 
     Parameters
     ----------
@@ -27,6 +32,8 @@ def record_page(case: Case, states: Sequence[State]) -> str:
         The case of the states.
     states : sequence of State
         In the order of the history, on one grid.
+    sentence : str
+        A remark above the page, such as why the run ended early.
 
     Raises
     ------
@@ -35,14 +42,13 @@ def record_page(case: Case, states: Sequence[State]) -> str:
     """
     if not len(states):
         raise InputError("states", "there is no state to record")
-    count = min(len(states), MOST_PICTURES)
-    places = [round(k * (len(states) - 1) / max(count - 1, 1)) for k in range(count)]
-    chosen = [states[place] for place in places]
+    chosen = [states[place] for place in recorded_places(len(states))]
     recording = {
         "version": __version__,
         "case": case_document(case.title, case.problem, Scales(case.problem, case.history)),
         "grids": {"0": packed(chosen[0].theta)},
         "reference": None,
+        "sentence": sentence,
         "add": [picture(state, serial, state.step, "0") for serial, state in enumerate(chosen, start=1)],
     }
     return recorded_page(recording)
