@@ -5,8 +5,10 @@ These tests need Chromium and its driver. They run where FASTPIN_BROWSER is set,
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -17,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -45,6 +48,9 @@ WAIT = 20.0
 
 SLOWEST = 60.0
 """Milliseconds that 95 % of the updates with 201 nodes may take."""
+
+QUIET = 25.0
+"""Percent of the processors that other processes may take on a quiet machine."""
 
 
 @pytest.fixture(scope="module")
@@ -219,8 +225,10 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     assert np.array_equal(lower, -upper)
     where, _, hoop = tab.curve("hoop")
     assert np.allclose(hoop, 1e-6 * state.hoop_stress("plate", np.radians(where - 90.0)), rtol=1e-5, atol=1e-4)
-    shown = tab.run("return document.getElementById('numbers').textContent")
-    assert f"{1e-6 * state.peak_pressure:.4g} MPa" in shown
+    (shown,) = re.findall(
+        r"peak pressure([\d.]+) MPa", tab.run("return document.getElementById('numbers').textContent")
+    )
+    assert float(shown) == float(f"{1e-6 * state.peak_pressure:.4g}")
 
 
 def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
@@ -499,23 +507,39 @@ move();
 
 
 @pytest.mark.parametrize("nodes", [101, 201, 401])
-def test_updates_come_fast_enough_for_a_drag(
-    chrome: webdriver.Chrome, nodes: int, record_property: Callable[[str, object], None]
-) -> None:
-    """From the message of the page to its picture, while the mouse moves. With 401 nodes the time is only reported."""
+def test_updates_come_fast_enough_for_a_drag(chrome: webdriver.Chrome, nodes: int) -> None:
+    """From the message of the page to its picture, while the mouse moves.
+
+    The processor time of server and browser together has a limit with 101 and 201 nodes. Other processes take time
+    from both, so the time that passes has its limit on a quiet machine only. It is printed in any case.
+    """
     with served(lambda: contact(nodes=nodes)) as running:
         tab = Tab(chrome, running)
         tab.drag(circle, 20)  # the first steps load compiled code
+        busy = psutil.cpu_percent(0.5)
         x, y = tab.tip()
         tab.mouse("mousePressed", x, y)
+        began = processor_time()
         times = chrome.execute_async_script(DRAG, x, y, 300)
+        spent = 1e3 * (processor_time() - began) / len(times)
         tab.mouse("mouseReleased", x, y, 0)
     updates = [one["drawn"] - one["asked"] for one in times]
     between = np.diff([one["drawn"] for one in times])
     slow, median = np.quantile(updates, 0.95), np.median(updates)
-    rate = f"{len(times)} updates, {1e3 / np.median(between):.0f} a second"
-    text = f"{nodes} nodes: {rate}, median {median:.0f} ms, 95 % {slow:.0f} ms"
-    record_property("updates", text)
+    rate = f"{len(times)} updates, {1e3 / np.median(between):.0f} a second, {spent:.0f} ms of the processor each"
+    text = f"{nodes} nodes: {rate}; median {median:.0f} ms, 95 % {slow:.0f} ms, others took {busy:.0f} % before"
     print(text)
     assert len(times) > 20
-    assert slow < (SLOWEST if nodes <= 201 else 4.0 * SLOWEST), text
+    if nodes <= 201:
+        assert spent < SLOWEST, text
+        if busy < QUIET:
+            assert slow < SLOWEST, text
+
+
+def processor_time() -> float:
+    """Return the processor time of this process and all processes of the browser, s."""
+    total = 0.0
+    for process in [psutil.Process(), *psutil.Process().children(recursive=True)]:
+        with contextlib.suppress(psutil.Error):
+            total += sum(process.cpu_times()[:2])
+    return total

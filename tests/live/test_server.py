@@ -37,6 +37,9 @@ def server() -> Iterator[Server]:
         yield running
 
 
+OPENED: list[aiohttp.ClientWebSocketResponse] = []
+"""The websockets of a test. They are closed at its end."""
+
 CLOSED = (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED, aiohttp.WSMsgType.ERROR)
 
 
@@ -49,7 +52,11 @@ def ask(work: Callable[[aiohttp.ClientSession], Awaitable[Any]]) -> Any:
 
     async def run() -> Any:
         async with aiohttp.ClientSession() as client:
-            return await asyncio.wait_for(work(client), WAIT)
+            try:
+                return await asyncio.wait_for(work(client), WAIT)
+            finally:
+                while OPENED:
+                    await OPENED.pop().close()
 
     return asyncio.run(run())
 
@@ -95,7 +102,8 @@ class Talk:
 
 async def connect(client: aiohttp.ClientSession, server: Server, origin: str = "") -> Talk:
     headers = {"Origin": origin or f"http://{host_of(server)}"}
-    return Talk(await client.ws_connect(f"{server.address}socket", headers=headers, max_msg_size=0))
+    OPENED.append(await client.ws_connect(f"{server.address}socket", headers=headers, max_msg_size=0))
+    return Talk(OPENED[-1])
 
 
 # -- files and checks --------------------------------------------------------------------------------------------------

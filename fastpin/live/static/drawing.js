@@ -284,6 +284,7 @@ export class Drawing {
     }
     if (this.lost) {
       const [lx, ly] = this.tip({ ...load, ...this.lost });
+      if (Math.hypot(lx - px, ly - py) < 4) return;
       pen.setLineDash([6, 5]);
       pen.lineWidth = 2.5;
       arrow(pen, x, y, lx, ly, INK, 9);

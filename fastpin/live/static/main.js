@@ -77,6 +77,14 @@ function showLesson() {
   if (at("lesson").textContent !== words) at("lesson").textContent = words;
 }
 
+// Where a load was lost: the loads that differ from the present ones.
+function where(load) {
+  const before = history.latest?.load ?? {};
+  const moved = history.case.loads.filter(({ name, size }) => !near(load[name] ?? 0, before[name] ?? 0, 1e3 * size));
+  const words = moved.map(({ name, unit }) => `${name} = ${withUnit(load[name], unit)}`);
+  return words.length ? `, at ${words.join(", ")}` : "";
+}
+
 function near(one, other, size) {
   return Math.abs(one - other) <= SAME * size;
 }
@@ -94,6 +102,7 @@ function news(answer) {
     const isNew = history.take(answer);
     drawing.lost = null;
     if (isNew) {
+      at("hoop-body").textContent = history.case.plate === "bushing" ? "bush" : "plate";
       at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
       controls?.make();
@@ -103,8 +112,7 @@ function news(answer) {
     show();
   } else if (answer.kind === "lost") {
     drawing.lost = answer.load;
-    const part = answer.fraction > 0 && answer.fraction < 1 ? ` (after ${(100 * answer.fraction).toFixed(0)} % of this step)` : "";
-    say(`${answer.sentence}${part}. The contact stays at the last load that was carried.`);
+    say(`${answer.sentence}${where(answer.load)}. The contact stays at the last load that was carried.`);
     controls?.show();
     show();
   } else if (answer.kind === "refused") {

@@ -23,6 +23,7 @@ function shown(unit) {
 export function digits(value, count = 4) {
   if (value === null || !isFinite(value)) return "–";
   if (value === 0) return "0";
+  value = Number(value.toPrecision(count));
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) return value.toExponential(count - 1).replace("-", "−");
   return value.toFixed(Math.max(0, count - 1 - Math.floor(Math.log10(size)))).replace("-", "−");
