@@ -36,8 +36,8 @@ function cells(picture, { units, loads, axes }) {
     ["pin moves up", unit("displacement", picture.dy)],
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
-    ...(picture.hoop ? [["hoop stress, largest", unit("traction", Math.max(...picture.hoop))]] : []),
-    ["contact conditions", `±${digits(picture.residual, 1)}`],
+    ...(picture.hoop ? [["largest hoop stress", unit("traction", Math.max(...picture.hoop))]] : []),
+    ["residual", digits(picture.residual, 1)],
   ];
 }
 
