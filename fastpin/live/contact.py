@@ -46,10 +46,6 @@ class Mark(NamedTuple):
     trail: tuple[int, ...]
 
 
-class StoppedError(FastpinError):
-    """The server ends while a history is followed."""
-
-
 class LiveContact:
     """A contact that is led by messages, see :mod:`fastpin.live.protocol`.
 
@@ -99,6 +95,7 @@ class LiveContact:
     def obey(self, message: Message) -> list[Answer]:
         """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
         before = Mark(self.session, tuple(self._trail))
+        self._stop.clear()
         try:
             if message.kind == "hello":
                 self._known, self._shown = {}, []
@@ -117,7 +114,7 @@ class LiveContact:
         return [self._changes(message.id)]
 
     def stop(self) -> None:
-        """End a long history that is being followed."""
+        """End a long history that is being followed. The message that it belongs to is refused."""
         self._stop.set()
 
     # -- messages --------------------------------------------------------------------------------------------------
@@ -189,7 +186,7 @@ class LiveContact:
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
         for row in rows:
             if self._stop.is_set():
-                raise StoppedError("the server ends")
+                raise InputError("history", "was stopped on the way; the contact is where it was")
             self._step(self.session, {name: value for name, value in row.items() if name in allowed}, gesture)
         self._remember(mark, gesture)
 

@@ -81,16 +81,16 @@ def load_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
 
 def problem_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
     """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
-    unit = units(problem)
+    unit = units(problem) | {"modulus": "1/beta*" if problem.dimensionless else "Pa"}
     misfit = MISFITS * scales.misfit
     plate = problem.plate_body
     found = [
         _slider("contact", "friction", problem.friction, "", 0.0, MOST_FRICTION),
         _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
         _chooser("contact", "plane", problem.pair.plane, PLANES),
-        *_material("pin", problem.pair.pin),
+        *_material("pin", problem.pair.pin, unit["modulus"]),
         *_pin(problem, unit["length"]),
-        *_material("plate", problem.pair.plate),
+        *_material("plate", problem.pair.plate, unit["modulus"]),
     ]
     if isinstance(plate, Compliance):
         return found
@@ -168,13 +168,13 @@ def _chooser(group: str, name: str, value: str, choices: Mapping[str, str] | tup
     return {"group": group, "name": name, "value": value, "choices": names}
 
 
-def _material(body: str, material: Material) -> list[dict[str, Any]]:
+def _material(body: str, material: Material, unit: str) -> list[dict[str, Any]]:
     known = MATERIALS.get(material.name)
     alike = known is not None and (known.E, known.nu) == (material.E, material.nu)
     chosen = RIGID if material.is_rigid else material.name if alike else OWN
     found = [_chooser(body, f"{body}_material", chosen, (*MATERIALS, *([RIGID] * (body != "bush")), OWN))]
     if not material.is_rigid:
-        found.append(_slider(body, f"{body}_E", material.E, "Pa", 0.1 * material.E, 3.0 * material.E))
+        found.append(_slider(body, f"{body}_E", material.E, unit, 0.1 * material.E, 3.0 * material.E))
         found.append(_slider(body, f"{body}_nu", material.nu, "", 0.0, 0.5))
     return found
 
@@ -224,7 +224,7 @@ def _plate(problem: Problem, unit: dict[str, str]) -> list[dict[str, Any]]:
     if isinstance(body, Bushing):
         most = max(2.0 * body.interference, abs(problem.clearance), 1e-3 * radius * (not problem.dimensionless))
         found.append(_slider("plate", "interference", body.interference, unit["displacement"], 0.0, most))
-        found += _material("bush", body.material)
+        found += _material("bush", body.material, unit["modulus"])
     return found
 
 

@@ -15,6 +15,7 @@ undo       Back to the state before the last gesture.
 redo       Forward again.
 reset      No load, no history. It can be undone.
 keep       ``on``: keep the present state as the reference, or forget the reference.
+stop       End a long history that is being followed. It has no answer: the message that it ends is refused.
 =========  ==========================================================================================================
 
 The server answers each message with one of these:
@@ -121,6 +122,7 @@ FIELDS: dict[str, dict[str, Any]] = {
     "redo": {},
     "reset": {},
     "keep": {"on": true_or_false},
+    "stop": {},
 }
 """The fields of each kind of message, and their checks."""
 

@@ -69,9 +69,16 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class Mailbox:
-    """The messages of one connection that wait. Of several loads of a drag the latest one stays."""
+    """The messages of one connection that wait. Of several loads of a drag the latest one stays.
+
+    Attributes
+    ----------
+    session : str
+        The name of the contact that obeys them; "" before the first message.
+    """
 
     def __init__(self) -> None:
+        self.session = ""
         self._waiting: deque[Message] = deque()
         self._arrived = asyncio.Event()
 
@@ -315,6 +322,10 @@ class Server:
         message = None
         try:
             message = read_message(text)
+            if message.kind == "stop":
+                if mailbox.session:
+                    self._sessions[mailbox.session].stop()
+                return
             skipped = mailbox.put(message)
             if skipped is not None:
                 await _send(page, {"kind": "skipped", "id": skipped.id})
@@ -323,14 +334,13 @@ class Server:
 
     async def _work(self, page: web.WebSocketResponse, mailbox: Mailbox) -> None:
         """Obey the messages of a page, one after the other."""
-        name = ""
         try:
             while True:
                 message = await mailbox.get()
                 try:
-                    if not name:
-                        name = await self._greet(page, message)
-                    contact = self._sessions[name]
+                    if not mailbox.session:
+                        mailbox.session = await self._greet(page, message)
+                    contact = self._sessions[mailbox.session]
                     text = await self._compute(functools.partial(_answers, contact, message))
                 except InputError as error:
                     text = [json.dumps(refusal(message.id, error))]
@@ -339,7 +349,7 @@ class Server:
         except (ConnectionError, RuntimeError):  # the page has gone
             log.debug("a page has gone")
         finally:
-            self._sessions.release(name)
+            self._sessions.release(mailbox.session)
 
     async def _greet(self, page: web.WebSocketResponse, message: Message) -> str:
         """Find the contact of a page, or make one. Return its name."""

@@ -14,7 +14,7 @@ from fastpin.live import contact as contact_module
 from fastpin.live.protocol import MOST_UNDONE
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.state import State
-from tests.support.live_pages import NODES, Page, contact, floats, message
+from tests.support.live_pages import NODES, Page, contact, floats
 
 P, Q = 2.42e6, 7.26e5
 ARRAYS = {"pressure": "pressure", "shear": "shear", "gap": "gap"}
@@ -301,7 +301,22 @@ def test_the_saved_case_has_the_same_states() -> None:
 
 
 def test_a_long_history_can_be_stopped() -> None:
-    live = contact()
-    live.stop()
-    with pytest.raises(contact_module.StoppedError):
-        live.obey(message("change", changes={"friction": 0.3}))
+    page = Page(contact())
+    drag(page, 5, 6)
+    session, pictures = page.live.session, page.pictures
+    advance, count = fastpin.Session.advance, 0
+
+    def stopping(self: fastpin.Session, loads: dict[str, float]) -> State:
+        nonlocal count
+        count += 1
+        if count == 3:
+            page.live.stop()
+        return advance(self, loads)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fastpin.Session, "advance", stopping)
+        answer = page.tell("change", changes={"friction": 0.3}, follow="history")
+    assert answer["sentence"] == "history: was stopped on the way; the contact is where it was"
+    assert (count, page.live.session) == (3, session)
+    page.tell("load", loads={"Q": 0.0}, gesture=9)
+    assert page.pictures[:-1] == pictures

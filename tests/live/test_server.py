@@ -292,6 +292,31 @@ def test_a_thousand_messages_a_second_neither_pile_up_nor_stop_another_page(serv
     ask(work)
 
 
+def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, running)
+        await talk.send("stop")  # before hello: nothing happens
+        await talk.hello()
+        for k in range(30):
+            await talk.tell("load", loads={"Q": 1e4 * k}, gesture=1, drag=False)
+        step = LiveContact._step
+
+        def slow(self: LiveContact, *arguments: Any) -> None:
+            time.sleep(0.05)
+            step(self, *arguments)
+
+        monkeypatch.setattr(LiveContact, "_step", slow)
+        began = time.monotonic()
+        number = await talk.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
+        await asyncio.sleep(0.1)
+        await talk.send("stop")
+        assert "was stopped on the way" in (await talk.answer(number))["sentence"]
+        assert time.monotonic() - began < 0.7 * 31 * 0.05
+
+    with served() as running:
+        ask(work)
+
+
 def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
     obey = LiveContact.obey
 

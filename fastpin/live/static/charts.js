@@ -17,7 +17,12 @@ export function angleAxis(more = {}) {
 }
 
 export function valueAxis(more = {}) {
-  return axis({ size: 48, values: (_, splits) => splits.map((value) => digits(value, 6).replace(/\.?0+$/, (tail) => (tail.includes(".") ? "" : tail))), ...more });
+  return axis({ size: 48, values: (_, splits) => splits.map(brief), ...more });
+}
+
+// A number of an axis: no more digits than it needs.
+export function brief(value) {
+  return String(Number(value.toPrecision(6))).replace("-", "−");
 }
 
 // A chart that fills its element, and follows the size of it.

@@ -10,5 +10,5 @@ export const WARNING = "#d55e00";
 export const PRESSURE = "#7d93a5";
 
 export function ofStatus(status) {
-  return status === 0 ? STICK : status > 0 ? POSITIVE : NEGATIVE;
+  return { 0: STICK, 1: POSITIVE, "-1": NEGATIVE }[status] ?? PRESSURE;
 }

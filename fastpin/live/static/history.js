@@ -4,7 +4,7 @@ import { floats, statuses } from "live/arrays";
 
 export const STEPS_OF_MAP = 400;
 const ROWS = 180;
-export const OPEN = 2, STICK = 0; // statuses; +1 and -1 are the signs of the slip
+export const OPEN = 2, SLIDES = 3; // statuses: open, and closed without friction; 0 sticks, +1 and -1 slip
 
 export class History {
   constructor() {
@@ -38,6 +38,11 @@ export class History {
     const found = { ...picture, nodes: this.grids.get(picture.grid) };
     for (const name of ["pressure", "shear", "gap"]) found[name] = floats(picture[name]);
     found.status = statuses(picture.status);
+    if (this.case.friction === 0) {
+      // without friction there is neither stick nor slip
+      found.status = found.status.map((status) => (status === OPEN ? OPEN : SLIDES));
+      found.slip = picture.slip.map(([start, stop]) => [start, stop, SLIDES]);
+    }
     found.hoop = picture.hoop === null ? null : floats(picture.hoop);
     found.column = column(found);
     return found;

@@ -1,6 +1,7 @@
 // The connection to the server: messages with numbers, their answers, and a new connection when one is lost.
 
 const WAITS = [300, 700, 1500, 3000]; // ms before the next try
+const LONG = 400; // ms without an answer from which on the page says that the server computes
 
 export class Link {
   constructor(onNews, onStatus) {
@@ -11,7 +12,19 @@ export class Link {
     this.tries = 0;
     this.open = false;
     this.session = sessionStorage.getItem("fastpin session") ?? "";
+    this.since = 0; // when the oldest message without an answer was sent, ms
+    setInterval(() => this.watch(), LONG / 2);
     this.connect();
+  }
+
+  // Say that the server computes, if an answer takes long.
+  watch() {
+    if (this.open) this.onStatus(this.waiting.size && performance.now() - this.since > LONG ? "computing" : "connected");
+  }
+
+  // End a long history that the server follows.
+  stop() {
+    if (this.open) this.socket.send(JSON.stringify({ kind: "stop", id: ++this.number }));
   }
 
   connect() {
@@ -45,6 +58,7 @@ export class Link {
       return; // the pictures follow under the same number
     }
     this.onNews(answer);
+    this.since = performance.now();
     this.waiting.get(answer.id)?.(answer);
     this.waiting.delete(answer.id);
   }
@@ -53,6 +67,7 @@ export class Link {
   ask(kind, fields = {}) {
     if (!this.open) return Promise.resolve({ kind: "gone" });
     const id = ++this.number;
+    if (!this.waiting.size) this.since = performance.now();
     this.socket.send(JSON.stringify({ kind, id, ...fields }));
     return new Promise((answer) => this.waiting.set(id, answer));
   }

@@ -1,8 +1,8 @@
 // Hysteresis loops: a load against the displacement on which it does work, over the steps of the history.
 
-import { axis, chart, valueAxis } from "live/charts";
+import { axis, brief, chart, valueAxis } from "live/charts";
 import { INK, REFERENCE, WARNING } from "live/colours";
-import { digits, scaled } from "live/units";
+import { scaled } from "live/units";
 
 const KINDS = { P: "force", Q: "force", M: "moment" };
 const MOVES = { P: "way", Q: "way", M: "rotation" };
@@ -14,7 +14,7 @@ export class LoopChart {
     this.unit = document.getElementById("loop-unit");
     this.limits = { x: [-1, 1], y: [-1, 1] };
     const line = (plot, number) => this.line(plot, number);
-    const values = (_, splits) => splits.map((value) => digits(Math.abs(value) < 1e-9 ? 0 : value, 3).replace(/\.0+$/, ""));
+    const values = (_, splits) => splits.map(brief);
     this.chart = chart(document.getElementById("loop-chart"), {
       mode: 2,
       scales: { x: { time: false, range: () => this.limits.x }, y: { range: () => this.limits.y } },

@@ -122,8 +122,10 @@ function news(answer) {
 }
 
 function status(word) {
-  at("connection").className = word === "connected" ? "" : "away";
-  at("connection").textContent = { connected: "connected", again: "connecting again …", lost: "no server" }[word];
+  if (at("connection").dataset.word === word) return;
+  at("connection").dataset.word = word;
+  at("connection").textContent = { connected: "connected", computing: "computing …", again: "connecting again …", lost: "no server" }[word];
+  playing();
   if (word === "lost") say("The server has ended. The history stays on this page: its loads can be saved. Start fastpin live again for a new page.", "gone");
   else if (word === "connected" && at("message").className === "gone") say("");
 }
@@ -162,7 +164,7 @@ function listen() {
   for (const [id, name] of [["play-case", "playCase"], ["play-cycle", "playCycle"], ["play-turn", "playTurn"], ["play-two", "playTwo"]]) {
     click(id, () => { before(); player[name](); });
   }
-  click("stop", () => player.stop());
+  click("stop", () => { player.stop(); link.stop(); });
 }
 
 async function save(file) {
@@ -206,8 +208,8 @@ function legend() {
 }
 
 function playing() {
-  at("stop").disabled = !player.plays;
-  at("replay").textContent = player.plays ? "❚❚" : "▶";
+  at("stop").disabled = !player?.plays && at("connection").dataset.word !== "computing";
+  at("replay").textContent = player?.plays ? "❚❚" : "▶";
 }
 
 legend();

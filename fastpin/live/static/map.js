@@ -1,14 +1,14 @@
 // The map of stick and slip: a column for each step, a row for each place round the hole.
 
 import { angleAxis, axis, chart } from "live/charts";
-import { NEGATIVE, POSITIVE, REFERENCE, STICK } from "live/colours";
-import { OPEN, STEPS_OF_MAP } from "live/history";
+import { NEGATIVE, POSITIVE, PRESSURE, REFERENCE, STICK } from "live/colours";
+import { OPEN, SLIDES, STEPS_OF_MAP } from "live/history";
 
 export class MapChart {
   constructor(history) {
     this.history = history;
     this.image = document.createElement("canvas");
-    this.colours = new Map([[0, STICK], [1, POSITIVE], [-1, NEGATIVE], [OPEN, "#ffffff"]].map(([status, colour]) => [status, packed(colour)]));
+    this.colours = new Map([[0, STICK], [1, POSITIVE], [-1, NEGATIVE], [OPEN, "#ffffff"], [SLIDES, PRESSURE]].map(([status, colour]) => [status, packed(colour)]));
     this.steps = [0, 1];
     this.chart = chart(document.getElementById("map-chart"), {
       scales: { x: { time: false, range: () => this.steps }, y: { range: [-180, 180] } },

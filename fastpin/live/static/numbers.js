@@ -19,8 +19,11 @@ export function showNumbers(history) {
   body.replaceChildren(...lines);
 }
 
-function cells(picture, { units, loads, axes }) {
-  const unit = (kind, value) => withUnit(value, units[kind]);
+const NOTHING = 1e-10; // a value that is rounding, in parts of its usual size
+
+function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) {
+  const usual = { displacement: yielded, rotation: dimensionless ? yielded : yielded / radius };
+  const unit = (kind, value) => withUnit(Math.abs(value) < NOTHING * (usual[kind] ?? 0) ? 0 : value, units[kind]);
   const acting = loads.filter(({ name }) => picture.load[name] || axes.some(({ load }) => load === name));
   const reactions = ["P", "Q"].filter((name) => !loads.some((load) => load.name === name));
   return [

@@ -1,7 +1,7 @@
 // Numbers with units and SI prefixes, as the tables of fastpin print them.
 
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
-const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "deg"]);
+const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "1/beta*", "deg"]);
 
 // A factor and a unit in which values up to `largest` read well.
 export function scaled(largest, unit) {
@@ -36,5 +36,5 @@ export function withUnit(value, unit, count = 4) {
 }
 
 export function degrees(value, count = 1) {
-  return value === null ? "–" : `${value.toFixed(count).replace("-", "−")}°`;
+  return value === null ? "–" : `${(Number(value.toFixed(count)) || 0).toFixed(count).replace("-", "−")}°`;
 }
