@@ -59,7 +59,7 @@ MOST_CONNECTIONS = 16
 """Most open connections. Each page has one."""
 
 MOST_SESSIONS = 8
-"""Most sessions, each of them a contact with its history: up to 60 MB."""
+"""Most sessions, each of them a contact with its history: some 20 MB with 201 nodes."""
 
 MOST_PICTURES = 2_000
 """Pictures of a history that are remembered: a minute of dragging, up to 12 MB with 201 nodes."""

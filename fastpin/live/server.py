@@ -131,8 +131,7 @@ class RateLimit:
 class Sessions:
     """The contacts of all pages by name. A page that comes back finds its contact again."""
 
-    def __init__(self, make: Callable[[], LiveContact]) -> None:
-        self._make = make
+    def __init__(self) -> None:
         self._contacts: dict[str, LiveContact] = {}
         self._open: set[str] = set()
 
@@ -144,8 +143,8 @@ class Sessions:
         self._open.add(name)
         return name
 
-    def add(self) -> tuple[str, LiveContact]:
-        """Make a new contact. The oldest contact without a page is dropped, if there are too many.
+    def make_room(self) -> None:
+        """Drop the oldest contact without a page, if there are as many contacts as may be.
 
         Raises
         ------
@@ -159,10 +158,13 @@ class Sessions:
                     "session", f"{MOST_SESSIONS} pages are open, no more are served; close one, and reload"
                 )
             del self._contacts[idle]
-        name, contact = secrets.token_urlsafe(TOKEN_BYTES), self._make()
+
+    def add(self, contact: LiveContact) -> str:
+        """Add the contact of a new page, and return its name."""
+        name = secrets.token_urlsafe(TOKEN_BYTES)
         self._contacts[name] = contact
         self._open.add(name)
-        return name, contact
+        return name
 
     def release(self, name: str) -> None:
         """Note that a page has gone. Its contact stays."""
@@ -195,7 +197,8 @@ class Server:
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.address = ""
         self._hosts: tuple[str, ...] = ()
-        self._sessions = Sessions(make)
+        self._make, self._sessions = make, Sessions()
+        self._greeting = asyncio.Lock()
         self._files = page_files()
         self._page, self._map = live_page()
         self._connections = 0
@@ -290,9 +293,13 @@ class Server:
     async def _talk(self, request: web.Request) -> web.StreamResponse:
         if request.headers.get("Origin") is None:
             return _refused(403, "Only the page may use this server.")
-        if self._connections >= MOST_CONNECTIONS:
-            return _refused(503, f"{MOST_CONNECTIONS} pages are open, no more are served; close one, and reload.")
         page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=HEARTBEAT, compress=False)
+        if self._connections >= MOST_CONNECTIONS:
+            await page.prepare(request)  # a page can read messages, but not why a websocket was refused
+            sentence = f"{MOST_CONNECTIONS} pages are open, no more are served; close one, and reload"
+            await _send(page, refusal(None, InputError("connection", sentence)))
+            await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
+            return page
         self._connections += 1
         try:
             await page.prepare(request)
@@ -339,11 +346,13 @@ class Server:
                 message = await mailbox.get()
                 try:
                     if not mailbox.session:
-                        mailbox.session = await self._greet(page, message)
+                        await self._greet(page, mailbox, message)
                     contact = self._sessions[mailbox.session]
                     text = await self._compute(functools.partial(_answers, contact, message))
-                except InputError as error:
-                    text = [json.dumps(refusal(message.id, error))]
+                except (ConnectionError, RuntimeError):
+                    raise
+                except Exception as error:
+                    text = [_failure(message, error)]
                 for one in text:
                     await page.send_str(one)
         except (ConnectionError, RuntimeError):  # the page has gone
@@ -351,27 +360,36 @@ class Server:
         finally:
             self._sessions.release(mailbox.session)
 
-    async def _greet(self, page: web.WebSocketResponse, message: Message) -> str:
-        """Find the contact of a page, or make one. Return its name."""
+    async def _greet(self, page: web.WebSocketResponse, mailbox: Mailbox, message: Message) -> None:
+        """Find the contact of a page, or make one."""
         if message.kind != "hello":
             raise InputError("kind", "the first message must be hello")
-        name = self._sessions.find(message.fields["session"])
-        if name is None:
-            name = (await self._compute(self._sessions.add))[0]
+        async with self._greeting:  # one after the other, so that there are never too many contacts
+            name = self._sessions.find(message.fields["session"])
+            if name is None:
+                self._sessions.make_room()
+                name = self._sessions.add(await self._compute(self._make))
+            mailbox.session = name
         await _send(page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__})
-        return name
 
 
 def _answers(contact: LiveContact, message: Message) -> list[str]:
     """The answers of a contact as text. Whatever goes wrong is an answer too, and the page lives on."""
     try:
         return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in contact.obey(message)]
-    except FastpinError as error:
-        return [json.dumps(refusal(message.id, InputError("contact", str(error))))]
     except Exception as error:
-        log.exception("a message failed")
+        return [_failure(message, error)]
+
+
+def _failure(message: Message, error: Exception) -> str:
+    """The answer to a message that failed."""
+    if isinstance(error, InputError):
+        return json.dumps(refusal(message.id, error))
+    words = str(error)
+    if not isinstance(error, FastpinError):
+        log.error("a message failed", exc_info=error)
         words = f"the message failed unexpectedly ({type(error).__name__}); the contact is where it was"
-        return [json.dumps(refusal(message.id, InputError("contact", words)))]
+    return json.dumps(refusal(message.id, InputError("contact", words)))
 
 
 async def _send(page: web.WebSocketResponse, answer: dict[str, Any]) -> None:

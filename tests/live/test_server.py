@@ -343,13 +343,11 @@ def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_hundred_connections_are_not_too_many() -> None:
     async def work(client: aiohttp.ClientSession) -> None:
-        taken, refused = [], 0
-        for _ in range(100):
-            try:
-                taken.append(await connect(client, running))
-            except aiohttp.WSServerHandshakeError as error:
-                refused += error.status == 503
-        assert (len(taken), refused) == (MOST_CONNECTIONS, 100 - MOST_CONNECTIONS)
+        talks = [await connect(client, running) for _ in range(100)]
+        taken, others = talks[:MOST_CONNECTIONS], talks[MOST_CONNECTIONS:]
+        for talk in others:
+            assert f"{MOST_CONNECTIONS} pages are open" in (await talk.answer(None))["sentence"]
+            assert (await talk.page.receive()).data == aiohttp.WSCloseCode.TRY_AGAIN_LATER
         sentences = []
         for talk in taken:
             await talk.send("hello", session="")
@@ -385,6 +383,26 @@ def test_an_unexpected_error_is_answered_and_survived(
         assert (await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
 
     with served() as running:
+        ask(work)
+    assert "a message failed" in caplog.text
+
+
+def test_a_contact_that_cannot_be_made_says_so_and_may_be_tried_again(caplog: pytest.LogCaptureFixture) -> None:
+    tries = 0
+
+    def make() -> LiveContact:
+        nonlocal tries
+        tries += 1
+        if tries == 1:
+            raise MemoryError
+        return contact(nodes=21)
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, running)
+        assert "failed unexpectedly (MemoryError)" in (await talk.tell("hello", session=""))["sentence"]
+        await talk.hello()
+
+    with served(make) as running:
         ask(work)
     assert "a message failed" in caplog.text
 

@@ -1,6 +1,7 @@
 // The connection to the server: messages with numbers, their answers, and a new connection when one is lost.
 
 const WAITS = [300, 700, 1500, 3000]; // ms before the next try
+const ENDED = 1001, TOO_MANY = 1013; // codes with which the server closes a connection
 const LONG = 400; // ms without an answer from which on the page says that the server computes
 
 export class Link {
@@ -38,13 +39,15 @@ export class Link {
       this.ask("hello", { session: this.session });
     };
     this.socket.onmessage = (event) => this.receive(JSON.parse(event.data));
-    this.socket.onclose = () => this.lost();
+    this.socket.onclose = (event) => this.lost(event.code);
   }
 
-  lost() {
+  lost(code) {
     this.open = false;
     for (const answer of this.waiting.values()) answer({ kind: "gone" });
     this.waiting.clear();
+    if (code === TOO_MANY) return;
+    if (code === ENDED) this.tries = WAITS.length;
     this.onStatus(this.tries < WAITS.length ? "again" : "lost");
     setTimeout(() => this.connect(), WAITS[Math.min(this.tries, WAITS.length - 1)]);
     this.tries += 1;
