@@ -36,6 +36,9 @@ NODES = 201
 MOST_PLAYED = 500
 """Corners of the case's history that the page can play."""
 
+NO_GESTURE = -1
+"""The gesture of what stands alone. Those of a page are not negative."""
+
 Answer = dict[str, Any]
 
 
@@ -77,7 +80,7 @@ class LiveContact:
         self._trail: list[int] = []
         self._shown: list[int] = []
         self._grids: dict[str, tuple[Grid, str]] = {}
-        self._serial, self._gesture = 0, -1
+        self._serial, self._gesture = 0, NO_GESTURE
         self._reference: Answer | None = None
         self._known: dict[str, Any] = {}
         self._stop = threading.Event()
@@ -159,7 +162,7 @@ class LiveContact:
         session.reset()
         self.session = session
         self._trail = []
-        self._remember(mark, -1)
+        self._remember(mark, NO_GESTURE)
 
     def _obey_keep(self, on: bool) -> None:
         if on and not self._trail:
@@ -223,14 +226,15 @@ class LiveContact:
         return name
 
     def _remember(self, mark: Mark, gesture: int) -> None:
-        """Make a place one to go back to. What was undone before is forgotten."""
-        self._past.append(mark)
+        """Make the place before a gesture one to go back to. What was undone before is forgotten."""
+        if gesture != self._gesture or gesture == NO_GESTURE:
+            self._past.append(mark)
         self._future.clear()
         self._gesture = gesture
 
     def _go(self, mark: Mark) -> None:
         self._return_to(mark)
-        self._gesture = -1
+        self._gesture = NO_GESTURE
 
     def _return_to(self, mark: Mark) -> None:
         self.session = mark.session

@@ -292,6 +292,25 @@ def test_fields_and_sliders_change_the_problem(tab: Tab, key: str, value: str, f
     assert tab.message == ""
 
 
+def test_a_slider_can_be_dragged_while_the_contact_follows(tab: Tab) -> None:
+    x, y, width = tab.run(
+        "const place = document.querySelector(`[data-key='friction slider']`); place.scrollIntoView();"
+        "const box = place.getBoundingClientRect(); return [box.x, box.y + box.height / 2, box.width]"
+    )
+    tab.mouse("mousePressed", x + width / 3, y)
+    for k in range(25):
+        tab.mouse("mouseMoved", x + width * (1 / 3 + 0.02 * k), y)
+    tab.mouse("mouseReleased", x + 0.81 * width, y, 0)
+    tab.settle()
+    friction = tab.live.session.problem.friction
+    assert friction == pytest.approx(0.81 * 1.2, abs=0.05)
+    assert float(tab.run("return document.getElementById('field-friction').value")) == pytest.approx(friction, abs=1e-3)
+    tab.click("undo")
+    tab.settle()
+    assert tab.live.session.problem.friction == 0.4
+    assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
+
+
 def test_load_sliders_and_remote_stress(tab: Tab) -> None:
     tab.set("sxx", "50")
     tab.settle()

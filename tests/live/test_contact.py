@@ -101,6 +101,15 @@ def test_undo_takes_back_a_gesture_and_redo_brings_it_again() -> None:
     assert_shown(page.pictures[-1], result[-1])
 
 
+def test_changes_of_one_gesture_are_undone_together() -> None:
+    page = Page(contact())
+    for friction in (0.3, 0.35, 0.5):
+        page.tell("change", changes={"friction": friction}, gesture=4)
+    page.tell("undo")
+    assert page.live.session.problem.friction == 0.4
+    assert page.latest["undos"] == 0
+
+
 def test_a_load_after_undo_is_not_joined_to_the_gesture_before() -> None:
     page = Page(contact())
     drag(page, 5, 3)

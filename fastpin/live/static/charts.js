@@ -129,11 +129,13 @@ export class RoundCharts {
     const element = document.getElementById("hoop-chart").parentElement;
     element.style.display = known.length ? "" : "none";
     if (!known.length) return;
-    const high = Math.max(...known.map((one) => Math.max(...one.hoop))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop)));
+    const high = Math.max(0, ...known.map((one) => Math.max(...one.hoop))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop)));
     this.peaks.high = peak(this.peaks.high, high);
     this.peaks.low = peak(this.peaks.low, -low);
     const scale = scaled(Math.max(this.peaks.high, this.peaks.low), unit);
-    this.ranges.hoop = [-scale.factor * this.peaks.low || -0.1, scale.factor * this.peaks.high];
+    const most = scale.factor * Math.max(this.peaks.high, this.peaks.low) || 1;
+    // The axis shows zero, and a little beyond it.
+    this.ranges.hoop = [-Math.max(scale.factor * this.peaks.low, 0.05 * most), Math.max(scale.factor * this.peaks.high, 0.05 * most)];
     const count = known[0].hoop.length, x = Array.from({ length: count }, (_, k) => -180 + (360 * k) / (count - 1));
     const along = (one) => (one?.hoop ? Array.from(one.hoop, (value) => scale.factor * value) : x.map(() => null));
     this.charts.hoop.setData([x, along(reference), along(shown)]);

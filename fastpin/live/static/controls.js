@@ -18,15 +18,23 @@ export class Controls {
   constructor(history, leader, before) {
     Object.assign(this, { history, leader, before });
     this.place = document.getElementById("sliders");
-    this.shown = new Map();
+    this.setters = new Map(); // by name: puts a value into its control
+    this.kinds = "";
     this.follow = "load";
   }
 
-  // Make the controls of a problem.
+  // Show a problem. Controls stay where they are if the problem has the same ones: one of them may be in the hand.
   make() {
     const { loads, controls, nodes } = this.history.case;
+    const kinds = JSON.stringify([loads.map((load) => [load.name, load.size]), controls.map((one) => [one.name, one.choices])]);
+    if (kinds !== this.kinds) this.build(loads, controls, nodes);
+    this.kinds = kinds;
+    this.show();
+  }
+
+  build(loads, controls, nodes) {
     const active = document.activeElement?.dataset?.key;
-    this.shown.clear();
+    this.setters.clear();
     const groups = new Map(Object.keys(GROUPS).map((name) => [name, []]));
     for (const load of loads) {
       const most = LOAD_ENDS * load.size;
@@ -47,13 +55,14 @@ export class Controls {
     }
     this.place.replaceChildren(...parts);
     if (active) this.place.querySelector(`[data-key="${active}"]`)?.focus();
-    this.show();
   }
 
-  // Put the present loads into their sliders.
+  // Put the present loads and the present problem into their controls.
   show() {
-    const load = this.history.latest?.load ?? {};
-    for (const [name, set] of this.shown) set(load[name] ?? 0);
+    const load = this.history.latest?.load ?? {}, { loads, controls, nodes } = this.history.case;
+    for (const { name } of loads) this.setters.get(name)({ value: load[name] ?? 0 });
+    for (const control of controls) this.setters.get(control.name)(control);
+    this.setters.get("nodes")({ value: `${nodes}` });
   }
 
   slider(control, send) {
@@ -76,10 +85,12 @@ export class Controls {
     right.append(field, " ", note);
     line.append(label, right, range);
     let gesture = null;
-    const put = (value) => {
+    this.setters.set(control.name, ({ value, least, most }) => {
       if (document.activeElement !== field) field.value = plain(value * factor);
-      if (gesture === null) range.value = value;
-    };
+      if (gesture !== null) return; // the slider is in the hand
+      if (least !== undefined) Object.assign(range, { min: least, max: most });
+      range.value = value;
+    });
     const move = (value) => {
       this.before();
       gesture ??= newGesture();
@@ -92,8 +103,6 @@ export class Controls {
       if (field.value !== "") move(inBaseUnit(field.value, scale));
       gesture = null;
     });
-    if (control.value !== undefined) put(control.value);
-    if (this.history.case.loads.some((load) => load.name === control.name)) this.shown.set(control.name, put);
     return line;
   }
 
@@ -104,6 +113,10 @@ export class Controls {
     for (const [value, words] of Object.entries(control.choices)) select.append(new Option(WORDS[words] ?? words, value));
     select.value = control.value;
     select.addEventListener("change", () => { this.before(); send(select.value, newGesture()); });
+    this.setters.set(control.name, ({ value }) => {
+      if (![...select.options].some((option) => option.value === value)) select.append(new Option(value, value));
+      select.value = value;
+    });
     line.append(nameOf(control.name), select);
     return line;
   }

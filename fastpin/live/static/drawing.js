@@ -65,7 +65,7 @@ export class Drawing {
     this.bodies(pen, frame);
     this.pin(pen, frame, picture);
     if (picture) {
-      this.most = peak(this.most, picture.peak_pressure);
+      this.most = peak(this.most, picture.peak_pressure) || 1;
       const { reference } = this.history;
       if (reference) this.pressure(pen, frame, reference, null, REFERENCE);
       this.pressure(pen, frame, picture, "rgba(125,147,165,.35)", PRESSURE);
@@ -295,7 +295,7 @@ export class Drawing {
 
 // A largest value that follows `value` only if it leaves the range from a third to the whole: no flicker.
 export function peak(before, value) {
-  return value > before || value < before / 3 ? value * 1.15 || before || 1 : before;
+  return value > before || value < before / 3 ? value * 1.15 : before;
 }
 
 // The runs of neighbouring closed nodes, as lists of nodes. A run may go across the end of a whole circle.

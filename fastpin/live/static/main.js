@@ -117,7 +117,7 @@ function news(answer) {
     show();
   } else if (answer.kind === "refused") {
     say(answer.sentence);
-    controls?.make();
+    if (history.case) controls?.show();
   }
 }
 

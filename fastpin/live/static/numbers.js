@@ -26,9 +26,13 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
   const unit = (kind, value) => withUnit(Math.abs(value) < NOTHING * (usual[kind] ?? 0) ? 0 : value, units[kind]);
   const acting = loads.filter(({ name }) => picture.load[name] || axes.some(({ load }) => load === name));
   const reactions = ["P", "Q"].filter((name) => !loads.some((load) => load.name === name));
-  return [
+  const loadCells = [
     ...acting.map((load) => [`${load.name}`, withUnit(picture.load[load.name], load.unit)]),
     ...reactions.map((name) => [`${name} (reaction)`, unit("force", picture.load[name])]),
+  ];
+  if (loadCells.length % 2) loadCells.push(["", ""]);
+  return [
+    ...loadCells,
     ["peak pressure", unit("traction", picture.peak_pressure)],
     ["at", degrees(picture.peak_pressure_angle)],
     ["peak shear", unit("traction", picture.peak_shear)],
@@ -39,7 +43,7 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
     ["pin moves up", unit("displacement", picture.dy)],
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
-    ...(picture.hoop ? [["largest hoop stress", unit("traction", Math.max(...picture.hoop))]] : []),
+    ...(picture.hoop ? [["largest hoop, every 2°", unit("traction", Math.max(...picture.hoop))]] : []),
     ["residual", digits(picture.residual, 1)],
   ];
 }
