@@ -231,6 +231,24 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     assert float(shown) == float(f"{1e-6 * state.peak_pressure:.4g}")
 
 
+def test_a_marked_part_of_a_curve_fills_all_charts(tab: Tab) -> None:
+    x, y, width = tab.run(
+        "const box = document.querySelector('#shear-chart .u-over').getBoundingClientRect();"
+        "return [box.x, box.y + box.height / 2, box.width]"
+    )
+    tab.mouse("mousePressed", x + width / 4, y)
+    for part in (0.3, 0.4, 0.5):
+        tab.mouse("mouseMoved", x + part * width, y)
+    tab.mouse("mouseReleased", x + 0.5 * width, y, 0)
+    scales = "return Object.values(fastpin.charts.charts).map((one) => [one.scales.x.min, one.scales.x.max])"
+    for ends in tab.run(scales):
+        assert ends == pytest.approx([-90.0, 0.0], abs=3.0)
+    tab.drag(circle, 5)  # new curves keep the window
+    assert tab.run(scales)[0] == pytest.approx([-90.0, 0.0], abs=3.0)
+    tab.run("document.querySelector('#shear-chart .u-over').dispatchEvent(new MouseEvent('dblclick', {bubbles: true}))")
+    assert tab.run(scales) == [[-180, 180]] * 3
+
+
 def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
     tab.click("play-cycle")
     time.sleep(0.2)

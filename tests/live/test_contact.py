@@ -11,7 +11,6 @@ import pytest
 import fastpin
 from fastpin import casefile
 from fastpin.live import contact as contact_module
-from fastpin.live.protocol import MOST_UNDONE
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.state import State
 from tests.support.live_pages import NODES, Page, contact, floats
@@ -279,14 +278,15 @@ def test_a_new_page_gets_the_whole_history() -> None:
 
 def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_module, "MOST_PICTURES", 20)
+    monkeypatch.setattr(contact_module, "MOST_UNDONE", 30)
     page = Page(contact(nodes=21))
     drag(page, 5, 30)
     assert len(page.pictures) == 20
     assert page.live.session.history is not None
     assert len(page.live.session.history) == 31
-    for gesture in range(10, 10 + MOST_UNDONE + 20):
+    for gesture in range(10, 50):
         page.tell("load", loads={"Q": 1e3 * gesture}, gesture=gesture)
-    assert page.latest["undos"] == MOST_UNDONE
+    assert page.latest["undos"] == 30
     assert len(page.live._pictures) == 20
     for _ in range(25):
         page.tell("undo")

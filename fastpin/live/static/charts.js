@@ -6,14 +6,23 @@ import { digits, scaled } from "live/units";
 
 const FONT = "11px system-ui, sans-serif";
 const GRID = { stroke: "#e6e9ec", width: 1 };
-const DEGREES = [-180, -135, -90, -45, 0, 45, 90, 135, 180];
+const WHOLE = [-180, 180]; // the whole hole, degrees from the bottom
+const STEPS = [45, 30, 15, 10, 5, 2, 1]; // between two ticks of an angle, degrees
+const LEAST = 3; // degrees of the narrowest window
 
 export function axis(more = {}) {
   return { stroke: SOFT, font: FONT, grid: GRID, ticks: { ...GRID, size: 4 }, ...more };
 }
 
 export function angleAxis(more = {}) {
-  return axis({ splits: () => DEGREES, values: (_, splits) => splits.map((angle) => `${angle}°`.replace("-", "−")), size: 24, ...more });
+  return axis({ splits: (_, __, low, high) => ticks(low, high), values: (_, splits) => splits.map((angle) => `${angle}°`.replace("-", "−")), size: 24, ...more });
+}
+
+// Ticks of an angle between two ends: at least five of them.
+function ticks(low, high) {
+  const step = STEPS.find((one) => (high - low) / one >= 5) ?? 1, found = [];
+  for (let angle = Math.ceil(low / step) * step; angle <= high; angle += step) found.push(angle);
+  return found;
 }
 
 export function valueAxis(more = {}) {
@@ -44,6 +53,7 @@ export class RoundCharts {
     this.history = history;
     this.peaks = { pressure: 0, shear: 0, high: 0, low: 0 }; // in SI units; they change seldom, so that axes do not flicker
     this.ranges = {};
+    this.window = WHOLE;
     this.charts = {};
     for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name);
   }
@@ -51,12 +61,26 @@ export class RoundCharts {
   make(name) {
     const series = CURVES[name];
     return chart(document.getElementById(`${name}-chart`), {
-      scales: { x: { time: false, range: [-180, 180] }, y: { range: () => this.ranges[name] ?? [0, 1] } },
+      scales: { x: { time: false, range: () => this.window }, y: { range: () => this.ranges[name] ?? [0, 1] } },
       axes: [angleAxis(), valueAxis()],
-      cursor: { sync: { key: "round" }, drag: { x: false, y: false }, points: { show: false } },
+      cursor: { sync: { key: "round" }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => this.zoom(WHOLE) }, points: { show: false } },
       series: [{}, ...series.map(([label, stroke, width]) => ({ label, stroke, width, points: { show: false } }))],
-      hooks: { drawClear: [(plot) => this.shade(plot, name === "hoop")], setCursor: [(plot) => this.read(plot, name)] },
+      hooks: { drawClear: [(plot) => this.shade(plot, name === "hoop")], setCursor: [(plot) => this.read(plot, name)], setSelect: [(plot) => this.select(plot)] },
     }, [[-180, 180], ...series.map(() => [null, null])]);
+  }
+
+  // A part of a chart that is marked with the mouse fills all charts. A double click shows the whole hole again.
+  select(plot) {
+    const { left, width } = plot.select;
+    if (width < 5) return;
+    const [low, high] = [left, left + width].map((place) => plot.posToVal(place, "x"));
+    plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    if (high - low >= LEAST) this.zoom([low, high]);
+  }
+
+  zoom(window) {
+    this.window = window;
+    for (const one of Object.values(this.charts)) one.setScale("x", { min: window[0], max: window[1] });
   }
 
   shade(plot, faint) {
