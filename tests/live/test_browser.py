@@ -258,6 +258,19 @@ def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
     loop = cycle.loops["Q"]
     assert np.allclose(way, 1e6 * loop.displacement, rtol=1e-9, atol=1e-9)
     assert np.allclose(load, 1e-3 * loop.load)
+    tab.click("loop-bent")
+    bent, same = tab.run("return fastpin.loops.chart.data[1]")
+    scale = {"nm": 1e-9, "µm": 1e-6}[
+        tab.run("return document.getElementById('loop-unit').textContent").split("[")[-1][:-1]
+    ]
+    assert np.ptp(bent) * scale < 0.2 * np.ptp(loop.displacement)
+
+    def area(way: list[float], unit: float) -> float:
+        """The area from the first turn of the load to the third one, where it is the same."""
+        loads, ways = np.array(same)[24:73], unit * np.array(way)[24:73]
+        return float(np.sum(0.5 * (loads[1:] + loads[:-1]) * np.diff(ways)))
+
+    assert area(bent, scale) == pytest.approx(area(way, 1e-6), rel=1e-6)
 
 
 def test_undo_redo_and_reset(tab: Tab) -> None:

@@ -22,7 +22,8 @@ export class LoopChart {
       cursor: { show: false },
       series: [null, { paths: line, stroke: INK }, { paths: line, stroke: WARNING }, { paths: line, stroke: REFERENCE }],
     }, [null, [[], []], [[], []], [[], []]]);
-    this.select.addEventListener("change", () => this.show());
+    this.bent = document.getElementById("loop-bent");
+    for (const choice of [this.select, this.bent]) choice.addEventListener("change", () => this.show());
   }
 
   line(plot, number) {
@@ -64,18 +65,28 @@ export class LoopChart {
     this.names(shown);
     const name = this.select.value;
     const points = pictures.slice(0, place + 1).map((picture) => picture.loops[name]).filter(Boolean);
-    const way = points.map((pair) => pair[1]), load = points.map((pair) => pair[0]);
+    const load = points.map((pair) => pair[0]), slope = this.bent.checked ? slopeOf(points) : 0;
+    const bent = (pair) => pair[1] - slope * pair[0]; // subtracting a multiple of the load leaves the area
+    const way = points.map(bent);
     const most = (values) => values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
     const unit = { load: given.units[KINDS[name] ?? "traction"], way: KINDS[name] ? (name === "M" ? given.units.rotation : given.units.displacement) : "" };
     const x = scaled(most(way), unit.way), y = scaled(most(load), unit.load);
     const scale = (values, by) => values.map((value) => value * by.factor);
     const data = [scale(way, x), scale(load, y)], before = reference?.loops[name];
-    const mark = before ? [[before[1] * x.factor], [before[0] * y.factor]] : [[], []];
+    const mark = before ? [[bent(before) * x.factor], [before[0] * y.factor]] : [[], []];
     this.limits = { x: around([...data[0], ...mark[0]]), y: around([...data[1], ...mark[1]]) };
     this.chart.setData([null, data, [data[0].slice(-1), data[1].slice(-1)], mark]);
     const other = KINDS[name] ? `${MOVES[name]} [${x.unit}]` : "its displacement";
     this.unit.textContent = `[${y.unit}] over ${other}`;
   }
+}
+
+// The slope of the straight line through loads and displacements that fits best.
+function slopeOf(points) {
+  const mean = (k) => points.reduce((sum, pair) => sum + pair[k], 0) / points.length;
+  const [load, way] = [mean(0), mean(1)];
+  const both = points.reduce((sum, pair) => sum + (pair[0] - load) * (pair[1] - way), 0);
+  return both / points.reduce((sum, pair) => sum + (pair[0] - load) ** 2, 0) || 0;
 }
 
 function around(values) {
