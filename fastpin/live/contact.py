@@ -187,10 +187,13 @@ class LiveContact:
         mark = Mark(self.session, tuple(self._trail))
         self.session, self._trail = session, []
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
+        left_out = sorted({name for row in rows for name, value in row.items() if name not in allowed and value != 0.0})
         for row in rows:
             if self._stop.is_set():
                 raise InputError("history", "was stopped on the way; the contact is where it was")
             self._step(self.session, {name: value for name, value in row.items() if name in allowed}, gesture)
+        if left_out:
+            self.sentence = f"The changed problem takes no {' and no '.join(left_out)}: left out"
         self._remember(mark, gesture)
 
     def _step(self, session: Session, loads: dict[str, float], gesture: int) -> None:

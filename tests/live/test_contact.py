@@ -230,6 +230,20 @@ def test_a_load_that_nothing_carries_is_lost_and_the_state_before_stays() -> Non
     assert page.pictures[-1]["load"]["M"] == 0.0
 
 
+@pytest.mark.parametrize("follow", ["load", "history"])
+def test_a_load_that_the_changed_problem_does_not_take_is_left_out(follow: str) -> None:
+    page = Page(contact(FREE))
+    page.tell("load", loads={"M": 100.0}, gesture=5)
+    page.tell("change", changes={"rotation": "fixed"}, follow=follow)
+    assert page.latest["sentence"] == "The changed problem takes no M: left out"
+    assert page.live.session.state.load["M"] == 0.0
+    assert "M" not in [control["name"] for control in page.latest["case"]["loads"]]
+    page.tell("undo")
+    assert page.live.session.state.load["M"] == 100.0
+    page.tell("change", changes={"friction": 0.0})  # then nothing holds the pin against the moment
+    assert page.live.session.problem.friction == 0.3
+
+
 def test_a_case_that_fails_at_once_says_why() -> None:
     page = Page(contact(FREE.replace("P = 1e6", "P = 1e6\nM = 1e6")))
     assert page.pictures == []
