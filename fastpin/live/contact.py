@@ -5,6 +5,7 @@ Nothing here knows of servers or browsers.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
 from collections.abc import Iterator
@@ -15,9 +16,10 @@ import numpy as np
 
 from fastpin.casefile import case_text
 from fastpin.errors import FastpinError, InputError
+from fastpin.kernels.status import OPEN
 from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
-from fastpin.live.protocol import MOST_PICTURES, MOST_UNDONE, Message, refusal
+from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, Message, refusal
 from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
 from fastpin.model.grid import Grid
@@ -31,7 +33,10 @@ from fastpin.states.state import State
 from fastpin.version import __version__
 
 NODES = 201
-"""Nodes of a live contact, by default: pressures are then good to 1e-3, and a step takes some milliseconds."""
+"""Nodes round the hole, by default. Peak pressures of the built-in case are then good to 1e-4, peak shears to 1e-3."""
+
+LEAST_CLOSED = 20
+"""Nodes in contact under the first load. Of fewer, curves are coarse, and the peak of the shear may be anywhere."""
 
 MOST_PLAYED = 500
 """Corners of the case's history that the page can play."""
@@ -39,14 +44,18 @@ MOST_PLAYED = 500
 NO_GESTURE = -1
 """The gesture of what stands alone. Those of a page are not negative."""
 
+UNKNOWN = (object(), object())
+"""What a page knows before it knows anything."""
+
 Answer = dict[str, Any]
 
 
 class Mark(NamedTuple):
-    """A place to which the page can go back: a session there, and the numbers of the pictures that led to it."""
+    """A place to which the page can go back: a session, the numbers of the pictures that led there, and its nodes."""
 
     session: Session
     trail: tuple[int, ...]
+    nodes: int
 
 
 class LiveContact:
@@ -88,7 +97,7 @@ class LiveContact:
         self.session = self._new_session(case.problem)
         given = case.history.corner(0)[0]
         try:
-            self._step(self.session, _named(given), 0)
+            self._begin(_named(given), 0)
         except FastpinError as error:
             self.sentence = _sentence(error)
 
@@ -97,7 +106,7 @@ class LiveContact:
 
     def obey(self, message: Message) -> list[Answer]:
         """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
-        before = Mark(self.session, tuple(self._trail))
+        before = self._mark()
         self._stop.clear()
         try:
             if message.kind == "hello":
@@ -124,40 +133,37 @@ class LiveContact:
 
     def _obey_load(self, loads: dict[str, float], gesture: int, drag: bool) -> None:
         is_new = gesture != self._gesture
-        mark = Mark(self.session.copy() if is_new else self.session, tuple(self._trail) if is_new else ())
+        mark = self._mark()._replace(session=self.session.copy()) if is_new else None
         self._step(self.session, loads, gesture)
-        if is_new:
+        if mark is not None:
             self._remember(mark, gesture)
 
     def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
         fields = changed_fields(self.session.problem, changes)
         session = self.session.copy()
-        rows = self._rows(follow)
         session.change(replay="none", **fields)
-        self._lead(session, rows, gesture)
+        if session.grid is not None and follow == "load" and session.grid.size != self._nodes:
+            session = self._new_session(session.problem)  # the nodes may have been too many for the new problem
+        self._lead(session, follow, gesture)
 
     def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
-        before, self._nodes = self._nodes, nodes
-        try:
-            self._lead(self._new_session(self.session.problem), self._rows(follow), gesture)
-        except FastpinError:
-            self._nodes = before
-            raise
+        mark, self._nodes = self._mark(), nodes
+        self._lead(self._new_session(self.session.problem), follow, gesture, mark)
 
     def _obey_undo(self) -> None:
         if not self._past:
             raise InputError("undo", "there is nothing before to go back to")
-        self._future.append(Mark(self.session, tuple(self._trail)))
+        self._future.append(self._mark())
         self._go(self._past.pop())
 
     def _obey_redo(self) -> None:
         if not self._future:
             raise InputError("redo", "nothing was undone")
-        self._past.append(Mark(self.session, tuple(self._trail)))
+        self._past.append(self._mark())
         self._go(self._future.pop())
 
     def _obey_reset(self) -> None:
-        mark = Mark(self.session, tuple(self._trail))
+        mark = self._mark()
         session = self.session.copy()
         session.reset()
         self.session = session
@@ -182,32 +188,48 @@ class LiveContact:
         present = history.values()[-1]
         return [_named(np.where(np.all(np.isnan(given), axis=0), np.nan, present))]
 
-    def _lead(self, session: Session, rows: list[dict[str, float]], gesture: int) -> None:
-        """Lead a new session along loads from no load, and make it the present one."""
-        mark = Mark(self.session, tuple(self._trail))
+    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> None:
+        """Lead a new session from no load, and make it the present one. `mark` is the place before."""
+        mark, rows = mark or self._mark(), self._rows(follow)
         self.session, self._trail = session, []
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
         left_out = sorted({name for row in rows for name, value in row.items() if name not in allowed and value != 0.0})
         for row in rows:
             if self._stop.is_set():
                 raise InputError("history", "was stopped on the way; the contact is where it was")
-            self._step(self.session, {name: value for name, value in row.items() if name in allowed}, gesture)
+            loads = {name: value for name, value in row.items() if name in allowed}
+            if len(rows) == 1:
+                self._begin(loads, gesture)
+            else:
+                self._step(self.session, loads, gesture)
         if left_out:
             self.sentence = f"The changed problem takes no {' and no '.join(left_out)}: left out"
         self._remember(mark, gesture)
 
     def _step(self, session: Session, loads: dict[str, float], gesture: int) -> None:
-        """Follow a load, and take the picture of its state.
+        """Follow a load, and take the picture of its state."""
+        self._add(session.advance(loads), gesture)
 
-        If the contact of the first load is too narrow for nodes all round, the solver chooses the nodes.
+    def _begin(self, loads: dict[str, float], gesture: int) -> None:
+        """Follow the first load, with more nodes if the contact is narrow.
+
+        If it is too narrow for :data:`MOST_LIVE_NODES` nodes all round, the solver chooses the nodes.
         """
-        try:
+        session, nodes = self.session, self._nodes
+        while True:
+            try:
+                state = session.advance(loads)
+                closed = np.count_nonzero(state.status != OPEN) or nodes
+            except ConvergenceError:
+                closed = 1
+            if closed >= LEAST_CLOSED or nodes == MOST_LIVE_NODES:
+                break
+            nodes = min(math.ceil(nodes * max(2.0, LEAST_CLOSED / closed)), MOST_LIVE_NODES)
+            session = Session(session.problem, nodes, arc=ALL_ROUND, undo=0)
+        if closed == 1:
+            session = Session(session.problem, self._nodes, undo=0)
             state = session.advance(loads)
-        except ConvergenceError:
-            if session.history is not None:
-                raise
-            self.session = Session(session.problem, self._nodes, undo=0)
-            state = self.session.advance(loads)
+        self.session = session
         self._add(state, gesture)
 
     def _add(self, state: State, gesture: int) -> None:
@@ -235,12 +257,15 @@ class LiveContact:
         self._future.clear()
         self._gesture = gesture
 
+    def _mark(self) -> Mark:
+        return Mark(self.session, tuple(self._trail), self._nodes)
+
     def _go(self, mark: Mark) -> None:
         self._return_to(mark)
         self._gesture = NO_GESTURE
 
     def _return_to(self, mark: Mark) -> None:
-        self.session = mark.session
+        self.session, self._nodes = mark.session, mark.nodes
         self._trail = [serial for serial in mark.trail if serial in self._pictures]
 
     # -- answers ---------------------------------------------------------------------------------------------------
@@ -260,15 +285,16 @@ class LiveContact:
         }  # fmt: skip
         self.sentence = ""
         for name, value in self._news():
-            if name not in self._known or self._known[name] is not value:
+            if any(one is not other for one, other in zip(value, self._known.get(name, UNKNOWN), strict=False)):
                 self._known[name] = value
                 answer[name] = getattr(self, f"{name}_document")()
         return answer
 
-    def _news(self) -> Iterator[tuple[str, Any]]:
-        yield "case", self.session.problem
-        yield "reference", self._reference
-        yield "grids", len(self._grids)
+    def _news(self) -> Iterator[tuple[str, tuple[object, ...]]]:
+        """The names of what the page knows besides pictures, and the objects that it depends on."""
+        yield "case", (self.session.problem, self._nodes)
+        yield "reference", (self._reference,)
+        yield "grids", (len(self._grids),)
 
     def reference_document(self) -> Answer | None:
         """The picture of the reference; None if there is none."""

@@ -252,9 +252,22 @@ def test_a_case_that_fails_at_once_says_why() -> None:
     assert page.latest["sentence"] == ""
 
 
-def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own() -> None:
+def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
+    page = Page(contact(FREE, 101))
+    page.tell("change", changes={"clearance": 2e-4})
+    assert 101 < page.live.session.grid.size < contact_module.MOST_LIVE_NODES
+    assert np.count_nonzero(page.live.session.state.pressure) >= contact_module.LEAST_CLOSED
+    page.tell("change", changes={"clearance": 1e-5})
+    assert page.live.session.grid.size == 101
+    page.tell("nodes", nodes=201)
+    page.tell("undo")
+    assert (page.live.session.grid.size, page.latest["case"]["nodes"]) == (101, 101)
+
+
+def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(contact_module, "MOST_LIVE_NODES", 41)
     text = FREE.replace("clearance = 1e-5", "clearance = 1e-3").replace("P = 1e6", "P = 1e4")
-    page = Page(contact(text, 21))
+    page = Page(contact(text, 41))
     assert page.latest["sentence"] == ""
     session = page.live.session
     assert np.count_nonzero(session.state.pressure) > 5

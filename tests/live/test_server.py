@@ -460,7 +460,7 @@ def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
-        assert (make().session.grid.size, port) == (31, 0)
+        assert (make().session.grid.size, port) == (71, 0)
         ready("http://127.0.0.1:1/token/")
 
     opened: list[str] = []
@@ -471,7 +471,7 @@ def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
 
     monkeypatch.setattr(live_command.live, "serve", serve)
     monkeypatch.setattr("webbrowser.open", no_browser)
-    assert main(["live", "--nodes", "31"]) == 0
+    assert main(["live", "--nodes", "71"]) == 0
     printed = capsys.readouterr()
     assert printed.out == "live page: http://127.0.0.1:1/token/\nCtrl-C ends it\n"
     assert printed.err == "note: no browser was found; open the address above in one\n"

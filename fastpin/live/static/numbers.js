@@ -1,5 +1,6 @@
 // The table of key numbers of the state that is shown.
 
+import { OPEN } from "live/history";
 import { degrees, digits, withUnit } from "live/units";
 
 export function showNumbers(history) {
@@ -44,6 +45,7 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
     ...(picture.hoop ? [["largest hoop, every 2°", unit("traction", Math.max(...picture.hoop))]] : []),
+    ["nodes in contact", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
     ["residual", digits(picture.residual, 1)],
   ];
 }
