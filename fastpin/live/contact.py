@@ -234,7 +234,8 @@ class LiveContact:
 
     def _add(self, state: State, gesture: int) -> None:
         self._serial += 1
-        self._pictures[self._serial] = picture(state, self._serial, gesture, self._grid_name(state.grid))
+        shown = replace(state)  # what is read from a state stays in it; the session keeps its states small for undo
+        self._pictures[self._serial] = picture(shown, self._serial, gesture, self._grid_name(state.grid))
         self._trail.append(self._serial)
         if len(self._pictures) > MOST_PICTURES:
             oldest = next(iter(self._pictures))

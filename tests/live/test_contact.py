@@ -323,6 +323,13 @@ def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch)
     assert page.pictures[-1]["load"]["Q"] == 5.0
 
 
+def test_the_states_of_the_session_stay_small() -> None:
+    page = Page(contact())
+    drag(page, 5, 3)
+    fields = set(type(page.live.session.state).__dataclass_fields__)
+    assert set(vars(page.live.session.state)) == fields  # nothing that was read for the picture is kept
+
+
 def test_the_saved_case_has_the_same_states() -> None:
     page = Page(contact())
     drag(page, 5, 6)

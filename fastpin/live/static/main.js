@@ -215,6 +215,8 @@ function playing() {
 legend();
 if (recorded) {
   document.body.classList.add("replaying");
+  at("help").textContent = "Space replays, arrow keys go step by step.";
+  at("drawing").setAttribute("aria-label", "Pin in its hole");
   player = new Player(history, null, null, playing);
   news({ kind: "pictures", ...JSON.parse(recorded.textContent) });
 } else {

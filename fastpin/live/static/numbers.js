@@ -44,8 +44,8 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
     ["pin moves up", unit("displacement", picture.dy)],
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
-    ...(picture.hoop ? [["largest hoop, every 2°", unit("traction", Math.max(...picture.hoop))]] : []),
-    ["nodes in contact", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
+    ...(picture.hoop ? [["largest hoop stress", unit("traction", Math.max(...picture.hoop))]] : []),
+    ["nodes closed", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
     ["residual", digits(picture.residual, 1)],
   ];
 }
