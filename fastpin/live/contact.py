@@ -22,6 +22,7 @@ from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, Message, refusal
 from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
+from fastpin.model.doubts import doubts
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
@@ -235,7 +236,9 @@ class LiveContact:
     def _add(self, state: State, gesture: int) -> None:
         self._serial += 1
         shown = replace(state)  # what is read from a state stays in it; the session keeps its states small for undo
-        self._pictures[self._serial] = picture(shown, self._serial, gesture, self._grid_name(state.grid))
+        self._pictures[self._serial] = picture(
+            shown, self._serial, gesture, self._grid_name(state.grid), self._case.history
+        )
         self._trail.append(self._serial)
         if len(self._pictures) > MOST_PICTURES:
             oldest = next(iter(self._pictures))
@@ -367,6 +370,7 @@ def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
         "plate": kind_of(problem.plate_body),
         "bush": bush.outer_radius if isinstance(bush, Bushing) else None,
         "rim": lug.outer_radius if isinstance(lug, Ring) else None,
+        "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],
         "axes": vector_axes(problem, scales),
         "loads": load_controls(problem, scales),
         "controls": problem_controls(problem, scales),

@@ -9,12 +9,13 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, Plate, Ring, Tube, kind_of
-from fastpin.model.checks import choice, closest, number
+from fastpin.model.checks import choice, number
 from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.model.synonyms import closest
 from fastpin.model.units import units
 
 OWN = "other"

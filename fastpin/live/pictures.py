@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.doubts import pressure_doubts
+from fastpin.model.history import LoadHistory
 from fastpin.report.summary import json_ready
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.state import State
@@ -27,7 +29,7 @@ def hoop_angles() -> np.ndarray:
     return np.linspace(-1.5 * math.pi, 0.5 * math.pi, HOOP_ANGLES)
 
 
-def picture(state: State, serial: int, gesture: int, grid: str) -> dict[str, Any]:
+def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHistory) -> dict[str, Any]:
     """The picture of a state.
 
     Parameters
@@ -39,12 +41,15 @@ def picture(state: State, serial: int, gesture: int, grid: str) -> dict[str, Any
         The gesture that led to the state.
     grid : str
         The name of the state's grid.
+    history : LoadHistory
+        The loads of the case. If they are in doubt, the pressure is not.
 
     Returns
     -------
     dict
         Numbers in SI units, or in the units of a dimensionless problem. Angles are in degrees from the bottom of the
-        hole. The entry "loops" has a pair for each load: the load, and the displacement on which it does work.
+        hole. The entry "doubt" is a warning of a pressure above the yield strength, or "". The entry "loops" has a pair
+        for each load: the load, and the displacement on which it does work.
     """
     rigid = state.problem.surfaces.plate.is_rigid
     return {
@@ -52,6 +57,7 @@ def picture(state: State, serial: int, gesture: int, grid: str) -> dict[str, Any
         "gesture": gesture,
         "grid": grid,
         **json_ready(_numbers(state)),
+        "doubt": "; ".join(map(str, pressure_doubts(state.problem, history, [state.pressure]))),
         "pressure": packed(state.pressure),
         "shear": packed(state.shear),
         "gap": packed(state.gap),

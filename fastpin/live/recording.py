@@ -49,6 +49,6 @@ def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
         "grids": {"0": packed(chosen[0].theta)},
         "reference": None,
         "sentence": sentence,
-        "add": [picture(state, serial, state.step, "0") for serial, state in enumerate(chosen, start=1)],
+        "add": [picture(state, serial, state.step, "0", case.history) for serial, state in enumerate(chosen, start=1)],
     }
     return recorded_page(recording)

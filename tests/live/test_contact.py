@@ -295,6 +295,15 @@ def test_displacements_can_be_led() -> None:
     assert page.pictures[-1]["load"]["P"] > 0.0
 
 
+def test_a_pressure_above_the_yield_strength_is_in_doubt() -> None:
+    page = Page(contact())
+    assert (page.pictures[-1]["doubt"], page.latest["case"]["doubts"]) == ("", [])
+    page.tell("load", loads={"P": 20.0 * P}, gesture=2)
+    assert "is above the yield strength" in page.pictures[-1]["doubt"]
+    page.tell("change", changes={"friction": 40})
+    assert page.latest["case"]["doubts"][0].startswith("friction: 40")
+
+
 def test_a_new_page_gets_the_whole_history() -> None:
     page = Page(contact())
     drag(page, 5, 4)

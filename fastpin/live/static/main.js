@@ -44,6 +44,7 @@ function draw() {
   showNumbers(history);
   showTimeline();
   showLesson();
+  at("doubt").textContent = [...history.case.doubts, history.shown?.doubt ?? ""].filter(Boolean).join("; ");
   times.push({ began, drawn: performance.now(), asked: leader?.asked ?? 0, serial: history.shown?.serial ?? 0 });
   if (times.length > 5000) times.splice(0, 1000);
 }
