@@ -61,7 +61,6 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "pressure": packed(state.pressure),
         "shear": packed(state.shear),
         "gap": packed(state.gap),
-        "slip_distance": packed(state.slip),
         "status": packed(state.status, "i1"),
         "hoop": None if rigid else packed(state.hoop_stress("plate", hoop_angles())),
     }
