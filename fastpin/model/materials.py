@@ -95,10 +95,15 @@ class Material:
             object.__setattr__(self, "yield_strength", positive("yield_strength", self.yield_strength))
 
     def __repr__(self) -> str:
-        name = f", {self.name!r}" if self.name else ""
         fatigue = "" if self.fatigue is None else f", fatigue={self.fatigue!r}"
         strength = "" if self.yield_strength is None else f", yield_strength={self.yield_strength:g}"
-        return f"Material({self.E:g}, {self.nu:g}{name}{fatigue}{strength})"
+        return f"{self.elastic_form[:-1]}{fatigue}{strength})"
+
+    @property
+    def elastic_form(self) -> str:
+        """The short form without strengths and constants of fatigue, which do not change the contact."""
+        name = f", {self.name!r}" if self.name else ""
+        return f"Material({self.E:g}, {self.nu:g}{name})"
 
     @classmethod
     def rigid(cls) -> Material:
@@ -232,7 +237,7 @@ class MaterialPair:
         check_moduli("plate", "pin and plate", self.pin, self.plate)
 
     def __repr__(self) -> str:
-        return f"{self.pin!r} in {self.plate!r}, plane {self.plane}"
+        return f"{self.pin.elastic_form} in {self.plate.elastic_form}, plane {self.plane}"
 
     @classmethod
     @explains_keywords
