@@ -38,7 +38,7 @@ import fastpin
 from fastpin.casefile.lug import LUG_EXAMPLE, read_lug
 from fastpin.casefile.reader import EXAMPLE
 from fastpin.cli.main import main as fastpin_command
-from fastpin.errors import FastpinError
+from fastpin.errors import FastpinError, InputWarning
 from fastpin.storage import export, recording, store
 from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
@@ -547,6 +547,7 @@ def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
     try:
         logging.disable()
         warnings.simplefilter("error")
+        warnings.simplefilter("ignore", InputWarning)  # a doubt about a value is no fault
         workers.through_processes = _through_this_process
         used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, used + MOST_MEMORY))
