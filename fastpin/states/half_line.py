@@ -100,7 +100,7 @@ def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
     coupling : float, optional
         Dundurs' parameter beta_D, for the reserve of a stick zone; None for the pressure in a slip zone.
     """
-    smooth, order = _symbol(exponent, coupling).smooth, np.arange(SAMPLES // 2)
+    smooth, order = _log_factor(exponent, coupling), np.arange(SAMPLES // 2)
     series = smooth[:MOST_NODES].copy()
     series[1:] -= (1.0 - exponent) / order[1:MOST_NODES]
     first = np.zeros(MOST_NODES)  # coefficients of the inverse of one factor of the symbol: exp(series)
@@ -118,40 +118,48 @@ def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
     return HalfLine(exponent, nodal, matching, coupling or 0.0)
 
 
-class _Symbol(NamedTuple):
-    """The samples of the symbols, shape (SAMPLES,), and the logarithm of a factor.
+class _Samples(NamedTuple):
+    """What all symbols have in common, at the samples; each has the shape (SAMPLES,).
 
     Attributes
     ----------
-    z : ndarray
-        exp(-i p).
     even, odd : ndarray
         g and h.
-    smooth : ndarray, shape (SAMPLES // 2,)
-        Coefficients of the logarithm of the inverse factor in powers of z, without its singular part.
+    inner, outer : ndarray
+        log(1 - z) and log(1 - 1/z) of z = exp(-i p).
     """
 
-    z: np.ndarray
     even: np.ndarray
     odd: np.ndarray
-    smooth: np.ndarray
+    inner: np.ndarray
+    outer: np.ndarray
 
 
-def _symbol(exponent: float, coupling: float | None) -> _Symbol:
+@functools.cache
+def _samples() -> _Samples:
     p = 2.0 * math.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES
     part = p / (2.0 * math.pi)
     here, there = (4.0 * np.sin(0.5 * p) ** 2 / (2.0 * math.pi) ** 3 * zeta_3(t) for t in (part, 1.0 - part))
-    even, odd = here + there, here - there
+    z = np.exp(-1j * p)
+    return _Samples(here + there, here - there, np.log(1.0 - z), np.log(1.0 - 1.0 / z))
+
+
+@functools.lru_cache(maxsize=64)
+def _log_factor(exponent: float, coupling: float | None) -> np.ndarray:
+    """Coefficients of the logarithm of the inverse factor in powers of z, without its singular part.
+
+    The array has the shape (SAMPLES // 2,).
+    """
+    even, odd, inner, outer = _samples()
     turn = 1j * math.tan(math.pi * (exponent - 0.5)) * odd
     symbol = even + turn if coupling is None else (even**2 - (coupling * odd) ** 2) / (even - turn)
     # Without its singular factors (1 - z)^(a - 1) (1 - 1/z)^-a, the symbol has a smooth logarithm.
-    z = np.exp(-1j * p)
-    logarithm = np.log(symbol) + (1.0 - exponent) * np.log(1.0 - z) + exponent * np.log(1.0 - 1.0 / z)
+    logarithm = np.log(symbol) + (1.0 - exponent) * inner + exponent * outer
     order = np.arange(SAMPLES // 2)
     halves = np.fft.ifft(logarithm)[: order.size] * np.exp(1j * math.pi * order / SAMPLES)
     smooth = -np.real(halves)
     smooth[0] *= 0.5
-    return _Symbol(z, even, odd, smooth)
+    return smooth
 
 
 @functools.lru_cache(maxsize=64)
@@ -166,13 +174,13 @@ def shear_columns(exponent: float, coupling: float) -> np.ndarray:
     ndarray, shape (2 MOST_NODES - 1, SHEAR_TERMS)
         At the nodes from -MOST_NODES + 1 to MOST_NODES - 1; the stick zone begins at the node 0.
     """
-    z, even, odd, smooth = _symbol(exponent, coupling)
+    smooth, (even, odd, inner, outer) = _log_factor(exponent, coupling), _samples()
     tilt = exponent - 0.5
     order = np.arange(SAMPLES // 2)
     factor = np.exp(np.fft.fft(np.r_[smooth * np.exp(-1j * math.pi * order / SAMPLES), np.zeros(order.size)]))
     ratio = even / (even - 1j * math.tan(math.pi * tilt) * odd)
     # Without its singular factors (1 - z)^tilt (1 - 1/z)^-tilt, the ratio is smooth.
-    ratio *= np.exp(tilt * (np.log(1.0 - 1.0 / z) - np.log(1.0 - z)))
+    ratio *= np.exp(tilt * (outer - inner))
     twist = np.exp(1j * math.pi * np.fft.fftfreq(SAMPLES, 1.0 / SAMPLES) / SAMPLES)
     weights = np.fft.fftshift(np.real(np.fft.ifft(factor * ratio) * twist))
     reach = SAMPLES // 2 + MOST_NODES - 1
