@@ -26,6 +26,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fastpin.kernels import least_squares
+
 TERMS = 6
 """Most terms of a fit at one end."""
 
@@ -276,6 +278,12 @@ class End(NamedTuple):
         return np.asarray(np.linalg.solve(self.half_line.matching[: self.terms, : self.terms], moved))
 
 
+@functools.lru_cache(maxsize=256)
+def _columns(end: End, nodes: int) -> np.ndarray:
+    """The columns of an end, kept for the fits of one window with several degrees."""
+    return end.columns(nodes)
+
+
 @dataclass(frozen=True, eq=False)
 class _Design:
     """The columns of a fit, and their pseudo-inverse."""
@@ -288,15 +296,13 @@ class _Design:
 def _design(nodes: int, degree: int, ends: tuple[End, ...]) -> _Design:
     """The design of a window: powers of the place up to `degree` (none: -1), and the solutions of all ends."""
     places = np.arange(nodes) / (nodes - 1.0)
-    columns = np.column_stack([places[:, None] ** np.arange(degree + 1), *(end.columns(nodes) for end in ends)])
-    sizes = np.abs(columns).max(axis=0)
-    orthonormal, triangle = np.linalg.qr(columns / sizes)
-    pivots = np.abs(np.diagonal(triangle))
-    if pivots.min() > DEPENDENT * pivots.max():
-        inverse = np.linalg.inv(triangle) @ orthonormal.T
-    else:  # solutions of two ends some nodes apart depend on each other: take the least coefficients
-        inverse = np.linalg.pinv(columns / sizes)
-    return _Design(columns, inverse / sizes[:, None])
+    columns = np.column_stack([places[:, None] ** np.arange(degree + 1), *(_columns(end, nodes) for end in ends)])
+    inverse = np.empty(columns.shape[::-1])
+    if not least_squares.pseudo_inverse(columns, inverse) > DEPENDENT:
+        # Solutions of two ends some nodes apart depend on each other: take the least coefficients.
+        sizes = np.abs(columns).max(axis=0)
+        inverse = np.linalg.pinv(columns / sizes) / sizes[:, None]
+    return _Design(columns, inverse)
 
 
 class Fit:
