@@ -40,7 +40,7 @@ def sketch(album: Album, case: Case) -> Picture:
     """Draw the joint with the ranges of its loads."""
     words = Words(
         f"Sketch of pin and {hole_body(case.problem)} with arrows for the loads.",
-        "The joint in proportion, but for the clearance, and its loads with their ranges over the history.",
+        "The joint to scale, with an exaggerated clearance, and its loads with their ranges over the history.",
     )
     return album.picture(lambda path: figures.plot_sketch(case, path), *words)
 
