@@ -31,7 +31,7 @@ from fastpin import casefile
 from fastpin.live.contact import LiveContact
 from fastpin.live.recording import record_page
 from fastpin.live.server import Server
-from tests.support.live_pages import contact, served
+from tests.support.live_pages import FREE, contact, served
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
 if not os.environ.get("FASTPIN_BROWSER"):
@@ -450,20 +450,6 @@ def test_a_killed_server_leaves_the_history_on_the_page(chrome: webdriver.Chrome
     assert loads.shape[0] == 2
     assert loads[-1, 0] == 2.42e6
     chrome.get_log("browser")  # the refused connections
-
-
-FREE = """
-[pin]
-material = "steel"
-[plate]
-material = "steel"
-[contact]
-hole_radius = 0.01
-clearance = 1e-5
-friction = 0.3
-[[load]]
-P = 1e6
-"""
 
 
 def test_a_load_that_nothing_carries_says_so(chrome: webdriver.Chrome) -> None:

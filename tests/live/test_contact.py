@@ -13,7 +13,7 @@ from fastpin import casefile
 from fastpin.live import contact as contact_module
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.state import State
-from tests.support.live_pages import NODES, Page, contact, floats
+from tests.support.live_pages import FREE, NODES, Page, contact, floats
 
 P, Q = 2.42e6, 7.26e5
 ARRAYS = {"pressure": "pressure", "shear": "shear", "gap": "gap"}
@@ -200,20 +200,6 @@ def test_input_that_cannot_be_used_is_refused_and_changes_nothing(kind: str, fie
     assert answer["sentence"].startswith(sentence)
     assert page.live.session.state is before
     assert page.tell("load", loads={"Q": Q})["kind"] == "pictures"
-
-
-FREE = """
-[pin]
-material = "steel"
-[plate]
-material = "steel"
-[contact]
-hole_radius = 0.01
-clearance = 1e-5
-friction = 0.3
-[[load]]
-P = 1e6
-"""
 
 
 def test_a_load_that_nothing_carries_is_lost_and_the_state_before_stays() -> None:

@@ -20,6 +20,20 @@ from fastpin.live.server import Server
 NODES = 61
 """Few nodes: the tests are of the page, not of the numbers."""
 
+FREE = """
+[pin]
+material = "steel"
+[plate]
+material = "steel"
+[contact]
+hole_radius = 0.01
+clearance = 1e-5
+friction = 0.3
+[[load]]
+P = 1e6
+"""
+"""The text of a case with a free pin."""
+
 
 def contact(text: str | None = None, nodes: int = NODES) -> LiveContact:
     """Return the contact of the built-in case, or of a case's text."""
