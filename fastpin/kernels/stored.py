@@ -28,7 +28,6 @@ SUFFIX = ".machine"
 UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 """Settings of Numba that do not change the code. All others belong to the code."""
 
-
 SHARED = ("arrays.py", "status.py")
 """Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
 
