@@ -1,6 +1,7 @@
 # Make the virtual environment .venv and keep it up to date. The scripts beside this file source it.
 #
-#   prepare KIND      KIND is "run", or "dev" for the tools of development too; $python is then the interpreter
+#   prepare KIND      KIND is "run", or an extra: "dev" for the tools of development too, "docs" for those of the site;
+#                     $python is then the interpreter
 #
 # The environment is made when it is missing. It is installed again when pyproject.toml has changed, or the
 # directory has moved. The package is then compiled: Python's files, and the solver by solving the built-in case. PYTHON chooses the interpreter that makes it.
@@ -82,14 +83,14 @@ prepare() {
     ! command -v flock >/dev/null || flock 9 || true
     if ! is_current "$kind"; then # another process may have done it during the wait
         make_environment
-        [[ $kind == dev ]] && what="$root[dev]"
+        [[ $kind != run ]] && what="$root[$kind]"
         say "installing the dependencies; this takes up to a minute"
         log=$("$python" -m pip install --quiet --disable-pip-version-check --no-input --editable "$what" 2>&1) ||
             { printf '%s\n' "$log" >&2; fail "installing the dependencies failed (above)."; }
         stamp=$(fingerprint)
         printf '%s\n' "$stamp" >"$environment/fastpin-run.stamp"
-        # An installation without the tools of development leaves the stamp of the tools as it is.
-        if [[ $kind == dev ]]; then printf '%s\n' "$stamp" >"$environment/fastpin-dev.stamp"; fi
+        # An installation without the tools of an extra leaves the stamp of the tools as it is.
+        if [[ $kind != run ]]; then printf '%s\n' "$stamp" >"$environment/fastpin-$kind.stamp"; fi
         say "compiling the solver; this takes some ten seconds"
         "$python" -m compileall -q "$root/fastpin" >/dev/null 2>&1 || true
         "$python" -P -m fastpin run >/dev/null 2>&1 || true # if it fails, the command that follows says why

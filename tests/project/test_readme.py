@@ -48,7 +48,8 @@ def test_files_and_folders_named_in_contributing_exist() -> None:
 def test_every_dependency_has_its_reason() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     (table,) = re.findall(r"^## Dependencies\n(.*?)^## ", CONTRIBUTING, re.DOTALL | re.MULTILINE)
-    for requirement in [*project["dependencies"], *project["optional-dependencies"]["dev"]]:
+    extras = project["optional-dependencies"]
+    for requirement in [*project["dependencies"], *extras["dev"], *extras["docs"]]:
         assert re.match(r"[\w-]+", requirement)[0] in table  # type: ignore[index]
 
 

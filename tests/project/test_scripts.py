@@ -68,7 +68,7 @@ def log(project: Path) -> list[str]:
     return lines
 
 
-@pytest.mark.parametrize("name", ["scripts/run", "scripts/test", ".ci/run"])
+@pytest.mark.parametrize("name", ["scripts/run", "scripts/test", "scripts/docs", ".ci/run"])
 def test_scripts_can_be_run_and_parsed(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
     subprocess.run(["bash", "-n", ROOT / name], check=True)

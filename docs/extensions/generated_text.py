@@ -1,0 +1,81 @@
+"""Parts of pages that are generated from the package, or taken from files at the top level of the project.
+
+A page has a line ``<!-- insert: NAME ARGUMENTS -->``. The function of that name in :data:`PARTS` returns the Markdown
+that takes its place. Headings of the text work as if they stood in the page.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from command_line import command_line
+
+ROOT = Path(__file__).resolve().parents[2]
+MARK = re.compile(r"^<!-- insert: (\w+)(?: (.+?))? -->$", re.MULTILINE)
+
+
+def file_text(name: str) -> str:
+    """The text of a file at the top level."""
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def section(arguments: str) -> str:
+    """One section of a Markdown file at the top level, without its heading: the file, then the heading."""
+    name, heading = arguments.split(" ", 1)
+    (found,) = re.findall(rf"^## {re.escape(heading)}\n(.*?)(?=^## |\Z)", file_text(name), re.DOTALL | re.MULTILINE)
+    return str(found)
+
+
+def pages(names: str) -> str:
+    """The pages of a list that exist, a line each."""
+    return "\n".join(name for name in names.split() if (ROOT / "docs" / f"{name}.md").exists())
+
+
+PARTS: dict[str, Callable[..., str]] = {
+    "file": file_text,
+    "section": section,
+    "pages": pages,
+    "command_line": command_line,
+}
+"""Names of generated texts, and the functions that return them."""
+
+
+PAGES = {name: f"docs/project/{name.lower()}" for name in ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")}
+"""Files at the top level that are pages of the site."""
+
+
+def insert(app: Any, page: str, source: list[str]) -> None:
+    """Replace the marks of a page by their texts."""
+
+    def inserted(found: re.Match[str]) -> str:
+        text = PARTS[found[1]](*filter(None, [found[2]]))
+        return re.sub(r"\]\((?![a-z]+:|#)([^)\s#]+)", moved, text)
+
+    def moved(link: re.Match[str]) -> str:
+        """A link of the top level, as seen from the page."""
+        target = PAGES.get(link[1], link[1])
+        up = "../" * page.count("/")
+        return f"]({up}{target.removeprefix('docs/')}" if target.startswith("docs/") else f"]({up}../{target}"
+
+    source[0] = polished(MARK.sub(inserted, source[0]))
+
+
+def polished(text: str) -> str:
+    """The text as the site shows it: links have the titles of pages, and numbers of equations stand at the right."""
+    text = re.sub(r"\[(?:docs/)?[\w/-]+\.md\](\([^)\s]+\.md(?:#[\w-]+)?\))", r"[]\1", text)
+    return re.sub(r"^```math\n.*?^```$", lambda found: _numbered(found[0]), text, flags=re.DOTALL | re.MULTILINE)
+
+
+def _numbered(formula: str) -> str:
+    """A formula with its number, such as (T1), as a tag. Formulas of several lines keep it in the last line."""
+    if "\\\\" in formula:
+        return formula
+    return re.sub(r"\s*\\qquad\s*\\text\{\((\w+)\)\}\s*(?=```$)", r" \\tag{\1}\n", formula)
+
+
+def setup(app: Any) -> dict[str, Any]:
+    app.connect("source-read", insert)
+    return {"parallel_read_safe": True}
