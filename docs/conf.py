@@ -33,7 +33,8 @@ extensions = [
 ]
 exclude_patterns = ["extensions", "gallery", "joss", "static"]
 nitpicky = True
-show_warning_types = True
+# Words of types, such as "theta", may be the names of several attributes.
+suppress_warnings = ["ref.python"]
 today_fmt = "%Y-%m-%d"
 
 # -- Markdown --------------------------------------------------------------------------------------------------

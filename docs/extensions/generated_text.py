@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from command_line import command_line
+from file_keys import case_keys, materials, plan_fields, plan_outcomes, quantities
+from file_layout import file_layout
 
 ROOT = Path(__file__).resolve().parents[2]
 MARK = re.compile(r"^<!-- insert: (\w+)(?: (.+?))? -->$", re.MULTILINE)
@@ -38,7 +40,13 @@ PARTS: dict[str, Callable[..., str]] = {
     "file": file_text,
     "section": section,
     "pages": pages,
+    "case_keys": case_keys,
     "command_line": command_line,
+    "file_layout": file_layout,
+    "materials": materials,
+    "plan_fields": plan_fields,
+    "plan_outcomes": plan_outcomes,
+    "quantities": quantities,
 }
 """Names of generated texts, and the functions that return them."""
 

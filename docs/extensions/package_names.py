@@ -1,17 +1,26 @@
-"""Cross-references of docstrings to names of the package.
+"""Cross-references and symbols in docstrings of the package.
 
 Docstrings name objects by the file that defines them. The reference shows public names. A reference to an object that
 the reference shows under another name becomes a link to it. A name that exists, but is not shown, stays plain text; a
 number then shows its value. Any other name is a warning.
+
+Docstrings also have plain formulas, such as ``|ds|``. Their bars, stars and underscores are no markup.
 """
 
 from __future__ import annotations
 
-import contextlib
 import importlib
+import re
+import sys
 from typing import Any
 
 from docutils import nodes
+
+LITERAL = re.compile(r"(``.*?``|:\w+:`.*?`)")
+"""Parts of a docstring that are markup on purpose."""
+
+LARGE = 1e6
+"""Numbers from here on are shown with a power of ten."""
 
 
 def find(name: str) -> Any:
@@ -31,58 +40,79 @@ def find(name: str) -> Any:
     raise LookupError(name)
 
 
-def candidates(node: Any) -> list[str]:
-    """Full names that a reference may mean, the nearest first."""
-    target, module, owner = node["reftarget"].lstrip(".~"), node.get("py:module") or "", node.get("py:class") or ""
-    names = [target]
-    if owner:
-        names.append(f"{module}.{owner}.{target}")
-    if module:
-        names.append(f"{module}.{target}")
-        # A docstring also names its neighbours in the file that defines the object.
-        shown = f"{module}.{owner or node.get('fastpin:object', '')}".rstrip(".")
-        with contextlib.suppress(LookupError):
-            names.append(f"{getattr(find(shown), '__module__', module)}.{target}")
-    return names
-
-
 def resolve(app: Any, env: Any, node: Any, contnode: Any) -> Any:
     """The link or the plain text of a reference that Sphinx does not know."""
     if node.get("refdomain") != "py":
         return None
-    for name in candidates(node):
-        try:
-            found = find(name)
-        except (LookupError, ValueError):
-            continue
-        shown = public_names(env).get(id(found))
-        if shown is not None:
-            domain = env.domains["py"]
-            entry = domain.objects[shown]
-            builder = app.builder
-            uri = builder.get_relative_uri(node["refdoc"], entry.docname)
-            return nodes.reference("", "", contnode, refuri=f"{uri}#{entry.node_id}", internal=True)
+    target = node["reftarget"].lstrip(".~")
+    objects = env.domains["py"].objects
+    shown = nearest(target, objects, node["refdoc"]) or same_object(target, objects)
+    if shown is not None:
+        entry = objects[shown]
+        uri = app.builder.get_relative_uri(node["refdoc"], entry.docname)
+        return nodes.reference("", "", contnode, refuri=f"{uri}#{entry.node_id}", internal=True)
+    for found in objects_named(target):
         if isinstance(found, (int, float)) and not isinstance(found, bool):
-            return nodes.inline("", "", contnode, nodes.Text(f" ({found:,})" if abs(found) < 1e6 else f" ({found:g})"))
+            value = f"{found:,}" if abs(found) < LARGE else f"{found:g}"
+            return nodes.inline("", "", contnode, nodes.Text(f" ({value})"))
         return contnode
     # Words of the types in "Parameters", such as "optional": Sphinx looks each of them up.
     return contnode if node.get("refspecific") else None
 
 
-def public_names(env: Any) -> dict[int, str]:
-    """The names that the reference shows, by the object."""
-    shown = {}
-    for name, entry in env.domains["py"].objects.items():
-        if entry.objtype in ("class", "exception", "function", "module", "method", "property", "data"):
+def nearest(target: str, objects: dict[str, Any], page: str) -> str | None:
+    """The shown object whose name ends in a target: on this page, or else the one with the shortest name."""
+    kinds = ("class", "exception", "function", "data")
+    found = [name for name in objects if name.endswith(f".{target}") and objects[name].objtype in kinds]
+    return min(found, key=lambda name: (objects[name].docname != page, len(name)), default=None)
+
+
+def same_object(target: str, objects: dict[str, Any]) -> str | None:
+    """The name under which the reference shows the object that a full name means."""
+    try:
+        meant = find(target)
+    except (LookupError, ValueError):
+        return None
+    last = target.rpartition(".")[2]
+    for name in objects:
+        if name.rpartition(".")[2] == last:
             try:
-                found = find(name)
+                if find(name) is meant:
+                    return name
             except LookupError:
                 continue
-            if not isinstance(found, (int, float, str, tuple)):
-                shown[id(found)] = name
-    return shown
+    return None
+
+
+def objects_named(target: str) -> list[Any]:
+    """The object of a full name, or all objects of this name in the files of the package."""
+    try:
+        return [find(target)]
+    except (LookupError, ValueError):
+        pass
+    first, *rest = target.split(".")
+    found = []
+    for name in [name for name in sys.modules if name.startswith("fastpin.")]:
+        value = vars(sys.modules[name]).get(first)
+        for part in rest:
+            value = getattr(value, part, None)
+        if value is not None:
+            found.append(value)
+    return found
+
+
+def escape_symbols(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Escape bars, stars and underscores of formulas."""
+    for place, line in enumerate(lines):
+        if line.lstrip().startswith((">>>", "...", ":")):
+            continue
+        parts = LITERAL.split(line)
+        parts[::2] = [re.sub(r"\||(?<=\w)\*(?!\*)|(?<=\w)_(?!\w)", r"\\\g<0>", part) for part in parts[::2]]
+        lines[place] = "".join(parts)
 
 
 def setup(app: Any) -> dict[str, Any]:
     app.connect("missing-reference", resolve)
+    # Before napoleon, which makes fields of the sections.
+    app.connect("autodoc-process-docstring", escape_symbols, priority=400)
     return {"parallel_read_safe": True}
