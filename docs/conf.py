@@ -3,6 +3,7 @@
 The folder ``extensions`` holds the parts of the site that are generated from the package.
 """
 
+import logging
 import os
 import sys
 from pathlib import Path
@@ -15,6 +16,9 @@ sys.path.insert(0, str(ROOT / "docs" / "extensions"))
 # One thread for BLAS: the scripts of the gallery then take the same time everywhere.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# The solver tells of each run; the build stays quiet.
+logging.getLogger("fastpin").setLevel(logging.WARNING)
 
 project = "fastpin"
 author = "fastpin developers"
