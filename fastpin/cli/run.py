@@ -9,7 +9,7 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli.options import literal
@@ -26,10 +26,11 @@ from fastpin.cli.terminal import (
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.report.cycle import MOST_STOPS
 from fastpin.report.notes import note_lines, solver_line
-from fastpin.report.states import bush_line, cycle_lines, hoop_line, state_table
-from fastpin.report.table import visible_rows
+from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
+from fastpin.states.cycles import Cycle
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -228,14 +229,32 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     """Write the states of a stored run. Of many states, only those in the table and the figure are read."""
     if ended is not None and ended.result is None:  # a file with this name, if any, belongs to another run
         return _write_result(case, options, None, ended)
-    count = storage.state_count(options.output)
     if options.json is not None:
         return _write_result(case, options, storage.load(options.output), ended)
-    picked = set(visible_rows(count))
+    points, cycles = storage.load_points(options.output), storage.load(options.output, states=[]).cycles
+    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states)
+    places = set(rows.printed)
+    if cycles and len(last := range(points.size)[_places(options, cycles[-1])]) <= MOST_STOPS:
+        places |= set(last)  # the fatigue over the last cycle is printed
     if options.record is not None:
-        picked |= set(live.recorded_places(count))
-    result = storage.load(options.output, states=sorted(picked))
-    return _write_result(case, options, result, ended, hidden=count - len(picked))
+        places |= set(live.recorded_places(points.size))
+    part = Part(rows, sorted(places)) if len(places) < points.size else None
+    return _write_result(case, options, storage.load(options.output, states=sorted(places)), ended, part)
+
+
+class Part(NamedTuple):
+    """The part of a stored result that was read.
+
+    Attributes
+    ----------
+    rows : TableRows
+        The rows of the table.
+    places : list of int
+        The places of the states that were read, in increasing order.
+    """
+
+    rows: TableRows
+    places: list[int]
 
 
 def _write_result(
@@ -243,15 +262,15 @@ def _write_result(
     options: argparse.Namespace,
     result: solver.Result | None,
     ended: solver.SolveError | solver.Interrupted | None,
-    hidden: int = 0,
+    part: Part | None = None,
 ) -> int:
     """Write the files, then print the states, and return the exit code.
 
-    `ended` is the error that ended the run early. `hidden` states in the middle were left out of `result`.
+    `ended` is the error that ended the run early. `part` tells which states `result` has, if it lacks some.
     """
     code, error = _report_end(case, options, result, ended)
     warn_of(pressure_doubts(case.problem, case.history, (state.pressure for state in result or ())), 2)
-    cycle = _known_cycle(case, options, result, hidden)
+    cycle = _known_cycle(case, options, result, part)
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
         text = json.dumps(report.summary.document(case, result, error, cycle), indent=2, allow_nan=False) + "\n"
@@ -259,26 +278,26 @@ def _write_result(
             writers.append((options.json, lambda path: write_text(path, text)))
     if result is not None and len(result):
         states = result
-        writers.append((options.plot, lambda path: _plot(case, options, states, hidden, path)))
+        writers.append((options.plot, lambda path: _plot(case, options, states, part, path)))
         writers.append((options.record, lambda path: write_text(path, live.record_page(case, states, error or ""))))
     if result is not None and result.cycles:
         with_cycles = result
         writers.append((options.cycles, lambda path: figures.plot_cycles(with_cycles, path, title=case.title)))
     elif options.cycles is not None:
         code = fail(f"can't write {options.cycles}: no cycle came to its end", EXIT_FAILED)
-    writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(_last_cycle(options, result, hidden), path)))
+    writers.append((options.cycle_csv, lambda path: report.cycle.write_csv(_last_cycle(options, result, part), path)))
     code = write_files(writers) or code
     if options.json == "-":  # last: the reader of the output may close it early
         sys.stdout.write(text)
     else:
-        _print_states(case, result, cycle, hidden)
+        _print_states(case, result, cycle, part)
     return code
 
 
-def _plot(case: Case, options: argparse.Namespace, result: solver.Result, hidden: int, path: Path) -> None:
+def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:
     """Draw the tractions. States that were left out of `result` are read from its file."""
     try:
-        if hidden:
+        if part is not None:
             drawn = figures.stored_states(options.output, options.states)
         else:
             drawn = figures.drawn_states(result, options.states)
@@ -316,23 +335,27 @@ def _report_end(
     return code, error
 
 
-def _last_cycle(options: argparse.Namespace, result: solver.Result | None, hidden: int) -> LoadCycle:
+def _last_cycle(options: argparse.Namespace, result: solver.Result | None, part: Part | None) -> LoadCycle:
     """Return the last cycle of a result. :class:`InputError` says why there is none."""
     if result is None:
         raise InputError("cycle", "no state was reached")
-    if hidden and result.cycles:  # its states are in the file, but not in `result`
-        end, length = result.cycles[-1].corner + 1, result.cycles[-1].length
-        places = storage.places_between(options.output, end - length, end)
-        result = storage.load(options.output, states=places)
+    if part is not None and result.cycles:  # its states are in the file, but not in `result`
+        result = storage.load(options.output, states=_places(options, result.cycles[-1]))
     return result.cycle()
 
 
+def _places(options: argparse.Namespace, cycle: Cycle) -> slice:
+    """Return the places of the states of a cycle in the stored result."""
+    end = cycle.corner + 1
+    return storage.places_between(options.output, end - cycle.length, end)
+
+
 def _known_cycle(
-    case: Case, options: argparse.Namespace, result: solver.Result | None, hidden: int
+    case: Case, options: argparse.Namespace, result: solver.Result | None, part: Part | None
 ) -> LoadCycle | None:
     """Return the last cycle if its slip sums are counted, for the summary; None if there is none."""
     with contextlib.suppress(InputError):
-        return _last_cycle(options, result, hidden) if case.options.slip_sums else None
+        return _last_cycle(options, result, part) if case.options.slip_sums else None
     return None
 
 
@@ -341,14 +364,19 @@ def _reached(result: solver.Result) -> int:
     return 0 if result.restart is None else result.restart.corner
 
 
-def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, hidden: int) -> None:
+def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, part: Part | None) -> None:
     if case.title:
         print(case.title)
     if result is None or not len(result):
         print("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
         return
-    print(state_table(case.problem, list(result), hidden))
-    shown = [result[place] for place in visible_rows(len(result))]
+    if part is None:
+        rows = table_rows(case.problem, result.states)
+        shown = [result.states[place] for place in rows.printed]
+    else:
+        rows, found = part.rows, dict(zip(part.places, result.states, strict=True))
+        shown = [found[place] for place in rows.printed]
+    print(state_table(case.problem, shown, rows))
     for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
         if line:
             print(line)

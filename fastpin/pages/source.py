@@ -20,9 +20,10 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.case import hole_body
 from fastpin.report.cycle import MOST_STOPS
+from fastpin.report.states import places_alike
 from fastpin.report.table import visible_rows
 from fastpin.solver.result import Result
-from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
+from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -156,12 +157,7 @@ class Source:
 
         Cycles that repeat the cycle before are left out, all but the last one, and the middle of a long table.
         """
-        repeats = np.zeros(self.points.size, dtype=bool)
-        for block in consecutive_cycles(self.result.cycles):
-            steady, last = periodic_from(block), block[-1]
-            if steady is not None and last.corner - last.length > steady.corner:
-                begin, end = steady.corner + 1, last.corner + 1 - last.length
-                repeats |= (self.points > begin) & (self.points <= end)
+        repeats = places_alike(self.points, self.result.cycles) != np.arange(self.points.size)
         shown = np.flatnonzero(~repeats)
         shown = shown[visible_rows(shown.size)]
         gaps = {}

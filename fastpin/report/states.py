@@ -6,15 +6,28 @@ Angles are in degrees from the bottom of the hole, counter-clockwise positive (t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.bodies import Bushing
-from fastpin.model.checks import instance, items, whole_number
+from fastpin.model.checks import instance, items
 from fastpin.model.problem import Problem
 from fastpin.model.units import printed_scale, printed_unit, units, with_unit
 from fastpin.report.case import ROUNDING, hole_body, load_columns
-from fastpin.report.table import MAX_ROWS, Column, table
+from fastpin.report.table import (
+    MAX_ROWS,
+    Column,
+    Line,
+    cut_lines,
+    folded_lines,
+    printed_rows,
+    repeats,
+    row_numbers,
+    table_of_lines,
+)
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
@@ -23,10 +36,116 @@ from fastpin.states.zones import is_all_round
 OWN_COLUMNS = ("load point", QUANTITIES["dissipation"].label, "residual")
 """Columns in which a state differs from the same state one cycle before: its number, a sum, and rounding."""
 
+MOST_COMPARED = 1_000
+"""Most different states whose rows are compared: a row takes some 2 ms. Of more states no row is folded."""
+
 _DEGREE = math.degrees(1.0)
 
 
-def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> str:
+@dataclass(frozen=True)
+class TableRows:
+    """The rows of a table of states.
+
+    Attributes
+    ----------
+    lines : list of int, Repeat or LeftOut
+        The lines of the table, see :mod:`fastpin.report.table`. A row has the place of its state as number.
+    points : ndarray, shape (rows,)
+        Load points of all rows.
+    """
+
+    lines: list[Line]
+    points: np.ndarray
+
+    @property
+    def printed(self) -> list[int]:
+        """The places of the states that have a line of their own."""
+        return printed_rows(self.lines)
+
+
+def table_rows(
+    problem: Problem, states: Sequence[State], rows: np.ndarray | None = None, points: np.ndarray | None = None
+) -> TableRows:
+    """Find the rows that a table of states prints. Rows that repeat the rows before become one line.
+
+    Parameters
+    ----------
+    problem : Problem
+    states : sequence of State
+        All states, or all that are known to differ.
+    rows : ndarray of int, shape (rows,), optional
+        The place in `states` of a state like the one of each row. By default each state has a row.
+    points : ndarray, shape (rows,), optional
+        Load points of the rows; those of the states by default.
+    """
+    if points is None:
+        points = np.array([load_point(state) for state in states])
+    same = row_numbers(map(_identity, states))
+    numbers, first = np.unique(same, return_index=True)
+    rows = same if rows is None else same[rows]
+    if numbers.size > MOST_COMPARED:
+        return TableRows(cut_lines(rows.size), points)
+    if numbers.size < rows.size or repeats(row_numbers(tuple(state.load.values()) for state in states)):
+        columns = state_columns(problem, [states[place] for place in first.tolist()])
+        cells = zip(*(cells for name, _, cells in columns if name not in OWN_COLUMNS), strict=True)
+        rows = row_numbers(cells)[rows]
+    return TableRows(folded_lines(rows), points)
+
+
+def stored_rows(
+    problem: Problem, points: np.ndarray, cycles: Sequence[Cycle], read: Callable[[list[int]], Sequence[State]]
+) -> TableRows:
+    """As :func:`table_rows`, for a stored result. Few of its states are read.
+
+    Parameters
+    ----------
+    problem : Problem
+    points : ndarray, shape (states,)
+        Load points of all states.
+    cycles : sequence of Cycle
+        All cycles of the result.
+    read : callable
+        ``read(places)`` gives the states at these places, in increasing order.
+    """
+    alike = places_alike(points, cycles)
+    places, rows = np.unique(alike, return_inverse=True)
+    if places.size > MOST_COMPARED:
+        return TableRows(cut_lines(points.size), points)
+    return table_rows(problem, read(places.tolist()), rows, points)
+
+
+def places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
+    """Return for each state the place of a state like it, shape (states,): a place in the first steady cycle.
+
+    It is the own place of a state that belongs to no later steady cycle, or to the last one of its block.
+
+    Parameters
+    ----------
+    points : ndarray, shape (states,)
+        Load points of all states.
+    cycles : sequence of Cycle
+        All cycles of the result.
+    """
+    places = np.arange(points.size)
+    for block in consecutive_cycles(cycles):
+        steady, last = periodic_from(block), block[-1]
+        if steady is None:
+            continue
+        bounds = [steady.corner + 1 - steady.length, steady.corner + 1, last.corner + 1 - last.length]
+        begin, end, stop = np.searchsorted(points, bounds, side="right").tolist()
+        if stop > end > begin:
+            places[end:stop] = begin + (places[end:stop] - begin) % (end - begin)
+    return places
+
+
+def _identity(state: State) -> tuple[Hashable, ...]:
+    """All of a state that its row shows, but for its number, its sum of energy and its residuals."""
+    marks = () if state.marks is None else tuple(part.tobytes() for part in state.marks.arrays(state.grid.size))
+    arrays = [part.tobytes() for part in (state.pressure, state.shear, state.status)]
+    return (*arrays, *marks, state.rotation, *state.load.values(), *(state.error_bars or {}).values())
+
+
+def state_table(problem: Problem, states: Sequence[State], rows: TableRows | None = None) -> str:
     """Return a table of states, one line each.
 
     Error bars stand behind +-, if the states have any. The bar of an interval is the larger one of its two ends. A ?
@@ -37,16 +156,20 @@ def state_table(problem: Problem, states: Sequence[State], hidden: int = 0) -> s
     ----------
     problem : Problem
     states : sequence of State
-    hidden : int
-        Number of states that are left out of the middle of `states`; the table says so.
+        All states; with `rows` only the states that have a line of their own.
+    rows : TableRows, optional
+        The rows of the table, see :func:`table_rows`.
 
     Raises
     ------
     InputError
         If an argument is of another class.
     """
-    whole_number("hidden", hidden, 0)
-    return table(state_columns(problem, states), hidden, OWN_COLUMNS)
+    states = _checked(problem, states)
+    if rows is None:
+        rows = table_rows(problem, states)
+        states = [states[place] for place in rows.printed]
+    return table_of_lines(state_columns(problem, states), rows.lines, [_number(point) for point in rows.points])
 
 
 def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
@@ -57,9 +180,7 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
     InputError
         If an argument is of another class.
     """
-    instance("problem", problem, Problem, "a Problem")
-    for state in items("states", states, "a list of states"):
-        instance("states", state, State, "a list of states")
+    states = _checked(problem, states)
 
     def column(name: str, digits: int = 5, natural: float = 0.0) -> Column:
         return quantity_column(problem, states, name, digits, natural)
@@ -83,6 +204,14 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
         *([column("M", 4)] if problem.rotation == "spring" else []),
         column("dissipation", 4, energy),
         ("residual", "", [f"{max(state.residuals.values(), default=0.0):.0e}" for state in states]),
+    ]
+
+
+def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
+    """Check the class of the problem and of each state."""
+    instance("problem", problem, Problem, "a Problem")
+    return [
+        instance("states", state, State, "a list of states") for state in items("states", states, "a list of states")
     ]
 
 
@@ -124,9 +253,9 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     """
     if problem.surfaces.plate.is_rigid or not any(state.in_contact for state in states):
         return ""
-    distinct: dict[tuple[object, ...], State] = {}
+    distinct: dict[Hashable, State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
-        distinct.setdefault((state.pressure.tobytes(), state.shear.tobytes(), *state.load.values()), state)
+        distinct.setdefault(_identity(state), state)
     state = max(distinct.values(), key=lambda state: state.peak_hoop_stress().value)
     peak = state.peak_hoop_stress()
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
@@ -203,7 +332,12 @@ def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
 
 
 def _point(state: State) -> str:
-    return f"{load_point(state):.3f}".rstrip("0").rstrip(".")
+    return _number(load_point(state))
+
+
+def _number(point: float) -> str:
+    """A load point as text."""
+    return f"{point:.3f}".rstrip("0").rstrip(".")
 
 
 def _angle(angle: float | None) -> str:

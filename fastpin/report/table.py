@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,20 +21,85 @@ Column = tuple[str, str, list[str]]
 
 
 class Repeat(NamedTuple):
-    """Rows that repeat the rows before them. The row `first` begins the repeats of the `period` rows before it."""
+    """A line for rows that repeat the rows before: `times` times the `period` rows that end before the row `first`."""
 
     first: int
     period: int
     times: int
 
+    @property
+    def end(self) -> int:
+        """The row after the repeats."""
+        return self.first + self.times * self.period
+
+
+class LeftOut(NamedTuple):
+    """A line for so many `rows` that are not printed."""
+
+    rows: int
+
+
+Line = int | Repeat | LeftOut
+"""A line of a table: the number of a row from 0, or a line for several rows."""
+
 
 def visible_rows(count: int) -> list[int]:
     """Return the indices of the rows to print of `count`: all, or of a long table the first and the last ones."""
-    half = MAX_ROWS // 2
-    return list(range(count)) if count <= MAX_ROWS else [*range(half), *range(count - half, count)]
+    return printed_rows(cut_lines(count))
 
 
-def table(columns: Sequence[Column], hidden: int = 0, own: Collection[str] | None = None) -> str:
+def printed_rows(lines: Iterable[Line]) -> list[int]:
+    """Return the rows that have a line of their own."""
+    return [line for line in lines if isinstance(line, int)]
+
+
+def cut_lines(count: int, hidden: int = 0) -> list[Line]:
+    """Return the lines of a table of `count` rows, and of `hidden` rows that are missing in their middle.
+
+    Of more than :data:`MAX_ROWS` rows the first and the last ones are printed.
+    """
+    first = last = MAX_ROWS // 2
+    if count <= MAX_ROWS:
+        first, last = (count // 2, count - count // 2) if hidden else (count, 0)
+    left_out = hidden + count - first - last
+    return [*range(first), *([LeftOut(left_out)] if left_out else []), *range(count - last, count)]
+
+
+def folded_lines(rows: np.ndarray) -> list[Line]:
+    """Return the lines of a table whose repeated rows become one line. There are at most :data:`MAX_ROWS` lines.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows, see :func:`row_numbers`.
+    """
+    lines: list[int | Repeat] = []
+    begin = 0
+    for repeat in repeats(rows):
+        lines += [*range(begin, repeat.first), repeat]
+        begin = repeat.end
+    lines += range(begin, len(rows))
+    if len(lines) <= MAX_ROWS:
+        return [*lines]
+    first, last = lines[: MAX_ROWS // 2], lines[-MAX_ROWS // 2 :]
+    return [*first, LeftOut(_begin(last[0]) - _end(first[-1])), *last]
+
+
+def _begin(line: int | Repeat) -> int:
+    return line.first if isinstance(line, Repeat) else line
+
+
+def _end(line: int | Repeat) -> int:
+    return line.end if isinstance(line, Repeat) else line + 1
+
+
+def row_numbers(keys: Iterable[Hashable]) -> np.ndarray:
+    """Return a number for each key, shape (rows,). Equal keys have equal numbers."""
+    numbers: dict[Hashable, int] = {}
+    return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+
+
+def table(columns: Sequence[Column], hidden: int = 0) -> str:
     """Return a table as text, with at most :data:`MAX_ROWS` lines below its head.
 
     Parameters
@@ -43,85 +108,68 @@ def table(columns: Sequence[Column], hidden: int = 0, own: Collection[str] | Non
         Name, unit and cells of each column.
     hidden : int
         Number of rows that `columns` lack in their middle. The table counts them among the rows it leaves out.
-    own : collection of str, optional
-        Names of columns in which each row has a number of its own. Rows that repeat earlier ones in all other columns
-        become one line, which names them by the cells of the first column. By default all rows are printed.
     """
-    if hidden and len(columns[0][2]) > MAX_ROWS:  # the rows that are missing lie between the first and the last ones
-        hidden += len(columns[0][2]) - MAX_ROWS
-        columns = [(name, unit, [cells[row] for row in visible_rows(len(cells))]) for name, unit, cells in columns]
-    count = len(columns[0][2])
-    middle = count // 2 if hidden else count
-    repeats = [] if own is None else _repeats(columns, own, middle)
-    lines: list[int | Repeat] = []
-    begin = 0
-    for repeat in repeats:
-        lines += [*range(begin, repeat.first), repeat]
-        begin = repeat.first + repeat.times * repeat.period
-    lines += range(begin, count)
-    cut = sum(_end(line) <= middle for line in lines) if hidden else len(lines) // 2
-    if len(lines) > MAX_ROWS:
-        lines, left_out, cut = _shortened(lines)
-        hidden += left_out
-    return _text(columns, lines, cut, hidden)
+    names = columns[0][2]
+    lines = cut_lines(len(names), hidden)
+    rows = printed_rows(lines)
+    shown = [(name, unit, [cells[row] for row in rows]) for name, unit, cells in columns]
+    return table_of_lines(shown, lines, names)
 
 
-def _end(line: int | Repeat) -> int:
-    """The row after a line."""
-    return line + 1 if isinstance(line, int) else line.first + line.times * line.period
+def table_of_lines(columns: Sequence[Column], lines: Sequence[Line], names: Sequence[str]) -> str:
+    """Return a table as text.
 
-
-def _shortened(lines: list[int | Repeat]) -> tuple[list[int | Repeat], int, int]:
-    """The first and the last lines, the number of rows between them, and the number of the first lines."""
-    half = MAX_ROWS // 2
-    last = lines[-half]
-    begin = last if isinstance(last, int) else last.first
-    return [*lines[:half], *lines[-half:]], begin - _end(lines[half - 1]), half
-
-
-def _text(columns: Sequence[Column], lines: Sequence[int | Repeat], cut: int, hidden: int) -> str:
-    """The table. The number of `hidden` rows stands before line `cut`."""
-    rows = [line for line in lines if isinstance(line, int)]
-    widths = [max(len(name), len(unit), *(len(cells[row]) for row in rows), 0) for name, unit, cells in columns]
+    Parameters
+    ----------
+    columns : sequence of (str, str, list of str)
+        Name and unit of each column, and its cells for each printed row.
+    lines : sequence of int, Repeat or LeftOut
+        The lines of the table.
+    names : sequence of str
+        The cells of the first column for all rows. Lines for several rows name the rows by them.
+    """
+    widths = [max(len(name), len(unit), *map(len, cells), 0) for name, unit, cells in columns]
 
     def joined(words: Sequence[str]) -> str:
         return "  ".join(word.rjust(width) for word, width in zip(words, widths, strict=True)).rstrip()
 
     text = [joined([name for name, _, _ in columns]), joined([unit for _, unit, _ in columns])]
-    for place, line in enumerate(lines):
-        if hidden and place == cut:
-            text.append(f"... {hidden:,} more ...")
-        if isinstance(line, int):
-            text.append(joined([cells[line] for _, _, cells in columns]))
+    rows = zip(*(cells for _, _, cells in columns), strict=True)
+    for line in lines:
+        if isinstance(line, LeftOut):
+            text.append(f"... {line.rows:,} more ...")
+        elif isinstance(line, Repeat):
+            text.append(_repeat_line(columns[0][0], names, line))
         else:
-            text.append(_repeat_line(columns[0], line))
+            text.append(joined(next(rows)))
     return "\n".join(text)
 
 
-def _repeat_line(names: Column, repeat: Repeat) -> str:
-    heading, _, cells = names
-    last = cells[_end(repeat) - 1]
-    before = cells[repeat.first - repeat.period], cells[repeat.first - 1]
+def _repeat_line(heading: str, names: Sequence[str], repeat: Repeat) -> str:
+    last = names[repeat.end - 1]
+    before = names[repeat.first - repeat.period], names[repeat.first - 1]
     plural = f"{heading}s {before[0]} to {before[1]}" if repeat.period > 1 else f"{heading} {before[1]}"
     times = "once" if repeat.times == 1 else f"{repeat.times:,} times"
-    return f"... {cells[repeat.first]} to {last}: repeat {plural}, {times} ..."
+    return f"... {names[repeat.first]} to {last}: repeat {plural}, {times} ..."
 
 
-def _repeats(columns: Sequence[Column], own: Collection[str], middle: int) -> list[Repeat]:
-    """Find the rows that repeat earlier ones, in order. The repeats keep to one side of row `middle`."""
-    numbers: dict[tuple[str, ...], int] = {}
-    keys = zip(*(cells for name, _, cells in columns if name not in own), strict=True)
-    rows = np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.int64)
+def repeats(rows: np.ndarray) -> list[Repeat]:
+    """Find the rows that repeat the rows before them, in order.
+
+    Parameters
+    ----------
+    rows : ndarray of int, shape (rows,)
+        Equal numbers for equal rows.
+    """
     found = []
-    for begin, stop in ((0, middle), (middle, len(rows))):
-        row = begin
-        while row < stop:
-            repeat = _repeat_at(rows[row:stop])
-            if repeat is None:
-                row += 1
-            else:
-                found.append(repeat._replace(first=row + repeat.first))
-                row = _end(found[-1])
+    row = 0
+    while row < len(rows):
+        repeat = _repeat_at(rows[row:])
+        if repeat is None:
+            row += 1
+        else:
+            found.append(repeat._replace(first=row + repeat.first))
+            row = found[-1].end
     return found
 
 

@@ -11,4 +11,3 @@ from .store import load as load
 from .store import load_points as load_points
 from .store import places_between as places_between
 from .store import save as save
-from .store import state_count as state_count

@@ -222,18 +222,6 @@ def is_unfinished(path: Path) -> bool:
         return False
 
 
-def state_count(path: str | Path) -> int:
-    """Return the number of states in a file.
-
-    Raises
-    ------
-    InputError
-        See :func:`load`.
-    """
-    with open_result(file_path("path", path)) as file:
-        return count(file["states"])
-
-
 def load_points(path: str | Path) -> np.ndarray:
     """Return the load points of the states in a file: step + fraction, 1 at the first corner.
 

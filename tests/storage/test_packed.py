@@ -113,7 +113,7 @@ def test_the_path_of_a_file_reads_the_result_in_an_index(
 ) -> None:
     assert_same(store.load(path), result)
     assert len(store.load(path, states=[-1])) == 1
-    assert storage.state_count(path) == len(result)
+    assert storage.load_points(path).size == len(result)
     assert storage.load_points(path)[-1] == 5.0
     assert storage.stored_error(path) == "lost"
     assert storage.to_xarray(path).sizes["theta"] == 31

@@ -217,7 +217,7 @@ def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
         patch.setattr(journal.os, "pwrite", pwrite)
         with pytest.raises(OSError, match="No space left"):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
-    assert 1 < store.state_count(path) < 40
+    assert 1 < store.load_points(path).size < 40
     resume(path)
     assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
 
@@ -259,7 +259,7 @@ def test_what_happens_at_the_very_end_locks_nobody_out(problem, path, monkeypatc
         patch.setattr(writer, "write_statistics", fail)
         with pytest.raises((KeyboardInterrupt, OSError)):
             follow(problem, RANDOM[:6], path, nodes=61, arc=(-3.0, -0.1))
-    assert store.state_count(path) <= 6
+    assert store.load_points(path).size <= 6
     resume(path)
     assert_file(path, solve(problem, RANDOM[:6], nodes=61, arc=(-3.0, -0.1)))
 

@@ -27,7 +27,7 @@ from fastpin.storage.layout import (
     SLIP_FIELDS,
     WITH_BODIES,
 )
-from fastpin.storage.store import load, save, state_count
+from fastpin.storage.store import load, load_points, save
 from tests.support.samples import PAIR, sample_result
 
 
@@ -177,7 +177,7 @@ def test_some_states_alone(tmp_path: Path) -> None:
     result = sample_result([{"P": 1e6 * k} for k in range(1, 8)])
     path = tmp_path / "a.h5"
     save(result, path)
-    assert state_count(path) == 7
+    assert load_points(path).size == 7
     for picked, steps in ((slice(2, 5), [2, 3, 4]), ([0, 6], [0, 6]), ([], []), (slice(-1, None), [6])):
         found = load(path, states=picked)
         assert [state.step for state in found] == steps

@@ -242,7 +242,7 @@ RAGGED = [[1.0], [1.0, 2.0]]
         lambda: fastpin.studies.sweep.merge("part", "whole"),
         lambda: fastpin.storage.to_xarray(None),
         lambda: fastpin.storage.stored_case(None),
-        lambda: fastpin.storage.state_count(5),
+        lambda: fastpin.storage.load_points(5),
         lambda: fastpin.report.describe(None),
         lambda: fastpin.figures.result_html(None),
         lambda: fastpin.plot_convergence(None, "a.png"),
