@@ -7,9 +7,11 @@ import contextlib
 import dataclasses
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli.options import literal
@@ -269,7 +271,7 @@ def _write_result(
     `ended` is the error that ended the run early. `part` tells which states `result` has, if it lacks some.
     """
     code, error = _report_end(case, options, result, ended)
-    warn_of(pressure_doubts(case.problem, case.history, (state.pressure for state in result or ())), 2)
+    warn_of(pressure_doubts(case.problem, case.history, _pressures(options, result)), 2)
     cycle = _known_cycle(case, options, result, part)
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
@@ -292,6 +294,13 @@ def _write_result(
     else:
         _print_states(case, result, cycle, part)
     return code
+
+
+def _pressures(options: argparse.Namespace, result: solver.Result | None) -> Iterable[np.ndarray]:
+    """Return the pressures of all states, or the largest one of a stored result."""
+    if result is None or options.output is None:
+        return (state.pressure for state in result or ())
+    return [np.array([storage.largest_pressure(options.output)])]
 
 
 def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:

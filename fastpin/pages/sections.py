@@ -6,6 +6,8 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from fastpin.errors import InputError
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
@@ -70,9 +72,8 @@ def overview(page: Shared) -> Section:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
     states, cycle = source.rows[0], source.cycle
-    pressures = (state.pressure for state in states)
     warnings = [*doubts(problem, source.case.history, source.case.options)]
-    warnings += pressure_doubts(problem, source.case.history, pressures)
+    warnings += pressure_doubts(problem, source.case.history, [np.array([source.pressure])])
     parts: list[Part] = [_status(source)]
     parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
     parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]

@@ -62,6 +62,8 @@ class Source:
         Where the result comes from: names and values.
     residuals : dict of str to float
         The largest of each kind, over all states.
+    pressure : float
+        The largest pressure at a node over all states, Pa.
     error : str or None
         Why the run ended early.
     path : Path or None
@@ -78,6 +80,7 @@ class Source:
     read: Callable[[Sequence[int]], list[State]]
     origin: list[tuple[str, str]]
     residuals: dict[str, float]
+    pressure: float
     error: str | None = None
     path: Path | None = None
     case_text: str = field(default="", repr=False)
@@ -102,8 +105,9 @@ class Source:
         def read(places: Sequence[int]) -> list[State]:
             return storage.load(path, states=list(places)).states
 
-        residuals, error = storage.largest_residuals(path), storage.stored_error(path)
-        return cls(case, result, points, read, origin, residuals, error, path, knows_options="run" in known)
+        largest = storage.largest_residuals(path), storage.largest_pressure(path)
+        error = storage.stored_error(path)
+        return cls(case, result, points, read, origin, *largest, error, path, knows_options="run" in known)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -117,6 +121,7 @@ class Source:
             options = SolveOptions(nodes=result.grid.size, method=method, error_bars=result.coarse is not None)
             case = Case(result.problem, result.history, options, title)
         residuals: dict[str, float] = {}
+        pressure = max((float(state.pressure.max()) for state in result), default=0.0)
         for state in result:
             residuals = {name: max(value, residuals.get(name, 0.0)) for name, value in state.residuals.items()}
 
@@ -125,7 +130,7 @@ class Source:
 
         origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
         points = np.array([load_point(state) for state in result])
-        return cls(case, result, points, read, origin, residuals, error, knows_options=known)
+        return cls(case, result, points, read, origin, residuals, pressure, error, knows_options=known)
 
     @cached_property
     def initial(self) -> np.ndarray:

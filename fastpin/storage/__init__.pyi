@@ -1,6 +1,7 @@
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
 from .layout import versions as versions
+from .provenance import largest_pressure as largest_pressure
 from .provenance import largest_residuals as largest_residuals
 from .provenance import provenance as provenance
 from .recording import record as record

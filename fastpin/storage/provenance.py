@@ -13,6 +13,9 @@ from fastpin.storage.store import open_result
 SOURCES = ("created", "host", "platform", "run")
 """Attributes of a file that tell when and where its run began."""
 
+STATES_AT_ONCE = 1_000
+"""States whose pressures are in memory at once."""
+
 
 def provenance(path: str | Path) -> dict[str, str]:
     """Return the versions, the date, the machine and the platform of a stored result, by name.
@@ -45,3 +48,17 @@ def largest_residuals(path: str | Path) -> dict[str, float]:
     with open_result(file_path("path", path)) as file:
         rows: np.ndarray = file["states/residuals"][()]
     return dict(zip(RESIDUALS, rows.max(axis=0).tolist(), strict=True)) if len(rows) else {}
+
+
+def largest_pressure(path: str | Path) -> float:
+    """Return the largest pressure at a node over all states of a file, Pa; 0 without states.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        rows = file["states/pressure"]
+        parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
+        return max((float(part.max(initial=0.0)) for part in parts), default=0.0)

@@ -7,10 +7,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, Unpack
 
-from fastpin.errors import InputError
+import numpy as np
+
+from fastpin.errors import InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, check_callable, file_path, items, string, true_or_false, whole_number
-from fastpin.model.doubts import doubts, warn_of
+from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -22,6 +24,7 @@ from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_history, read_options, read_problem
+from fastpin.storage.provenance import largest_pressure
 from fastpin.storage.store import open_result
 from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
 
@@ -100,6 +103,7 @@ def record(
             task.branch(writer, start.restart, start.grid)
         else:
             task.follow(writer)
+    warn_of(_pressure_doubts(path, task), 2)
 
 
 def resume(path: str | Path, progress: Progress | None = None) -> None:
@@ -133,6 +137,7 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
             if not writer.chosen_arc:
                 raise
             task.follow(writer, unfit=(task.grid, error))
+    warn_of(_pressure_doubts(path, task), 2)
 
 
 def stored_error(path: str | Path) -> str | None:
@@ -159,6 +164,11 @@ def stored_case(path: str | Path) -> Case:
     with open_result(file_path("path", path)) as file:
         title = str(file["solver"].attrs.get("title", ""))
         return Case(read_problem(file), read_history(file), read_options(file), title)
+
+
+def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
+    """The doubts about the largest pressure of the run that has been written to a file."""
+    return pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
 
 
 def _check_names(options: Mapping[str, Any]) -> None:

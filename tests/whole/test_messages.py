@@ -374,10 +374,15 @@ def test_a_pressure_above_the_yield_strength_is_doubted(
         "but a real contact yields there"
     )
     assert [str(warning.message) for warning in given] == [sentence]
-    path = tmp_path / "case.toml"
+    path, stored = tmp_path / "case.toml", tmp_path / "a.h5"
+    with pytest.warns(InputWarning) as given:
+        fastpin.record(case.problem, case.history, stored, nodes=51)
+    assert [(str(warning.message), warning.filename) for warning in given] == [(sentence, __file__)]
     path.write_text(text)
-    assert main(["run", str(path)]) == 0
-    assert capsys.readouterr().err == f"fastpin: warning: {sentence}\n"
+    for command in (["run", str(path)], ["show", str(stored)], ["report", str(stored), "-o", str(tmp_path / "a.html")]):
+        assert main(command) == 0
+        assert capsys.readouterr().err == ("" if command[0] == "report" else f"fastpin: warning: {sentence}\n")
+    assert sentence in (tmp_path / "a.html").read_text()
     higher = dataclasses.replace(case.problem.pair.plate, yield_strength=2.0 * peak)
     problem = dataclasses.replace(case.problem, pair=fastpin.MaterialPair(case.problem.pair.pin, higher))
     assert pressure_doubts(problem, case.history, [result[0].pressure]) == []
