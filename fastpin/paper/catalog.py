@@ -10,7 +10,7 @@ Each figure is a file of this folder with
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Protocol, cast
 
@@ -113,12 +113,23 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int, formats
         If there is no such figure, a figure needs more than `nodes` nodes, a format is unknown, or the files can't be
         written.
     """
-    for kind in formats:
-        choice("format", kind, FORMATS)
     scripts = {figure_name(name): script(name) for name in names}
     for name, needed in scripts.items():
         if whole_number("nodes", nodes, LEAST_NODES, MAX_NODES) < needed.LEAST_NODES:
             raise InputError("nodes", f"figure {name} needs at least {needed.LEAST_NODES} nodes, not {nodes}")
+    check_files(map(stem, scripts), directory, formats)
+
+
+def check_files(stems: Iterable[str], directory: str | Path, formats: Sequence[str]) -> None:
+    """Check that the files of figures can be written, and make `directory` if it is missing.
+
+    Raises
+    ------
+    InputError
+        If a format is unknown, or the files can't be written.
+    """
+    for kind in formats:
+        choice("format", kind, FORMATS)
     folder = Path(directory)
     if folder.exists() and not folder.is_dir():
         raise InputError("output", f"{folder} is a file, not a directory")
@@ -126,14 +137,14 @@ def check(names: Iterable[str | int], directory: str | Path, nodes: int, formats
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError("output", f"can't make the directory {folder}: {error.strerror}") from None
-    for name in scripts:
+    for name in stems:
         for file in _files(name, folder, formats):
             check_writable(file)
 
 
-def _files(name: str | int, directory: str | Path, formats: Sequence[str]) -> list[Path]:
+def _files(name: str, directory: str | Path, formats: Sequence[str]) -> list[Path]:
     """Return the pictures of a figure, and the file of its numbers, which is the last."""
-    return [Path(directory) / f"{stem(name)}.{kind}" for kind in (*formats, "csv")]
+    return [Path(directory) / f"{name}.{kind}" for kind in (*formats, "csv")]
 
 
 def make(
@@ -155,8 +166,24 @@ def make(
     check([name], directory, nodes, formats)
     chosen = script(name)
     curves = chosen.compute(nodes, progress)
+    remarks = (chosen.TITLE, f"fastpin {__version__}, --nodes {nodes}", UNITS)
+    return write(curves, chosen.draw, stem(name), directory, remarks, formats)
+
+
+def write(
+    curves: Sequence[Curve],
+    draw: Callable[[Sequence[Curve]], Figure],
+    name: str,
+    directory: str | Path,
+    remarks: Sequence[str],
+    formats: Sequence[str],
+) -> list[Path]:
+    """Write the curves of a figure as CSV with `remarks`, and the figure in each of the `formats`.
+
+    `name` is the first part of the names of the files. Return the paths of the pictures, then the path of the numbers.
+    """
     files = _files(name, directory, formats)
-    write_csv(curves, files[-1], (chosen.TITLE, f"fastpin {__version__}, --nodes {nodes}", UNITS))
+    write_csv(curves, files[-1], remarks)
     for picture in files[:-1]:
-        save_drawing(chosen.draw, curves, picture, DPI)
+        save_drawing(draw, curves, picture, DPI)
     return files
