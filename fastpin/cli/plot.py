@@ -105,14 +105,14 @@ def _drawn(draw: Callable[[figures.Look], figures.Sheet], title: str, **options:
 
 def _tractions(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
-    curves = report.stress.traction_curves(states)
+    curves = figures.traction_curves(states)
     sketch = options.sketch is not None
     return _drawn(lambda look: figures.draw_tractions(states, look, sketch), title), _curves(curves)
 
 
 def _polar(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
-    return _drawn(lambda look: figures.draw_polar(states, look), title), _curves(report.stress.traction_curves(states))
+    return _drawn(lambda look: figures.draw_polar(states, look), title), _curves(figures.traction_curves(states))
 
 
 def _stick_slip(options: argparse.Namespace, title: str) -> Made:

@@ -34,3 +34,4 @@ from .stress import plot_stress_profile as plot_stress_profile
 from .sweep import plot_sweep as plot_sweep
 from .tractions import draw_tractions as draw_tractions
 from .tractions import plot_tractions as plot_tractions
+from .tractions import traction_curves as traction_curves

@@ -10,16 +10,18 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.patches import Patch
+from matplotlib.colors import to_rgba
+from matplotlib.lines import Line2D
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import HEADING, Look
 from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states
-from fastpin.figures.stick_slip import LOOKS
+from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
 from fastpin.figures.style import COLOURS, STYLE, line, new_figure
-from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped
+from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import file_path, number
 from fastpin.model.units import acting_loads, scaled, units
@@ -142,14 +144,17 @@ class _Scene:
         self.joint = self.figure.add_axes((0.01, 0.17, 0.33, 0.67))
         self.heading = self.figure.text(0.02, 0.975, "", fontsize=HEADING, va="top", parse_math=False)
         self.title = look.title
-        small = "\n".join(wrapped(caption(states[0].problem, states), SIZE[0] - 0.4))
+        small = "\n".join(wrapped_parts(caption(states[0].problem, states), SIZE[0] - 0.4))
         self.figure.text(0.02, 0.905, small, fontsize=CAPTION_SIZE, color="0.25", va="top", parse_math=False)
         self.names = acting_loads([state.load for state in states])
         self.factor, unit = scaled([state.peak_pressure for state in states], units(states[0].problem)["traction"])
         self.largest = self.factor * max(state.peak_pressure for state in states)
         words = ("pressure N", "shear traction T")
         self.force = max(abs(state.load[name]) for state in states for name in ("P", "Q"))
-        patches = [Patch(color=colour, linewidth=0, label=words) for colour, _, words in LOOKS.values()]
+        looks = dict.fromkeys(zone_look(states[0].problem, status) for status in LOOKS)
+        patches: list[Artist] = [zone_patch(look) for look in looks]
+        if rows > 1:
+            patches.append(Line2D([], [], color=COLOURS[0], linewidth=0.5, label="thin: bounds ±μN of T"))
         self.figure.legend(handles=patches, loc="lower left", bbox_to_anchor=(0.0, 0.0), fontsize=CAPTION_SIZE, ncols=1)
         self.labels = [quantity(each, unit) for each in words[:rows]]
 
@@ -184,6 +189,9 @@ class _Scene:
         zones = [(*zone, STICK) for zone in state.stick] + state.slip_zones
         for start, stop, status in zones:
             for left, width in self.frame.place(start, stop):
+                colour, hatch, _ = zone_look(state.problem, int(status))
                 for panel in self.panels:
-                    colour = LOOKS[int(status)][0]
-                    panel.axvspan(left, left + width, color=colour, alpha=0.13, linewidth=0, zorder=-1)
+                    panel.axvspan(
+                        left, left + width, facecolor=to_rgba(colour, 0.13), hatch=hatch, edgecolor="0.85", linewidth=0,
+                        zorder=-1,
+                    )  # fmt: skip

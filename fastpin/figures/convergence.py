@@ -15,9 +15,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import Line, line
-from fastpin.figures.words import caption, quantity
+from fastpin.figures.words import caption, loads_text, quantity
 from fastpin.model.checks import as_toml, instance, whole_number
-from fastpin.model.units import named_loads, scaled
+from fastpin.model.units import scaled
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.convergence import Convergence
@@ -121,7 +121,7 @@ def _draw(convergence: Convergence, corner: int, look: Look) -> Sheet:
     ]
     entries += [("no order observed: to the last value", open_marks), ("error bar of the last value", bar), *guides]
     sheet.legend([Line2D([], [], label=label, **style) for label, style in entries], 2)
-    heading = f"corner {corner}: {named_loads(convergence.problem, convergence.loads[corner])}"
+    heading = f"corner {corner}: {loads_text(convergence.problem, convergence.loads[corner])}"
     sheet.head(*textwrap.wrap(look.title, TITLE_WIDTH), heading, caption=caption(convergence.problem))
     return sheet
 

@@ -19,7 +19,7 @@ from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
 from fastpin.model.checks import instance
-from fastpin.model.units import scaled, units
+from fastpin.model.units import printed_scale, scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 
@@ -33,7 +33,10 @@ SPARSE = 0.12
 """Distance of the marks of more cycles, in parts of the diagonal of the panel."""
 
 LONG = 50
-"""Ratio of the last and the first corner from which the axis of corners is logarithmic: transients are short."""
+"""Ratio of the last and the first corner from which the axis of corners is logarithmic: transients are short.
+
+With several blocks the axis is linear: a logarithmic one would squeeze all blocks but the first.
+"""
 
 PERIODIC: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "linestyle": (0, (1.0, 2.0))}
 """Line of the first periodic cycle of a block."""
@@ -56,7 +59,8 @@ def plot_cycles(
     The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure. The
     middle panel shows the energy dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end.
     Values below rounding are 0. A vertical line marks the end of the first cycle from which on the contact is periodic.
-    The lower panel shows how far all cycles so far have turned the pin (ratcheting), counter-clockwise positive.
+    The lower panel sums up how far the cycles so far have turned the pin (ratcheting), counter-clockwise positive.
+    Cycles that contain others have a sum of their own.
 
     Parameters
     ----------
@@ -87,18 +91,16 @@ def _draw_cycles(result: Result, look: Look) -> Sheet:
     sheet.grid()
     kind, cycles = units(result.problem), result.cycles
     lengths = sorted({cycle.length for cycle in cycles})[:MAX_NAMED]
-    energy, unit = scaled([cycle.dissipation for cycle in cycles], kind["energy"])
-    turns = {length: _turned([cycle for cycle in cycles if cycle.length == length]) for length in lengths}
+    energy, unit = printed_scale(result.problem, "energy", [cycle.dissipation for cycle in cycles])
+    turns = _turned(cycles)
     angle, unit_of_angle = scaled(np.concatenate(list(turns.values())).tolist(), kind["rotation"])
     changes = [np.array([getattr(cycle, name) for cycle in cycles]) for name in CHANGES]
     floors = [_floor(np.concatenate(changes)), _floor(energy * np.array([cycle.dissipation for cycle in cycles]))]
     for kind_of_length, length in enumerate(lengths):
         mine = [cycle for cycle in cycles if cycle.length == length]
-        done = 0
         for part in _parts(mine):  # the blocks of one length stand apart where other blocks lie between them
             where = [cycle.corner + 1 for cycle in part]
-            turn = angle * turns[length][done : done + len(part) + 1]
-            done += len(part)
+            turn = angle * turns[length, part[0].corner]
             panels[2].plot([where[0] - length, *where], turn, **_style(kind_of_length, 0, len(mine)))
             for dashes, name in enumerate(CHANGES):
                 drawn = _above(np.array([getattr(cycle, name) for cycle in part]), floors[0])
@@ -119,10 +121,25 @@ def _draw_cycles(result: Result, look: Look) -> Sheet:
     return sheet
 
 
-def _turned(cycles: Sequence[Cycle]) -> np.ndarray:
-    """The sum of the rotations of cycles so far, rad, from 0 on. Sums below rounding are 0."""
-    turned = np.nancumsum([0.0, *(cycle.rotation_change for cycle in cycles)])
-    return without_rounding(turned)
+def _turned(cycles: Sequence[Cycle]) -> dict[tuple[int, int], np.ndarray]:
+    """How far all cycles so far have turned the pin, rad, for each part of :func:`_parts`.
+
+    The keys are length and last corner of the part's first cycle. A part goes on from the last part that ended before
+    it began, of any length. Sums below rounding are 0.
+    """
+    lengths = {cycle.length for cycle in cycles}
+    parts = [part for length in lengths for part in _parts([each for each in cycles if each.length == length])]
+    parts.sort(key=lambda part: part[-1].corner)
+    ended: list[tuple[int, float]] = [(-1, 0.0)]
+    found: dict[tuple[int, int], np.ndarray] = {}
+    for part in parts:
+        begin = part[0].corner - part[0].length
+        before = next(turned for corner, turned in reversed(ended) if corner <= max(begin, -1))
+        turned = before + np.nancumsum([0.0, *(cycle.rotation_change for cycle in part)])
+        found[part[0].length, part[0].corner] = turned
+        ended.append((part[-1].corner, float(turned[-1])))
+    largest = max(float(np.abs(turned).max()) for turned in found.values())
+    return {key: without_rounding(turned, largest) for key, turned in found.items()}
 
 
 def _parts(cycles: Sequence[Cycle]) -> list[list[Cycle]]:
@@ -184,11 +201,11 @@ def _mark_periodic(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> bool:
 
 
 def _corner_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
-    """Set the axis of corners: logarithmic for long histories, else with whole numbers."""
+    """Set the axis of corners: logarithmic for a long block, else with whole numbers."""
     corners = [cycle.corner + 1 for cycle in cycles]
     panels[-1].set_xlabel("corner of the load history at which the cycle ends")
     first, last = max(min(corners) - max(cycle.length for cycle in cycles), 1), max(corners)
-    if last > LONG * min(corners):
+    if last > LONG * min(corners) and len(consecutive_cycles(cycles)) == 1:
         for panel in panels:
             panel.set_xscale("log")
             panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=15))

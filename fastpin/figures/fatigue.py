@@ -76,10 +76,8 @@ def _draw(found: Fatigue, look: Look) -> Sheet:
     top.set_ylabel(quantity(f"parameter of\n{found.criterion}", unit))
     lowest, highest = float(parameter.min()), float(parameter.max())
     top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0) or 1.0)
-    handles = [
-        Line2D([], [], label=f"hot spot at {from_bottom(spot.theta):.1f} deg", linestyle="none", marker="o",
-               markersize=4.5, color=COLOURS[1]),
-    ]  # fmt: skip
+    where = f"hot spot at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+    handles = [Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=COLOURS[1])]
     if found.plane is not None:
         _draw_planes(top, angle, parameter, (found.plane.ravel() - theta)[order])
         handles.append(Line2D([], [], color="0.3", linewidth=1.0, label="worst planes"))

@@ -18,10 +18,16 @@ from fastpin.model.checks import instance, number_array
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.units import scaled, units
+from fastpin.model.units import printed_scale
 
 MOST_MARKED = 60
 """Most corners that are marked by dots. More dots would hide the lines."""
+
+WORDS = {
+    "force": "force", "moment": "moment", "traction": "remote stress", "rotation": "prescribed", "displacement":
+    "prescribed",
+}  # fmt: skip
+"""Words before the names of loads, by kind."""
 
 MOST_NAMED_BLOCKS = 8
 """Most repeated blocks that are named in the figure. More names would overlap."""
@@ -81,17 +87,20 @@ def _draw(problem: Problem, folded: Folded, look: Look) -> Sheet:
     for kind, panel in zip(kinds, axes[:, 0], strict=True):
         names = [name for name in acting if LOAD_KIND[name] == kind]
         columns = {name: loads[:, LOADS.index(name)] for name in names}
-        factor, label = scaled(np.concatenate(list(columns.values())).tolist(), units(problem)[kind])
+        factor, label = printed_scale(problem, kind, np.concatenate(list(columns.values())).tolist())
         for name in names:
             style = line(len(entries) % MAX_NAMED, len(entries) % MAX_NAMED)
             dots = {"marker": "o", "markersize": 2.2} if len(loads) <= MOST_MARKED else {}
             panel.plot(np.arange(len(loads)), factor * columns[name], **style, **dots)
             entries.append((name, style))
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(quantity(", ".join(names), label))
+        panel.set_ylabel(quantity(f"{WORDS[kind]} {', '.join(names)}", label))
         panel.set_xlim(0.0, len(loads) - 1.0)
         _shade(panel, repeated, panel is axes[0, 0])
-    _number_corners(axes[-1, 0], numbers)
+    for panel in axes[:, 0]:
+        _number_corners(panel, numbers)
+        panel.tick_params(labelbottom=panel is axes[-1, 0])
+    axes[-1, 0].set_xlabel("corner of the load history")
     sheet.figure.align_ylabels(axes)
     if len(entries) > 1:
         sheet.legend([Line2D([], [], label=name, **style) for name, style in entries], len(entries))
@@ -133,4 +142,3 @@ def _number_corners(panel: Axes, numbers: list[int]) -> None:
     locator = MaxNLocator(nbins=9, integer=True)
     ticks = [int(tick) for tick in locator.tick_values(0, len(numbers) - 1) if 0 <= tick < len(numbers)]
     panel.set_xticks(ticks, [f"{numbers[tick]:,}" for tick in ticks])
-    panel.set_xlabel("corner of the load history")

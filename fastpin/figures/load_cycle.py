@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
@@ -23,11 +25,12 @@ from fastpin.figures.words import (
     loads_by_change,
     quantity,
     short,
+    shown_unit,
     without_rounding,
 )
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import scaled, units
+from fastpin.model.units import printed_scale, printed_unit, scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import sizes
@@ -44,6 +47,14 @@ CONJUGATES = {
 
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
+
+SMALL = 0.1
+"""Displacement without a prefix below which the unit gets a power of ten: long numbers would overlap on the axis."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+TICKS = {1: 9, 2: 6, 3: 3}
+"""Most intervals on the axis of displacements, by the number of panels side by side."""
 
 NO_AREA = "area unknown: no states between the corners"
 """Title of a loop that is a line."""
@@ -117,6 +128,7 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
         panel.set_ylim(0.0, 1.08 * top or 1.0)
         if top == 0.0:
             panel.text(0.5, 0.5, "0: no node slips", ha="center", transform=panel.transAxes)
+            panel.set_yticks([0.0])
         frame.scale(panel)
     lower.set_xlabel(ANGLE)
     handles: list[Artist] = [Line2D([], [], label=name, **line(k, k)) for k, name in enumerate(curves)]
@@ -134,11 +146,11 @@ def _sizes(cycle: LoadCycle) -> dict[str, float]:
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
 
 
-def _head(sheet: Sheet, cycle: LoadCycle, title: str) -> None:
-    """Write title, corners, loads that are constant, and the parameters."""
+def _head(sheet: Sheet, cycle: LoadCycle, title: str, lift: float = 5.0) -> None:
+    """Write title, corners, loads that are constant, and the parameters, `lift` points above the panel."""
     common = ",  ".join(load_text(cycle.states, 0, name) for name in loads_by_change(cycle.states)[0])
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}{f',  {common}' if common else ''}"
-    sheet.head(title, heading, caption=caption(cycle.states[0].problem, cycle.states))
+    sheet.head(title, heading, caption=caption(cycle.states[0].problem, cycle.states), lift=lift)
 
 
 def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Artist]:
@@ -218,24 +230,35 @@ def _draw_loops(cycle: LoadCycle, look: Look) -> Sheet:
         panel.set_visible(False)
     for name, panel in zip(names, axes.flat, strict=False):
         loop, kind = cycle.loops[name], LOAD_KIND[name]
-        load, load_unit = scaled(loop.load.tolist(), unit[kind])
+        load, load_unit = printed_scale(cycle.states[0].problem, kind, loop.load.tolist())
         words, conjugate = CONJUGATES[kind]
-        moved, moved_unit = scaled(loop.displacement.tolist(), unit.get(conjugate, ""))
+        moved, moved_unit = _displacement_scale(loop.displacement, unit.get(conjugate, ""))
         if kind == "traction":  # of a square unit, which has no prefixes
             moved = 1.0 / max(float(np.abs(loop.displacement).max()), 1e-300)
-            moved_unit = "largest: 1"
+            moved_unit = "largest is 1"
         panel.plot(moved * loop.displacement, load * loop.load, marker="o", markersize=2.2, **line(0))
-        panel.set_xlabel(quantity(words, moved_unit))
+        panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
         panel.set_ylabel(quantity(name, load_unit))
         area = _area(cycle, name, float(loop.work)) if len(loop.load) > STRAIGHT else NO_AREA
-        panel.text(0.03, 0.97, area, fontsize=8.0, ha="left", va="top", transform=panel.transAxes)
-    _head(sheet, cycle, look.title)
+        panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
+    _head(sheet, cycle, look.title, lift=18.0)
     return sheet
+
+
+def _displacement_scale(values: np.ndarray, unit: str) -> tuple[float, str]:
+    """As :func:`fastpin.model.units.scaled`; a unit without prefixes gets a power of ten for small values."""
+    factor, label = scaled(values.tolist(), unit)
+    largest = factor * float(np.abs(values).max())
+    if not 0.0 < largest < SMALL:
+        return factor, label
+    power = math.floor(math.log10(largest))
+    return factor / 10.0**power, f"10{str(power).translate(SUPERSCRIPTS)} {label}"
 
 
 def _area(cycle: LoadCycle, name: str, work: float) -> str:
     """The area of a loop as text: 0 where it is rounding beside load times displacement."""
     loop = cycle.loops[name]
     size = float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
-    unit = units(cycle.states[0].problem)["energy"]
-    return f"area {short(work, unit)}" if abs(work) > ROUNDING * size else "area 0"
+    factor, unit = printed_unit(cycle.states[0].problem, "energy")
+    return f"area {short(factor * work, unit)}" if abs(work) > ROUNDING * size else "area 0"

@@ -12,6 +12,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
@@ -115,8 +116,8 @@ def _draw_circle(panel: Axes, largest: float, height: float, label: str, both: b
             panel.plot(radius * np.cos(_TURN), radius * np.sin(_TURN), color="0.85", linewidth=0.6, zorder=0)
             text = f"{sign * value:g}".replace("-", "−")
             x, y = _over_circle(np.array([NAMED_AT]), np.array([radius - 1.0]))
-            box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
-            style: Any = {"fontsize": 6.5, "color": "0.35", "ha": "center", "va": "center", "bbox": box}
+            halo = [withStroke(linewidth=2.0, foreground="white")]  # hides less of the curves than a box
+            style: Any = {"fontsize": 6.5, "color": "0.25", "ha": "center", "va": "center", "path_effects": halo}
             panel.text(x[0], y[0], f"{text} {shown_unit(label)}" if sign > 0.0 else text, **style)
     panel.plot(np.cos(_TURN), np.sin(_TURN), color="0.2", linewidth=1.0, zorder=1)
     for degrees in ANGLES:

@@ -23,7 +23,7 @@ from fastpin.figures.style import (
     new_figure,
     number_of_dots,
 )
-from fastpin.figures.words import CAPTION_SIZE, wrapped
+from fastpin.figures.words import CAPTION_SIZE, wrapped, wrapped_parts
 from fastpin.model.checks import file_path, instance
 
 HEADING = 9.5
@@ -135,7 +135,7 @@ class Sheet:
         inches = self.figure.get_figwidth() if host is None else host.get_window_extent().width / self.figure.dpi
         width = inches - (0.9 if host is None else 0.0)
         text = "\n".join(row for line in lines for row in wrapped(line, width, HEADING))
-        small = "\n".join(wrapped(caption, width))
+        small = "\n".join(wrapped_parts(caption, width))
         if host is not None:
             small = "" if width < LEAST_CAPTION else small
             host.set_title("\n".join(filter(None, [text, small])), fontsize=CAPTION_SIZE, parse_math=False)

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Circle, FancyArrowPatch, Patch, Rectangle
+from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
-from fastpin.figures.stick_slip import LOOKS
-from fastpin.figures.words import ROUNDING, caption, point_text, short
+from fastpin.figures.stick_slip import zone_look, zone_patch
+from fastpin.figures.words import ROUNDING, caption, point_text, short_load, shown_unit
 from fastpin.kernels.status import STICK
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.case import Case
@@ -23,7 +23,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.units import scaled, units
+from fastpin.model.units import printed_scale
 from fastpin.solver.result import Result
 from fastpin.states.state import State
 
@@ -38,6 +38,9 @@ HALF = 2.5
 
 LONG, SHORT = 1.45, 0.55
 """Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
+
+THICK = 0.07
+"""Half the thickness of the arc that shows a contact, in radii of the hole."""
 
 MARGIN = 1.25
 """Room for the arrows of remote stresses, in radii of the hole."""
@@ -152,10 +155,10 @@ def draw_sketch(
     panel.set_xlim(-outside - room, outside + room)
     panel.set_ylim(-outside - room, outside + room)
     if state is not None and state.in_contact:
-        statuses = dict.fromkeys([*([STICK] if state.stick else []), *(sign for *_, sign in state.slip_zones)])
-        patches = [Patch(color=LOOKS[int(status)][0], linewidth=0, label=LOOKS[int(status)][2]) for status in statuses]
+        statuses = dict.fromkeys([*([STICK] if state.stick else []), *(int(sign) for *_, sign in state.slip_zones)])
+        looks = dict.fromkeys(zone_look(problem, status) for status in statuses)
         if words:
-            sheet.legend(patches, len(patches))
+            sheet.legend([zone_patch(look) for look in looks], len(looks))
     if words:
         note = "clearance exaggerated" if problem.clearance > 0.0 else ""
         heading = f"load point {point_text(state)}" if state is not None else ""
@@ -219,13 +222,15 @@ def _middle(span: Range | None) -> float:
 
 
 def _draw_contact(panel: Axes, state: State) -> None:
-    """Draw the contact as arcs: the colours of the map of stick and slip."""
+    """Draw the contact as a thick arc, with colours and hatches of the map of stick and slip."""
     zones = [(start, stop, STICK) for start, stop in state.stick] + state.slip_zones
     for start, stop, status in zones:
         first, last = math.degrees(start), math.degrees(stop)
+        colour, hatch, _ = zone_look(state.problem, int(status))
         panel.add_patch(
-            Arc((0.0, 0.0), 2.0, 2.0, theta1=first, theta2=last, color=LOOKS[int(status)][0], linewidth=4.0, zorder=5)
-        )
+            Wedge((0.0, 0.0), 1.0 + THICK, first, last, width=2.0 * THICK, facecolor=colour, hatch=hatch,
+                  edgecolor="0.25", linewidth=0.0, zorder=5)
+        )  # fmt: skip
 
 
 def _scale(ranges: Mapping[str, Range], outside: float, largest: float) -> Scale:
@@ -259,12 +264,11 @@ def _size(span: Range) -> float:
 
 def _words(problem: Problem, name: str, span: Range) -> str:
     """The value of a load, or the range of its values, with the unit."""
-    unit = units(problem)[LOAD_KIND[name]]
     if span[0] == span[1]:
-        return f"{name} = {short(span[0], unit)}"
-    factor, _ = scaled(list(span), unit)
+        return f"{name} = {short_load(problem, name, span[0])}"
+    factor, unit = printed_scale(problem, LOAD_KIND[name], span)
     low, high = (f"{factor * value:.3g}".replace("-", "−") for value in span)
-    return f"{name}: {low} to {high}{short(1.0 / factor, unit).lstrip('1')}"
+    return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
 
 def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) -> None:

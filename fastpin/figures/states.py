@@ -40,6 +40,8 @@ NEARLY_ROUND = 340.0
 FINEST = 0.5
 """Largest distance of the points of a drawn curve, degrees."""
 
+SAME = 1e-3
+"""Difference of two states, in parts of the largest tractions, below which one line shows both: it is 0.1 points."""
 
 LONG_ENTRY = 32
 """Characters of an entry of the legend beyond which two columns of entries would need letters too small to read."""
@@ -65,7 +67,7 @@ class DrawnStates(list[State]):
             return ""
         points = list(map(point_text, self))
         named = ", ".join(points) if len(points) <= MAX_NAMED else f"{points[0]} to {points[-1]}"
-        return f"{len(self)} of {self.total:,} states: load points {named}"
+        return f"{len(self)} of {self.total:,} states: load point{'s' if len(self) > 1 else ''} {named}"
 
 
 def drawn_states(
@@ -216,6 +218,7 @@ class Frame:
                 points[:, 0] += 360.0 * round((0.5 * sum(self.limits) - middle) / 360.0)
             parts += [points, gap]
         angle, pressure, shear = np.concatenate(parts[:-1] if len(parts) > 1 else parts).T
+        pressure = without_rounding(pressure)
         most = state.problem.friction * pressure  # fits and cubics may pass the bound by some 0.5 % of the peak
         shear = np.clip(shear, -most, most)
         return angle, pressure, without_rounding(shear, float(np.nanmax(pressure, initial=0.0)))
@@ -278,9 +281,11 @@ def name_states(sheet: Sheet, states: DrawnStates, heading: Sequence[str], style
     text = caption(states[0].problem, states)
     sheet.head(*heading, ",  ".join(loads), caption=f"{text}; {note}" if note else text)
     handles: list[Artist] = []
-    for index, (state, style) in enumerate(zip(states, state_lines(states), strict=True)):
-        parts = ",  ".join(load_text(states, index, name) for name in differing)
-        handles.append(Line2D([], [], label=f"{point_text(state)}:  {parts}" if parts else point_text(state), **style))
+    twins, lines = first_twins(states), state_lines(states)
+    for first in dict.fromkeys(twins):
+        points = ", ".join(point_text(state) for state, twin in zip(states, twins, strict=True) if twin == first)
+        parts = ",  ".join(load_text(states, first, name) for name in differing)
+        handles.append(Line2D([], [], label=f"{points}:  {parts}" if parts else points, **lines[first]))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
     title = ("load point:  loads there" if differing else "load point") if len(states) > 1 else ""
     sheet.legend(handles, columns, title)
@@ -302,5 +307,28 @@ def _in_columns(states: list[Artist], styles: list[Artist]) -> tuple[list[Artist
 
 
 def state_lines(states: Sequence[State]) -> list[Line]:
-    """Return the style of each state's line: a colour and dashes of its own."""
-    return [line(k, k, 1.3) for k in range(len(states))]
+    """Return the style of each state's line: colour and dashes of its own, or those of an equal state before it."""
+    return [line(twin, twin, 1.3) for twin in first_twins(states)]
+
+
+def first_twins(states: Sequence[State]) -> list[int]:
+    """Return for each state the place of the first state with the same loads and tractions, up to :data:`SAME`.
+
+    The ends of a steady cycle are such states. With lines of their own one would hide the other.
+    """
+    twins: list[int] = []
+    for place, state in enumerate(states):
+        equal = (k for k in dict.fromkeys(twins) if _is_twin(states[k], state))
+        twins.append(next(equal, place))
+    return twins
+
+
+def _is_twin(one: State, other: State) -> bool:
+    """Whether two states have the same loads, and tractions whose lines can't be told apart."""
+    pair = [one, other]
+    if any(load_text(pair, 0, name) != load_text(pair, 1, name) for name in loads_by_change(pair)[1]):
+        return False
+    peak = max(one.peak_pressure, other.peak_pressure)
+    pressure = float(np.abs(one.pressure - other.pressure).max())
+    shear = float(np.abs(one.shear - other.shear).max())
+    return pressure <= SAME * peak and shear <= SAME * one.problem.friction * peak

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import DrawnStates, Frame, drawn_states
 from fastpin.figures.style import line
-from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short
+from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
-from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import units
+from fastpin.model.problem import Problem
 from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -29,15 +27,27 @@ from fastpin.states.state import State
 MOST_COLUMNS = 200
 """Most states in a map. A column is then half a millimetre wide on paper."""
 
-LOOKS = {
+ZoneLook = tuple[str, str, str]
+"""Colour, hatch and words of a zone."""
+
+LOOKS: dict[int, ZoneLook] = {
     STICK: ("#0B3C5D", "", "sticks"),
     SLIP_POSITIVE: ("#F2A541", "////", "pin slips counter-clockwise"),
     SLIP_NEGATIVE: ("#A8D8F0", "\\\\\\\\", "pin slips clockwise"),
 }
-"""By status: colour, hatch and words. The hatches tell the two directions apart without colour."""
+"""The look of a zone by its status. The hatches tell the two directions apart without colour."""
+
+FRICTIONLESS = ("#A6A6A6", "", "slips without friction")
+"""The look of a contact without friction. Its status tells no direction."""
 
 MARKS = {SLIP_POSITIVE: "^", SLIP_NEGATIVE: "v"}
 """Marks of slip zones that are too narrow to be seen; they point along the slip of the pin."""
+
+_MARK: dict[str, Any] = {
+    "linestyle": "none", "markersize": 5.5, "markerfacecolor": "white", "markeredgecolor": "black",
+    "markeredgewidth": 0.8, "clip_on": False,
+}  # fmt: skip
+"""Style of the marks: white with a black edge, which is seen on dark and on white."""
 
 NARROW = 0.015
 """Width of a zone, in parts of the axis of angles, below which it gets a mark."""
@@ -101,6 +111,11 @@ def zone_boxes(states: Sequence[State], frame: Frame | None = None) -> Iterator[
                 yield ZoneBox(point, left, right, first, first + length, int(status))
 
 
+def zone_look(problem: Problem, status: int) -> ZoneLook:
+    """Colour, hatch and words of a zone of this status."""
+    return FRICTIONLESS if problem.frictionless else LOOKS[status]
+
+
 def column_ends(points: np.ndarray) -> np.ndarray:
     """The sides of all columns, shape (k + 1,): halfway between the load points, and as far beyond the outer ones."""
     if points.size == 1:
@@ -116,8 +131,9 @@ def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
     panel, frame = sheet.axes[-1, 0], Frame(states)
     boxes = list(zone_boxes(states, frame))
     present = [status for status in LOOKS if any(box.status == status for box in boxes)]
+    problem = states[0].problem
     for status in present:
-        colour, hatch, _ = LOOKS[status]
+        colour, hatch, _ = zone_look(problem, status)
         corners = [_corners(box) for box in boxes if box.status == status]
         panel.add_collection(
             PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
@@ -125,23 +141,24 @@ def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
         if hatch:
             shape = PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch)
             panel.add_collection(shape)
-    marked = _draw_marks(panel, boxes, len(states), frame.limits)
+    marked = not problem.frictionless and _draw_marks(panel, boxes, len(states), frame.limits)
     panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
     frame.scale(panel, upright=True)
     panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
     panel.set_xlabel(LOAD_POINT)
     panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     if differing:
         _draw_loads(sheet.axes[0, 0], states, differing)
         sheet.axes[0, 0].tick_params(labelbottom=False)
     sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
     note = f"; {len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
-    text = caption(states[0].problem, states)
+    text = caption(problem, states)
     sheet.head(look.title, ",  ".join(load_text(states, 0, name) for name in common), caption=f"{text}{note}")
-    handles = [_patch(status) for status in present]
+    handles: list[Patch | Line2D] = [zone_patch(zone_look(problem, status)) for status in present]
     handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label="open"))
     if marked:
-        handles.append(Line2D([], [], linestyle="none", marker="^", markersize=4.0, color="black", label="narrow slip"))
+        handles.append(Line2D([], [], label="narrow slip zone", **(_MARK | {"marker": "^"})))
     sheet.legend(handles, len(handles))
     return sheet
 
@@ -150,8 +167,9 @@ def _corners(box: ZoneBox) -> list[tuple[float, float]]:
     return [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)]
 
 
-def _patch(status: int) -> Artist:
-    colour, hatch, words = LOOKS[status]
+def zone_patch(look: ZoneLook) -> Patch:
+    """Return the entry of the legend for a look of :func:`zone_look`."""
+    colour, hatch, words = look
     return Patch(facecolor=colour, edgecolor="0.25", linewidth=0.0, hatch=hatch, label=words)
 
 
@@ -165,21 +183,21 @@ def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tup
         mine = [box for box in narrow if box.status == status]
         if mine:
             panel.plot(
-                [box.point for box in mine], [0.5 * (box.start + box.stop) for box in mine], linestyle="none",
-                marker=mark, markersize=4.0, color="black", markeredgecolor="white", markeredgewidth=0.4,
-            )  # fmt: skip
+                [box.point for box in mine],
+                [0.5 * (box.start + box.stop) for box in mine],
+                **(_MARK | {"marker": mark}),
+            )
     return bool(narrow)
 
 
 def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str]) -> None:
     """Draw the loads that change, each over its largest value. The legend names these values."""
     points = [load_point(state) for state in states]
-    unit = units(states[0].problem)
     for k, name in enumerate(names):
         values = np.array([state.load[name] for state in states])
         largest = float(np.abs(values).max())
         marker = "o" if len(states) <= MOST_MARKS else ""
-        label = f"{name}, largest {short(largest, unit[LOAD_KIND[name]])}"
+        label = f"{name}, largest {short_load(states[0].problem, name, largest)}"
         panel.plot(points, values / largest, marker=marker, markersize=2.4, label=label, **line(k % 8, k % 8, 1.1))
     panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
     panel.set_ylabel("load / largest")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -12,15 +13,16 @@ from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import Normal, Stroke
 
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import DrawnStates, drawn_states, name_states, state_lines
 from fastpin.figures.style import angle_axis, line
-from fastpin.figures.words import ANGLE, caption, point_text, quantity
+from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
 from fastpin.model.bodies import Disk
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
-from fastpin.model.units import named_loads, scaled, units
+from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
@@ -101,7 +103,7 @@ def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
         angle_axis(panel)
     axes[-1, 0].set_xlabel(ANGLE)
     sheet.figure.align_ylabels(axes)
-    styles: list[Artist] = [_dot("largest", "0.4")]
+    styles: list[Artist] = [_dot("largest of each state", "0.4")]
     if open_dots:
         styles.append(_dot("largest, not resolved by the nodes", "white"))
     name_states(sheet, states, [look.title], styles)
@@ -225,23 +227,25 @@ def draw_field(state: State, curves: list[Curve], component: str, look: Look) ->
     factor, label = scaled([low, high], unit)
     signed = low < -0.02 * max(high, -low)
     levels = _levels(factor * low, factor * high)
+    beyond = "both" if factor * min(float(curve[value].min()) for curve in curves) < levels[0] else "max"
     for curve in curves:
         around = int(np.flatnonzero(np.diff(curve[distance]) != 0.0)[0]) + 1
         r, theta, z = (curve[name].reshape(-1, around) for name in (distance, angle, value))
         x, y = (r / radius * turn(np.radians(theta - 90.0)) for turn in (np.cos, np.sin))
         norm = TwoSlopeNorm(0.0, min(levels[0], -1e-12), max(levels[-1], 1e-12)) if signed else None
         colours = panel.contourf(
-            x, y, factor * z, levels=levels, norm=norm, cmap="RdBu_r" if signed else "viridis_r", extend="both"
+            x, y, factor * z, levels=levels, norm=norm, cmap="RdBu_r" if signed else "viridis_r", extend=beyond
         )
         panel.contour(x, y, factor * z, levels=levels[:: max(1, LEVELS // 5)], colors="0.25", linewidths=0.3)
-    _draw_contact(panel, state)
+    handles = _draw_contact(panel, state)
     bar = sheet.figure.colorbar(colours, ax=panel, shrink=0.85, aspect=30)
     bar.set_label(quantity(COMPONENTS[component], label))
     panel.set_aspect("equal")
-    panel.set_xlabel("x / R")
-    panel.set_ylabel("y / R")
-    heading = f"load point {point_text(state)}: {named_loads(state.problem, state.load)}"
+    panel.set_xlabel("x / radius of the hole")
+    panel.set_ylabel("y / radius of the hole")
+    heading = f"load point {point_text(state)}: {loads_text(state.problem, state.load)}"
     sheet.head(look.title, heading, caption=caption(state.problem, [state]))
+    sheet.legend(handles, max(len(handles), 1))
     return sheet
 
 
@@ -254,13 +258,23 @@ def _levels(low: float, high: float) -> np.ndarray:
     return step * np.arange(first, max(last, first + 1) + 1)
 
 
-def _draw_contact(panel: Axes, state: State) -> None:
-    """Draw the edge of the hole, and the contact as a thick line: solid where it sticks, white-cored where it slips."""
+def _draw_contact(panel: Axes, state: State) -> list[Artist]:
+    """Draw the edge of the hole, and the contact as a thick line: solid where it sticks, white-cored where it slips.
+
+    Return the entries of the legend.
+    """
+    sticks: Any = {**line(5, 0, 3.0), "solid_capstyle": "butt"}
+    slips: Any = {"color": "white", "linewidth": 1.4, "solid_capstyle": "butt"}
     turn = np.linspace(0.0, 2.0 * math.pi, 361)
     panel.plot(np.cos(turn), np.sin(turn), color="0.2", linewidth=0.6)
     for start, stop in state.contact:
         part = np.linspace(start, stop, 181)
-        panel.plot(np.cos(part), np.sin(part), **{**line(5, 0, 3.0), "solid_capstyle": "butt"})
+        panel.plot(np.cos(part), np.sin(part), **sticks)
     for start, stop, _ in state.slip_zones:
         part = np.linspace(start, stop, 91)
-        panel.plot(np.cos(part), np.sin(part), color="white", linewidth=1.4, solid_capstyle="butt")
+        panel.plot(np.cos(part), np.sin(part), **slips)
+    handles: list[Artist] = [Line2D([], [], label="contact sticks", **sticks)] if state.stick else []
+    if state.slip_zones:
+        border = [Stroke(linewidth=3.0, foreground=sticks["color"]), Normal()]
+        handles.append(Line2D([], [], label="contact slips", path_effects=border, **slips))
+    return handles

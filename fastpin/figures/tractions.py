@@ -20,7 +20,9 @@ from fastpin.figures.words import ANGLE, point_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
 from fastpin.model.units import scaled, units
+from fastpin.report.curves import Curve
 from fastpin.states.choice import StateChoice
+from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 _BESIDE = (1.02, -0.05, 0.36, 1.1)
@@ -31,8 +33,11 @@ ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
 
 _SHADE = "0.9"
 
-_PANEL, _ROW, _LEAST = 1.9, 0.19, 0.75
+_PANEL, _ROW, _LEAST = 1.9, 0.23, 0.75
 """Heights of a panel of curves and of a row of zones, inches, and of the words beside the rows."""
+
+_BAR = 0.46
+"""Height of the bars of a zone, in parts of a row. The arrows of narrow zones stand between the bars."""
 
 _STROKE: dict[str, Any] = {"arrowstyle": "-", "linewidth": 0.7, "color": "0.15", "shrinkA": 0, "shrinkB": 0}
 
@@ -144,6 +149,19 @@ def _draw_curves(axes: Sequence[Axes], states: DrawnStates, lines: Sequence[Line
         axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 
+def traction_curves(states: DrawnStates) -> list[Curve]:
+    """The drawn curves of these states, with NaN between contact zones.
+
+    Columns: the angle in degrees from the bottom, increasing, pressure and shear traction in Pa or F/R. The values
+    follow the fits at edges and borders; the nodal values are in the result.
+    """
+    unit, frame, curves = units(states[0].problem)["traction"], Frame(states), []
+    for state in states:
+        columns = zip(("angle [deg]", f"pressure [{unit}]", f"shear [{unit}]"), frame.curves(state), strict=True)
+        curves.append(Curve({"load point": load_point(state)}, dict(columns)))
+    return curves
+
+
 def _styles(states: DrawnStates) -> list[Artist]:
     """Return the entries of the legend that hold for all states."""
     styles: list[Artist] = []
@@ -174,12 +192,12 @@ def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: 
         colour = lines[row]["color"]
         for start, stop in state.stick:
             for left, width in frame.place(start, stop):
-                panel.barh(row, width, left=left, height=0.6, color=colour, linewidth=0)
+                panel.barh(row, width, left=left, height=_BAR, color=colour, linewidth=0)
         for start, stop, sign in state.slip_zones:
             for left, width in frame.place(start, stop):
-                panel.barh(row, width, left=left, height=0.6, color=colour, alpha=0.22, linewidth=0)
+                panel.barh(row, width, left=left, height=_BAR, color=colour, alpha=0.22, linewidth=0)
                 narrow = width < NARROW * (frame.limits[1] - frame.limits[0])
-                _write_arrow(panel, left + 0.5 * width, row - 0.28 * narrow, sign, panel.transData, above=narrow)
+                _write_arrow(panel, left + 0.5 * width, row - 0.5 * _BAR * narrow, sign, panel.transData, above=narrow)
     panel.set_ylim(len(states) - 0.45, -0.75)
     panel.set_yticks(range(len(states)), [point_text(state) for state in states])
     panel.tick_params(axis="y", length=0, labelsize=7.5)
@@ -190,7 +208,7 @@ def _draw_zones(panel: Axes, states: DrawnStates, lines: Sequence[Line], frame: 
 def _write_arrow(panel: Axes, x: float, y: float, sign: int, transform: Any, above: bool) -> None:
     """Write an arrow in a zone. Above a narrow zone a stroke under the arrow points at the zone."""
     panel.annotate(
-        ARROWS.get(int(sign), ""), (x, y), xycoords=transform, xytext=(0.0, 4.0 if above else 0.0),
+        ARROWS.get(int(sign), ""), (x, y), xycoords=transform, xytext=(0.0, 2.5 if above else 0.0),
         textcoords="offset points", ha="center", va="bottom" if above else "center", fontsize=7.0, color="0.15",
         arrowprops=_STROKE if above else None,
         annotation_clip=False,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.units import acting_loads, scaled, units, with_unit
+from fastpin.model.units import acting_loads, printed_scale, printed_unit, units, with_unit
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -25,8 +26,8 @@ LOAD_POINT = "load point (1: first corner of the history)"
 ROUNDING = 1e-9
 """Values below this part of the largest are rounding, as in tables. They are drawn and written as 0."""
 
-DIGITS = 3
-"""Significant digits of a parameter in a caption."""
+DIGITS, LOAD_DIGITS = 3, 5
+"""Significant digits of a parameter in a caption, and of a load in a heading."""
 
 CAPTION_SIZE = 7.2
 """Size of a caption, points."""
@@ -60,7 +61,7 @@ def point_text(state: State) -> str:
 def load_text(states: Sequence[State], index: int, name: str) -> str:
     """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
     same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = scaled(same_kind, units(states[0].problem)[LOAD_KIND[name]])
+    factor, unit = printed_scale(states[0].problem, LOAD_KIND[name], same_kind)
     load = states[index].load[name]
     if abs(load) <= ROUNDING * max(map(abs, same_kind)):
         return f"{name} = 0"
@@ -86,6 +87,8 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     if not problem.dimensionless:
         parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
         parts.append(_clearance(problem))
+    if problem.thickness is not None:
+        parts.append(f"thickness {short(problem.thickness, unit['length'])}")
     forces = [float(np.hypot(state.load["P"], state.load["Q"])) for state in states]
     parameters = sorted({f"{problem.load_parameter(force):.{DIGITS}g}": force for force in forces if force}, key=float)
     if parameters:
@@ -99,9 +102,36 @@ def wrapped(text: str, width: float, size: float = CAPTION_SIZE) -> list[str]:
     return textwrap.wrap(text, max(20, int(width / (CHARACTER * size))))
 
 
-def short(value: float, unit: str) -> str:
-    """A value with its unit as a caption shows it: rounded to :data:`DIGITS`."""
-    number, _, label = with_unit(value, unit, DIGITS).partition(" ")
+def wrapped_parts(text: str, width: float, size: float = CAPTION_SIZE) -> list[str]:
+    """As :func:`wrapped`, for a list with commas or semicolons: lines end after these where they can."""
+    most = max(20, int(width / (CHARACTER * size)))
+    rows: list[str] = []
+    for part in re.split("(?<=[,;]) ", text):
+        if rows and len(rows[-1]) + 1 + len(part) <= most:
+            rows[-1] += f" {part}"
+        else:
+            rows += wrapped(part, width, size)
+    return rows
+
+
+def short_load(problem: Problem, name: str, value: float) -> str:
+    """A load with its unit as a caption shows it; forces and moments are in N and N m if there is a thickness."""
+    factor, unit = printed_unit(problem, LOAD_KIND[name])
+    return short(factor * value, unit)
+
+
+def loads_text(problem: Problem, load: Mapping[str, float]) -> str:
+    """The loads that are not zero, with their units, as a heading shows them."""
+    parts = []
+    for name in acting_loads([load]):
+        factor, unit = printed_unit(problem, LOAD_KIND[name])
+        parts.append(f"{name} = {short(factor * load[name], unit, LOAD_DIGITS)}")
+    return ", ".join(parts) or "no load"
+
+
+def short(value: float, unit: str, digits: int = DIGITS) -> str:
+    """A value with its unit as a caption shows it, rounded to so many significant digits."""
+    number, _, label = with_unit(value, unit, digits).partition(" ")
     return f"{number.replace('-', '−')}\N{NO-BREAK SPACE}{shown_unit(label)}".strip()
 
 

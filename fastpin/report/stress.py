@@ -181,23 +181,3 @@ def field_curves(
         }
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves
-
-
-def traction_curves(states: Sequence[State]) -> list[Curve]:
-    """The nodal tractions: a curve for each state.
-
-    Columns: the angle in degrees from the bottom, increasing, pressure and shear traction in Pa or F/R.
-    """
-    unit, curves = units(states[0].problem)["traction"], []
-    angle = np.degrees(states[0].theta) + 90.0
-    if states[0].grid.closed:
-        angle = np.array([from_bottom(place) for place in states[0].theta.tolist()])
-    order = np.argsort(angle)
-    for state in states:
-        columns = {
-            "angle [deg]": angle[order],
-            f"pressure [{unit}]": state.pressure[order],
-            f"shear [{unit}]": state.shear[order],
-        }
-        curves.append(Curve({"load point": load_point(state)}, columns))
-    return curves

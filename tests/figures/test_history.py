@@ -27,7 +27,7 @@ def test_a_repeated_block_is_drawn_once_with_its_times() -> None:
     assert np.allclose(stress.get_lines()[0].get_ydata(), [0.0, 0.0, 0.0, 0.0, 10.0])  # MPa
     assert [text.get_text() for text in forces.texts] == ["× 1,000"]
     assert [tick.get_text() for tick in stress.get_xticklabels()] == ["0", "1", "2", "3", "2,002"]
-    assert forces.get_ylabel() == "P, Q (MN/m)"
+    assert forces.get_ylabel() == "force P, Q (MN/m)"
 
 
 def test_a_history_without_loads_has_an_axis() -> None:

@@ -14,7 +14,7 @@ from fastpin.figures.cycles import plot_cycles
 from fastpin.figures.states import drawn_states
 from fastpin.figures.stick_slip import plot_stick_slip
 from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, spread
-from fastpin.figures.tractions import plot_tractions
+from fastpin.figures.tractions import plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
@@ -273,6 +273,28 @@ def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_equal_states_share_a_line() -> None:
+    result = sample_result([{"P": 1e6, "Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}, {"Q": 1e5}])
+    for name in ("pressure", "shear", "status"):
+        getattr(result[2], name)[:] = getattr(result[0], name)
+    figure = plot_tractions(result)
+    assert labels(figure)[:3] == ["1, 3:  Q = +0.1 MN/m", "2:  Q = −0.1 MN/m", "4:  Q = +0.1 MN/m"]
+    colours = [line.get_color() for line in figure.axes[0].lines]
+    assert colours == [COLOURS[k] for k in (0, 1, 0, 3)]
+    result[2].pressure[40] += 2e-3 * 1e8
+    assert labels(plot_tractions(result))[0] == "1:  Q = +0.1 MN/m"
+
+
+def test_numbers_of_tractions_are_the_drawn_curves() -> None:
+    states = drawn_states(sample_result())
+    panel = plot_tractions(states).axes[0]
+    for curve, line in zip(traction_curves(states), curves(panel), strict=True):
+        assert np.array_equal(curve["angle [deg]"], line[:, 0], equal_nan=True)
+        assert np.allclose(curve["pressure [Pa]"], 1e6 * line[:, 1], equal_nan=True)
+        assert curve["pressure [Pa]"][[0, -1]].tolist() == [0.0, 0.0]
+    assert [curve.parameters["load point"] for curve in traction_curves(states)] == [1.0, 2.0, 3.0]
+
+
 def with_cycles(*cycles: Cycle) -> Result:
     result = sample_result()
     fields = [getattr(result, name) for name in ("problem", "history", "grid", "method")]
@@ -320,11 +342,24 @@ def test_later_blocks_of_cycles_go_on_turning_where_earlier_ones_ended() -> None
     assert "periodic from here" in labels(figure)
 
 
+def test_a_block_with_cycles_of_another_length_goes_on_turning_too() -> None:
+    first = [Cycle(k, 2, k // 2, 0.1, 0.1, 1.0, 1e-6, True) for k in (3, 5)]
+    second = [Cycle(k, 3, k // 3 - 1, 0.0, 0.0, 1.0, -1e-6, True) for k in (8, 11)]
+    around = [Cycle(11, 10, 1, 0.1, 0.1, 9.0, 5e-6, True)]
+    drawn = plot_cycles(with_cycles(*first, *second, *around)).axes[2].lines
+    turned = {tuple(line.get_xdata()): list(line.get_ydata()) for line in drawn}
+    assert turned[2, 4, 6] == pytest.approx([0.0, 1.0, 2.0])
+    assert turned[6, 9, 12] == pytest.approx([2.0, 1.0, 0.0])
+    assert turned[2, 12] == pytest.approx([0.0, 5.0])
+
+
 def test_long_histories_have_a_logarithmic_axis_of_corners() -> None:
     cycles = [Cycle(2 * k, 2, k, 10.0**-k, 10.0**-k, 1.0, 0.0, True) for k in range(1, 200)]
     change = plot_cycles(with_cycles(*cycles)).axes[0]
     assert change.get_xscale() == "log"
     assert change.get_ylim()[0] == pytest.approx(1e-10)  # below 1e-9 of the largest all is rounding
+    second = [Cycle(400 + 3 * k, 3, k, 0.1, 0.1, 1.0, 0.0, True) for k in range(1, 5)]
+    assert plot_cycles(with_cycles(*cycles, *second)).axes[0].get_xscale() == "linear"
 
 
 def test_a_remote_stress_has_one_name_in_title_and_legend() -> None:

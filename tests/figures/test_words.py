@@ -5,8 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, Material, MaterialPair, Problem
-from fastpin.figures.words import caption, load_text, loads_by_change, quantity, short, without_rounding, wrapped
+from fastpin import MATERIALS, LoadHistory, Material, MaterialPair, Problem, figures
+from fastpin.figures.words import (
+    caption,
+    load_text,
+    loads_by_change,
+    loads_text,
+    quantity,
+    short,
+    without_rounding,
+    wrapped,
+    wrapped_parts,
+)
 from fastpin.model import Bushing, Plate, Ring, Tube
 from tests.support.samples import sample_result
 
@@ -79,3 +89,23 @@ def test_rounding_is_zero():
     states = sample_result([{"P": 1e6, "Q": 1e-5}, {"P": 1e6, "Q": 2e5}])
     assert load_text(states, 0, "Q") == "Q = 0"
     assert loads_by_change(states) == (["P"], ["Q"])
+
+
+def test_forces_of_a_thick_plate_are_in_newtons():
+    problem = Problem(PAIR, 0.01, 2e-5, 0.3, thickness=5e-3)
+    result = sample_result(problem=problem)
+    assert load_text(result, 1, "Q") == "Q = +2.42 kN"
+    assert plain(loads_text(problem, result[1].load)) == "P = 12.1 kN, Q = 2.42 kN"
+    assert "thickness 5 mm" in plain(caption(problem))
+    history = figures.plot_history(problem, LoadHistory([{"P": 1e6}]))
+    assert history.axes[0].get_ylabel() == "force P (kN)"
+    words = [text.get_text() for text in figures.plot_sketch(result[1]).axes[0].texts]
+    assert list(map(plain, words)) == ["P = 12.1 kN", "Q = 2.42 kN"]
+
+
+def test_lines_of_a_caption_end_after_commas():
+    rows = wrapped_parts("pin: steel; plate: E = 69 GPa, ν = 0.33; friction coefficient 0.4, hole radius 10 mm", 1.9)
+    assert rows == ["pin: steel; plate: E = 69 GPa,", "ν = 0.33; friction coefficient 0.4,", "hole radius 10 mm"]
+    assert wrapped_parts("a very long part that has no comma in it at all", 1.0) == wrapped(
+        "a very long part that has no comma in it at all", 1.0
+    )
