@@ -1,0 +1,153 @@
+"""The recipes of docs/cluster.md: the page shows the files, and the files work with a stand-in for SLURM."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import stat
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+import fastpin
+from fastpin.casefile import parse_case
+from fastpin.cli.main import main
+from fastpin.cli.options import join_words, parser
+from fastpin.solver import Interrupted
+from tests.support.documents import DOCS, blocks
+from tests.support.interrupts import StopAt
+
+RECIPES = DOCS / "cluster"
+JOBS = ("sweep.sbatch", "cases.sbatch")
+
+SRUN = """#!/bin/bash
+while [[ $1 == --* ]]; do shift; done
+exec "$@"
+"""
+"""srun without its options: the command runs here."""
+
+NOTE = """#!/bin/bash
+echo "$@" >> notes
+exit ${EXIT_CODE:-0}
+"""
+"""A program that writes its arguments to a file."""
+
+FASTPIN = f"""#!/bin/bash
+exec {sys.executable} -m fastpin "$@"
+"""
+
+PLAN = "[grid]\ncontact.friction = [0.3, 0.5]\nsolve.nodes = [31]\n"
+
+CASE = """[pin]
+material = "steel"
+[plate]
+material = "aluminium"
+[contact]
+load_parameter = 0.1
+friction = 0.4
+[[load]]
+P = 1.0
+[[load]]
+Q = [0.1, -0.1]
+[solve]
+nodes = 31
+"""
+
+needs_bash = pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
+
+
+def job(
+    tmp_path: Path, name: str, arguments: Sequence[str], task: int, programs: dict[str, str], **variables: str
+) -> subprocess.CompletedProcess[str]:
+    """Run a job file as a task of an array, with these programs before all others."""
+    folder = tmp_path / "bin"
+    folder.mkdir(exist_ok=True)
+    for program, text in {"srun": SRUN, "scontrol": NOTE, **programs}.items():
+        (folder / program).write_text(text, encoding="utf-8")
+        (folder / program).chmod(stat.S_IRWXU)
+    slurm = {"SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": str(task), "SLURM_CPUS_PER_TASK": "1"}
+    environment = os.environ | slurm | variables | {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"}
+    return subprocess.run(
+        ["bash", str(RECIPES / name), *arguments],
+        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+
+
+def test_the_page_shows_the_recipes() -> None:
+    shown = [block.text for block in blocks("cluster.md") if block.kind in ("bash", "python")]
+    assert shown == [(RECIPES / name).read_text(encoding="utf-8") for name in (*JOBS, "Snakefile")]
+
+
+@needs_bash
+@pytest.mark.parametrize("name", JOBS)
+def test_bash_reads_the_jobs(name: str) -> None:
+    subprocess.run(["bash", "-n", str(RECIPES / name)], check=True)
+
+
+def test_the_command_lines_of_all_recipes_exist() -> None:
+    """With 1 in place of the values that the shell and Snakemake fill in."""
+    found = []
+    for path in sorted(RECIPES.iterdir()):
+        text = path.read_text(encoding="utf-8").replace("\\\n", " ").replace('"\n        "', "")
+        found += re.findall(r"(?:srun (?:--\S+ )?|[\"&] ?|then |else )fastpin ([^&;\n]+)", text)
+    assert len(found) == 8
+    for command in found:
+        words = re.sub(r'"?\$\{?\w+\}?"?|\{[\w.]+\}', "1", command).replace('"', "").replace(",", "").split()
+        parser().parse_args(join_words(words))
+
+
+@needs_bash
+@pytest.mark.parametrize(("code", "requeued"), [(0, False), (1, False), (130, True)])
+@pytest.mark.parametrize("name", JOBS)
+def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: str, code: int, requeued: bool) -> None:
+    (tmp_path / "cases.txt").write_text("a.toml\nb.toml\n")
+    arguments = ["plan.toml", "8"] if name == "sweep.sbatch" else ["cases.txt"]
+    fake = NOTE.replace("notes", "calls")
+    (tmp_path / "b.running.h5").touch()
+    programs = {"fastpin": fake, "scontrol": NOTE.replace("EXIT_CODE:-", "NONE:-")}
+    done = job(tmp_path, name, arguments, 2, programs, EXIT_CODE=str(code))
+    assert done.returncode == code, done.stderr
+    assert (tmp_path / "notes").exists() == requeued
+    if requeued:
+        assert (tmp_path / "notes").read_text() == "requeue 7_2\n"
+    expected = {
+        "sweep.sbatch": "sweep plan.toml --shard 2/8 --workers 1 -o parts/2\n",
+        "cases.sbatch": "resume b.running.h5\n",
+    }
+    assert (tmp_path / "calls").read_text() == expected[name]
+
+
+@needs_bash
+def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path) -> None:
+    case = parse_case(CASE)
+    with pytest.raises(Interrupted):
+        fastpin.record(
+            case.problem, case.history, tmp_path / "a.running.h5", arc=(-3.0, -0.1), nodes=61, progress=StopAt(2.0)
+        )
+    (tmp_path / "cases.txt").write_text("a.toml\n")
+    for said in ("residual", "a.h5 is finished"):
+        done = job(tmp_path, "cases.sbatch", ["cases.txt"], 1, {"fastpin": FASTPIN})
+        assert done.returncode == 0, done.stderr
+        assert said in done.stdout
+        assert fastpin.load(tmp_path / "a.h5").complete
+    assert sorted(path.name for path in tmp_path.glob("a.*")) == ["a.h5"]
+
+
+@pytest.mark.slow
+@needs_bash
+def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slow: each task starts two processes."""
+    monkeypatch.chdir(tmp_path)
+    Path("plan.toml").write_text(PLAN)
+    for task in (1, 2):
+        done = job(tmp_path, "sweep.sbatch", ["plan.toml", "2"], task, {"fastpin": FASTPIN})
+        assert done.returncode == 0, done.stderr
+        assert f"1 runs in parts/{task}: 1 done" in done.stdout
+    for block in blocks("cluster.md"):
+        for command in re.findall(r"^fastpin (.*)", block.text, re.MULTILINE) if block.kind == "console" else []:
+            assert main(command.split()) == 0
+    assert len(Path("sweep.csv").read_text().splitlines()) == 2 + 1 + 2

@@ -1,0 +1,63 @@
+"""The pages that teach: their files, commands and scripts run, and print the numbers that the pages show."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from fastpin.studies import read_plan, sweep
+from scripts import tutorial
+from scripts.inline import Inline
+from tests.support.documents import DOCS, blocks, run_page
+
+
+@pytest.fixture(autouse=True)
+def _inside_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_tutorial_runs_as_printed() -> None:
+    """Figures are left to `scripts/tutorial.py`, which draws them by the same commands."""
+    run_page("tutorial.md", lambda command: "" if command.startswith("plot") else command.partition(" --plot")[0])
+    assert Path("joint.toml").read_text() == (DOCS / "tutorial.toml").read_text()
+    assert [block.kind for block in blocks("tutorial.md")].count("text") == 8
+
+
+def test_the_tutorial_shows_the_figures_of_its_script(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tutorial, "main", lambda command: 0)
+    names = [path.name for path in tutorial.draw(DOCS / "figures")]
+    assert re.findall(r"\(figures/([\w.-]+)\)", (DOCS / "tutorial.md").read_text(encoding="utf-8")) == names
+    assert all((DOCS / "figures" / name).exists() for name in names)
+
+
+@pytest.mark.parametrize("page", ["superposition.md", "coming-from.md"])
+def test_a_page_of_scripts_prints_its_numbers(page: str) -> None:
+    run_page(page)
+
+
+def test_results_are_read_as_shown() -> None:
+    """The sweep runs in this process, and drawn figures are left out."""
+
+    def solved_here(command: str) -> str:
+        if command.startswith("sweep"):
+            summary = sweep.run(read_plan("plan.toml"), "plan", Inline(), files="--files" in command)
+            assert (summary.done, summary.unread) == (2, [])
+        return command if command.startswith("show") else ""
+
+    names = run_page("reading-results.md", solved_here)
+    assert len(names["paths"]) == 2
+
+
+def test_the_glossaries_share_no_word() -> None:
+    """A word has one home."""
+    words = [
+        set(re.findall(r"^\| ([^|]+?) \|", page_text(name), re.MULTILINE)) for name in ("glossary.md", "solver.md")
+    ]
+    assert len(words[0]) > 40
+    assert words[0] & words[1] <= {"word"}
+
+
+def page_text(name: str) -> str:
+    return (DOCS / name).read_text(encoding="utf-8")
