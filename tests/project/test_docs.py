@@ -86,7 +86,7 @@ def test_every_figure_is_shown() -> None:
 
 def test_the_plan_of_the_sweeps_can_be_run(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
-    case, plan, outcomes = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    case, plan, outcomes, *_ = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
     (tmp_path / "case.toml").write_text(case)
     assert len(parse_plan(plan, folder=tmp_path).runs) == 3 * 10 * 2 * 2
     assert "3 x 10 x 2 x 2 = 120 runs" in text

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from fastpin.casefile import parse_case
+from fastpin.model import Bushing, Ring
 from fastpin.studies import read_plan, sweep
+from fastpin.studies.plan import parse_plan
 from scripts import tutorial
 from scripts.inline import Inline
 from tests.support.documents import DOCS, blocks, run_page
@@ -32,7 +35,7 @@ def test_the_tutorial_shows_the_figures_of_its_script(monkeypatch: pytest.Monkey
     assert all((DOCS / "figures" / name).exists() for name in names)
 
 
-@pytest.mark.parametrize("page", ["superposition.md", "coming-from.md"])
+@pytest.mark.parametrize("page", ["superposition.md", "coming-from.md", "interference.md"])
 def test_a_page_of_scripts_prints_its_numbers(page: str) -> None:
     run_page(page)
 
@@ -48,6 +51,28 @@ def test_results_are_read_as_shown() -> None:
 
     names = run_page("reading-results.md", solved_here)
     assert len(names["paths"]) == 2
+
+
+def test_the_map_of_slip_regimes_is_a_plan() -> None:
+    for block in blocks("sweeps.md"):
+        if block.file is not None:
+            Path(block.file).write_text(block.text, encoding="utf-8")
+    whole = read_plan("regimes.toml")
+    assert len(whole.runs) == 120
+    text = re.sub(r"\{ from = 0.1.*\}", "[0.1, 1.0]", whole.text)
+    text = re.sub(r"\{ from = 5e4.*\}", "[5e4, 6e5]\nsolve.nodes = [41]", text)
+    few = parse_plan(text, folder=Path.cwd())
+    assert sweep.run(few, "out", Inline()).done == 4
+    found = {(row["contact.friction"], row["load.2.amplitude.Q"]): row["regime"] for row in sweep.rows(few, "out")}
+    assert found == {(0.1, 5e4): 1, (0.1, 6e5): 2, (1.0, 5e4): 0, (1.0, 6e5): 1}
+
+
+def test_every_case_of_bodies_is_read() -> None:
+    """The second one has a bush in a ring."""
+    ring, bush = (parse_case(block.text).problem.plate_body for block in blocks("bodies.md") if block.kind == "toml")
+    assert isinstance(ring, Ring)
+    assert isinstance(bush, Bushing)
+    assert isinstance(bush.inside, Ring)
 
 
 def test_the_glossaries_share_no_word() -> None:
