@@ -182,6 +182,10 @@ class Index:
         with self._as_input_error():
             return _text(name, value)
 
+    def holds_plan(self) -> bool:
+        """Whether a plan or a part has been written to the index. A process may be killed before its first one."""
+        return self.read_note("version") is not None
+
     def statuses(self) -> dict[str, tuple[str, str | None]]:
         """Read status ("waiting", "done", "failed") and reason of a failure, by id."""
         with self._as_input_error():

@@ -399,7 +399,8 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
         ensure_directory(target / FOLDER)
         for source in parts:
             with Index(source) as other:
-                _absorb(index, other, target, source)
+                if other.holds_plan():
+                    _absorb(index, other, target, source)
         return len(index.statuses())
 
 
@@ -409,6 +410,8 @@ def _check_parts(parts: Sequence[Path]) -> None:
     done: dict[str, dict[str, Any]] = {}
     for part in parts:
         with Index(part) as index:
+            if not index.holds_plan():
+                continue
             for name, words in (
                 ("version", "was made by another version of fastpin"),
                 ("plan", "belongs to another plan"),

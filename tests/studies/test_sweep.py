@@ -486,6 +486,20 @@ def test_other_plans_and_versions_are_not_merged(
         sweep.merge([swept[0], copy], tmp_path / "whole")
 
 
+def test_a_merge_and_a_part_that_were_killed_at_their_beginning_do_no_harm(
+    swept: tuple[Path, Summary], tmp_path: Path
+) -> None:
+    for name in ("whole", "part"):
+        (tmp_path / name).mkdir()
+        with sweep.Index(tmp_path / name, create=True):
+            pass
+    assert sweep.merge([tmp_path / "part", swept[0], tmp_path / "part"], tmp_path / "whole") == len(
+        sweep.load(swept[0])
+    )
+    assert sweep.load(tmp_path / "whole") == sweep.load(swept[0])
+    assert (tmp_path / "whole" / "plan.toml").read_text() == (swept[0] / "plan.toml").read_text()
+
+
 def test_merging_needs_sweeps(copy: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no sweep"):
         sweep.merge([tmp_path], tmp_path / "whole")
