@@ -72,6 +72,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_sweep(commands)
     add_compliance(commands)
     add_paper(commands)
+    add_benchmarks(commands)
     add_verify(commands)
     add_completion(commands)
     return root, commands.choices
@@ -350,6 +351,25 @@ def add_paper(commands: Any) -> None:
     paper.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="directory of the files (default: this one)"
     )
+
+
+def add_benchmarks(commands: Any) -> None:
+    """Add ``benchmarks``."""
+    benchmarks = _command(commands, "benchmarks", "benchmarks", "run", "compare with problems that others publish")
+    benchmarks.add_argument(
+        "names", metavar="NAME", nargs="*", help="names of benchmarks, see --list; without one: all of them"
+    )
+    benchmarks.add_argument("--list", action="store_true", help="print the names and titles of the benchmarks")
+    benchmarks.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="also write the numbers as CSV, and figures, to this directory"
+    )
+    benchmarks.add_argument(
+        "--format",
+        metavar="FORMAT",
+        action="append",
+        help="of -o: png, pdf or svg (repeat the option for several formats; default: png)",
+    )
+    _add_json(benchmarks, "write the numbers as JSON")
 
 
 def add_verify(commands: Any) -> None:

@@ -28,7 +28,8 @@ RANKS = {
     "paper": 10,
     "pages": 10,
     "live": 10,
-    "cli": 11,
+    "benchmarks": 11,
+    "cli": 12,
 }
 """Every folder and its rank. A file imports from its own folder and from lower ranks."""
 
@@ -39,7 +40,7 @@ HOMES = {
     "numba": ("kernels",),
     "llvmlite": ("kernels",),
     "ctypes": ("kernels",),
-    "matplotlib": ("figures", "paper"),
+    "matplotlib": ("figures", "paper", "benchmarks"),
     "h5py": ("storage",),
     "tomllib": ("casefile",),
     "sqlite3": ("storage", "studies"),

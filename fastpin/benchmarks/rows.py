@@ -1,0 +1,72 @@
+"""The rows of a benchmark: a published number as printed, fastpin's number, and what follows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from fastpin.report.curves import Curve
+
+AGREES = "agrees to the digits printed"
+"""The verdict on a number that differs by at most one unit of the last digit printed."""
+
+WORDS = ("differs", "open", "comparison only", "misprint")
+"""Words that begin the verdict on other numbers."""
+
+ROUNDING = 1e-9
+"""Part of the last digit by which a difference may exceed it: the difference of two decimal numbers is rounded."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity of a benchmark.
+
+    Attributes
+    ----------
+    quantity, unit : str
+    published : str
+        The number as printed; empty if no number was seen.
+    ours : float
+        fastpin's number, in `unit`.
+    why : str
+        What is said if the numbers differ. It begins with one of :data:`WORDS`.
+    last_digit : float, optional
+        A unit of the last digit of the published number, where it is not a decimal one.
+    """
+
+    quantity: str
+    unit: str
+    published: str
+    ours: float
+    why: str = "differs"
+    last_digit: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """fastpin's number minus the published one; None if there is none."""
+        return self.ours - float(self.published) if self.published else None
+
+    @property
+    def resolution(self) -> float:
+        """A unit of the last digit printed."""
+        if self.last_digit is not None:
+            return self.last_digit
+        return 10.0 ** -len(self.published.partition(".")[2])
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the numbers differ by at most one unit of the last digit printed."""
+        return self.difference is not None and abs(self.difference) <= (1.0 + ROUNDING) * self.resolution
+
+    @property
+    def verdict(self) -> str:
+        """What follows from the difference, in words."""
+        return AGREES if self.agrees else self.why
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The rows of a benchmark, and the curves of its figure, which may be none."""
+
+    rows: Sequence[Row]
+    curves: Sequence[Curve] = field(default=(), repr=False)

@@ -1,0 +1,66 @@
+"""``fastpin benchmarks``: published problems beside fastpin's numbers."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import Any
+
+from fastpin import report
+from fastpin.benchmarks import catalog, text
+from fastpin.cli.progress import Bar
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, write_files, write_text
+from fastpin.errors import InputError
+from fastpin.version import __version__
+
+
+def run(options: argparse.Namespace) -> int:
+    """Solve the benchmarks, print their tables, and write their files."""
+    if options.list:
+        width = max(map(len, catalog.NAMES))
+        print("\n".join(f"{name:<{width}}  {title}" for name, title in catalog.titles()))
+        return EXIT_OK
+    names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.NAMES))
+    formats = list(dict.fromkeys(options.format or ("png",)))
+    if options.output is not None:
+        try:
+            catalog.check(names, options.output, formats)
+        except InputError as error:
+            raise InputError(f"--{error.field}", error.reason) from None
+    elif options.format:
+        raise InputError("--format", "has a meaning with -o only")
+    check_outputs({"--json": options.json}, None)
+    documents: dict[str, Any] = {}
+    try:
+        with Bar(len(names), "benchmark {desc}") as progress_bar:
+            for name in names:
+                progress_bar.describe(name)
+
+                def progress(part: float) -> None:
+                    progress_bar.update(len(documents) + part - progress_bar.n)
+
+                chosen = catalog.benchmark(name)
+                outcome = chosen.compute(progress)
+                documents[name] = text.document(outcome.rows)
+                if options.json != "-":
+                    shown = text.table(chosen.TITLE, chosen.STATEMENT, chosen.SOURCES, outcome.rows)
+                    progress_bar.write(f"{name}: {shown}\n", file=sys.stdout)
+                if options.output is not None:
+                    files = catalog.write(name, outcome, options.output, formats)
+                    to = sys.stderr if options.json == "-" else sys.stdout
+                    progress_bar.write(f"{name}: {', '.join(map(str, files))}\n", file=to)
+    except KeyboardInterrupt:
+        finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
+        return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)
+    return EXIT_OK if options.json is None else _write_json(documents, options.json)
+
+
+def _write_json(documents: dict[str, Any], path: str) -> int:
+    """Write or print the rows of all benchmarks."""
+    document = {"fastpin": __version__, "benchmarks": documents}
+    words = json.dumps(report.summary.json_ready(document), indent=2, allow_nan=False) + "\n"
+    if path == "-":
+        sys.stdout.write(words)
+        return EXIT_OK
+    return write_files([(path, lambda file: write_text(file, words))])
