@@ -33,6 +33,7 @@ extensions = [
     "sphinx-mathjax-offline",
     "sphinx_gallery.gen_gallery",
     "generated_text",
+    "no_network",
     "package_names",
 ]
 exclude_patterns = ["extensions", "gallery", "joss", "static"]

@@ -6,6 +6,7 @@ that takes its place. Headings of the text work as if they stood in the page.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -51,24 +52,45 @@ PARTS: dict[str, Callable[..., str]] = {
 """Names of generated texts, and the functions that return them."""
 
 
-PAGES = {name: f"docs/project/{name.lower()}" for name in ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")}
-"""Files at the top level that are pages of the site."""
+PAGES = {
+    "README.md": "docs/index.md",
+    "CONTRIBUTING.md": "docs/project/contributing.md",
+    "CHANGELOG.md": "docs/project/changelog.md",
+    "SECURITY.md": "docs/project/security.md",
+}
+"""Files at the top level, and the pages of the site that show them."""
+
+LINK = re.compile(r"\]\((?![a-z]+:|#)([^)\s#]+)")
+"""The beginning of a link to a file."""
 
 
 def insert(app: Any, page: str, source: list[str]) -> None:
-    """Replace the marks of a page by their texts."""
+    """Replace the marks of a page by their texts, and make its links those of the site."""
+    folder = Path("docs", page).parent
+    if not (ROOT / "docs" / f"{page}.md").exists():  # a page of the gallery
+        return
 
-    def inserted(found: re.Match[str]) -> str:
-        text = PARTS[found[1]](*filter(None, [found[2]]))
-        return re.sub(r"\]\((?![a-z]+:|#)([^)\s#]+)", moved, text)
+    def seen_from_page(target: str) -> str:
+        return f"]({os.path.relpath(PAGES.get(target, target), folder)}"
 
-    def moved(link: re.Match[str]) -> str:
-        """A link of the top level, as seen from the page."""
-        target = PAGES.get(link[1], link[1])
-        up = "../" * page.count("/")
-        return f"]({up}{target.removeprefix('docs/')}" if target.startswith("docs/") else f"]({up}../{target}"
+    def inserted(mark: re.Match[str]) -> str:
+        """A text whose links start at the top level."""
+        return LINK.sub(lambda link: seen_from_page(link[1]), PARTS[mark[1]](*filter(None, [mark[2]])))
 
-    source[0] = polished(MARK.sub(inserted, source[0]))
+    def mapped(link: re.Match[str]) -> str:
+        """A link of the page. Links to files at the top level lead to their pages."""
+        target = os.path.normpath(folder / link[1])
+        return seen_from_page(target) if target in PAGES else link[0]
+
+    text = LINK.sub(mapped, MARK.sub(inserted, source[0]))
+    source[0] = polished(text + neighbours(page, text))
+
+
+def neighbours(page: str, text: str) -> str:
+    """The table of contents that a page named "index" of a folder lacks: all other pages of the folder."""
+    if not page.endswith("/index") or "{toctree}" in text:
+        return ""
+    return "\n\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
 
 
 def polished(text: str) -> str:
