@@ -38,6 +38,8 @@ extensions = [
 ]
 exclude_patterns = ["extensions", "gallery", "joss", "static"]
 nitpicky = True
+# Two dashes are the beginning of an option, and quotes are those of a value.
+smartquotes = False
 # Words of types, such as "theta", may be the names of several attributes.
 suppress_warnings = ["ref.python"]
 today_fmt = "%Y-%m-%d"
@@ -65,6 +67,7 @@ toc_object_entries_show_parents = "hide"
 # -- the gallery -----------------------------------------------------------------------------------------------
 
 sphinx_gallery_conf = {
+    "image_scrapers": ("figure_scraper.scrape",),
     "examples_dirs": "gallery",
     "gallery_dirs": "examples",
     "filename_pattern": r"\.py$",

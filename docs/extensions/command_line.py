@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from fastpin.cli.options import EXIT_CODES, parser
 
-WIDE = 100
+WIDE = 84
 """Columns of a usage line; wider lines are cut by narrow windows."""
 
 

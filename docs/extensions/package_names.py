@@ -111,8 +111,21 @@ def escape_symbols(app: Any, what: str, name: str, obj: Any, options: Any, lines
         lines[place] = "".join(parts)
 
 
+def part_remarks(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Part the remarks behind the last section from the section: napoleon would take them for one more error."""
+    inside, place = False, 0
+    while place < len(lines):
+        if re.fullmatch(r"-{3,}", lines[place]):
+            inside = lines[place - 1] in ("Raises", "Returns")
+        elif inside and not lines[place - 1] and re.match(r"[A-Z`:](?:\S* ){4}", lines[place]):
+            lines[place:place] = ["Notes", "-----"]
+            inside = False
+        place += 1
+
+
 def setup(app: Any) -> dict[str, Any]:
     app.connect("missing-reference", resolve)
     # Before napoleon, which makes fields of the sections.
+    app.connect("autodoc-process-docstring", part_remarks, priority=300)
     app.connect("autodoc-process-docstring", escape_symbols, priority=400)
     return {"parallel_read_safe": True}

@@ -2,8 +2,8 @@
 The moment at which a pin begins to spin
 ========================================
 
-A session goes from load to load and keeps its matrices, so each step takes a few milliseconds. Here a bisection finds
-the largest moment that friction can carry.
+A session goes from load to load and keeps its matrices, so each step takes a few milliseconds. Here ever smaller steps
+lead to the largest moment that friction can carry.
 """
 
 import matplotlib.pyplot as plt
@@ -16,17 +16,16 @@ problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.3
 session = fastpin.Session(problem, nodes=201)
 session.advance({"P": 1e6})
 
+carried, step = 0.0, 200.0
 moments, sticking = [], []
-carried, lost = 0.0, 1e4
-while lost - carried > 1.0:
-    moment = 0.5 * (carried + lost)
+while step > 0.5:
     try:
-        state = session.advance({"M": moment})
-    except fastpin.SolveError:
-        lost = moment
+        state = session.advance({"M": carried + step})
+    except fastpin.NoEquilibriumError:
+        step *= 0.5
     else:
-        carried = moment
-        moments.append(moment)
+        carried += step
+        moments.append(carried / 1e3)
         sticking.append(np.degrees(sum(stop - start for start, stop in state.stick)))
 
 # %%
@@ -37,5 +36,5 @@ print(f"the pin spins at {carried / 1e3:.2f} kN; friction can carry {bound / 1e3
 assert carried <= bound < 1.05 * carried
 
 figure, axes = plt.subplots(figsize=(6.0, 3.5), layout="constrained")
-axes.plot(np.array(moments) / 1e3, sticking, "o")
+axes.plot(moments, sticking, "o-")
 axes.set(xlabel="moment (kN)", ylabel="sticking angle (deg)")
