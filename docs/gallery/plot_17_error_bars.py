@@ -11,7 +11,7 @@ import fastpin
 pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
 problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4)
 loads = [{"P": 2.0e6}, {"Q": 5e5}]
-study = fastpin.converge(problem, loads, nodes=[101, 201, 401])
+study = fastpin.converge(problem, loads, nodes=[101, 201, 401, 801])
 
 # %%
 # One run can also bring its own error bars.
