@@ -1,0 +1,238 @@
+"""Every code block of README, CONTRIBUTING and docs/ runs or is checked.
+
+* Blocks of Python run, a page after the other, with the names and files that the page speaks of. Pages whose output is
+  compared too have a test of their own, named in :data:`ELSEWHERE`.
+* Blocks of TOML have known sections and keys only.
+* Commands of fastpin have options that exist. Other commands name files that exist. Scripts of a shell can be parsed.
+* Queries run on a small sweep.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import sqlite3
+import subprocess
+import sys
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin.casefile import EXAMPLE, LUG_EXAMPLE, builtin_case, parse_lug
+from fastpin.casefile.lug import LUG_KEYS
+from fastpin.casefile.material_files import FILE_KEYS
+from fastpin.casefile.reader import KEYS, ROOT_KEYS
+from fastpin.cli.options import join_words, parser
+from fastpin.elasticity import plate_compliance
+from fastpin.studies import parse_plan, sweep
+from scripts.inline import Inline
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+CHECKED = ("python", "toml", "console", "sh", "bash", "sql", "text", "math")
+"""Languages of blocks. Texts are output, which the tests of ELSEWHERE compare; formulas are drawn by the site."""
+
+ELSEWHERE = {
+    "README.md": "test_readme.py",
+    "fatigue.md": "test_docs.py",
+    "figures.md": "test_docs.py",
+    "sessions.md": "test_docs.py",
+    "riveted-joint.md": "test_docs.py",
+    "tutorial.md": "test_teaching_pages.py",
+    "cluster.md": "test_cluster_recipes.py",
+    "coming-from.md": "test_teaching_pages.py",
+    "reading-results.md": "test_teaching_pages.py",
+    "superposition.md": "test_teaching_pages.py",
+}
+"""Pages whose blocks of Python run in another test of this folder, as some of them may come later."""
+
+LONG = ("convergence.md", "compliance.md", "histories.md", "report.md")
+"""Pages whose blocks of Python take more than a few seconds."""
+
+PLAN_KEYS = {"title", "case", "grid", "list", "outcomes"}
+"""Keys of a plan, as docs/reference/plan-file.md lists them."""
+
+PROGRAMS = ("pip", "source", "ssh", "sbatch", "squeue", "snakemake", "module", "mkdir", "cd")
+"""Programs of others, in commands that can't be checked here."""
+
+
+def blocks(page: Path, *languages: str) -> list[str]:
+    """The code blocks of a page in some languages."""
+    found = re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    return [text for language, text in found if language in languages]
+
+
+def with_blocks(*languages: str) -> list[Any]:
+    """The pages that have blocks in some languages, as parameters."""
+    pages = [page for page in PAGES if blocks(page, *languages)]
+    assert pages, languages
+    return [pytest.param(page, id=page.name) for page in pages]
+
+
+def here() -> list[Any]:
+    """The pages whose Python runs in this file, as parameters."""
+    pages = [page for page in PAGES if blocks(page, "python") and page.name not in ELSEWHERE]
+    slow = {name: [pytest.mark.slow] for name in LONG}
+    return [pytest.param(page, id=page.name, marks=slow.get(page.name, [])) for page in pages]
+
+
+@pytest.fixture(scope="module")
+def small_sweep(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a plan, its case, its function of wear and its finished sweep."""
+    folder = tmp_path_factory.mktemp("sweep")
+    (folder / "case.toml").write_text(EXAMPLE, encoding="utf-8")
+    (folder / "wear.py").write_text(blocks(ROOT / "docs" / "sweeps.md", "python")[0], encoding="utf-8")
+    text = (
+        'case = "case.toml"\n[grid]\ncontact.friction = [0.3, 0.4]\npin.material = ["steel"]\nsolve.nodes = [61]\n'
+        'load.2.Q = [[7e5, -7e5]]\n[outcomes]\nworn = { function = "wear.py:wear" }\n'
+    )
+    (folder / "plan.toml").write_text(text, encoding="utf-8")
+    summary = sweep.run(parse_plan(text, folder=folder), folder / "plan", Inline())
+    assert (summary.done, summary.unread) == (2, [])
+    return folder
+
+
+@pytest.fixture(scope="module")
+def common_names(small_sweep: Path) -> dict[str, Any]:
+    """The names that pages take for granted. The result is also the file case.h5, beside the sweep."""
+    case = builtin_case()
+    history = fastpin.LoadHistory([{"P": 2.42e6}]) + fastpin.LoadHistory([{"Q": 5e5}, {"Q": -5e5}]).repeated(2)
+    fastpin.record(case.problem, case.history, small_sweep / "case.h5", nodes=61, slip_sums=True)
+    loads = [{"P": 2.42e6}, {"Q": 5e5}]
+    return {
+        "fastpin": fastpin,
+        "np": np,
+        "pair": case.problem.pair,
+        "problem": case.problem,
+        "history": history,
+        "loads": loads,
+        "result": fastpin.load(small_sweep / "case.h5"),
+        "study": fastpin.converge(case.problem, loads, nodes=[51, 61, 75]),
+        "theta": np.linspace(-2.5, -0.6, 5),
+    }
+
+
+@pytest.fixture
+def names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small_sweep: Path, common_names: dict[str, Any]
+) -> dict[str, Any]:
+    """The common names; their files lie in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    mpl.use("Agg")
+    for path in small_sweep.iterdir():
+        (tmp_path / path.name).symlink_to(path)
+    return dict(common_names)
+
+
+@pytest.mark.parametrize("page", here())
+def test_python_runs(page: Path, names: dict[str, Any]) -> None:
+    if page.name == "compliance.md":
+        Path("lug.json").write_text(plate_compliance(parse_lug(LUG_EXAMPLE).lug).compliance.to_text(), encoding="utf-8")
+    if page.name == "sweeps.md":
+        run_as_script(blocks(page, "python"))
+        return
+    for code in blocks(page, "python"):
+        exec(compile(code, page.name, "exec"), names)
+    plt.close("all")
+
+
+def run_as_script(codes: list[str]) -> None:
+    """Run the last two blocks of the page on sweeps, in a process of its own: workers import the script."""
+    *_, script, outcomes = codes
+    lines = "".join(f"    {line}\n" for line in outcomes.splitlines())
+    Path("script.py").write_text(f"from wear import wear\n\n{script}\n{lines}", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{Path.cwd()}"}
+    done = subprocess.run(
+        [sys.executable, "script.py"], capture_output=True, text=True, timeout=120, check=False, env=environment
+    )
+    assert done.returncode == 0, done.stderr
+    assert len(done.stdout.splitlines()) == 3
+
+
+def test_pages_that_run_elsewhere_are_named_there() -> None:
+    tests = {path.name: path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("test_*.py")}
+    for page in PAGES:
+        if page.name in ELSEWHERE and blocks(page, "python"):
+            text = tests[ELSEWHERE[page.name]]
+            assert page.name in text or page.stem in text or page.stem.upper() in text, page.name
+
+
+def has_known_keys(table: Mapping[str, Any], sections: Mapping[str, Any]) -> bool:
+    """Whether all sections and keys of a TOML table are known. None stands for any keys."""
+    for section, value in table.items():
+        for inner in value if isinstance(value, list) else [value]:
+            if section not in sections:
+                return False
+            if isinstance(inner, Mapping) and sections[section] is not None and set(inner) - set(sections[section]):
+                return False
+    return True
+
+
+@pytest.mark.parametrize("page", with_blocks("toml"))
+def test_toml_has_known_keys(page: Path) -> None:
+    case = {**KEYS, **dict.fromkeys(ROOT_KEYS)}
+    plan = dict.fromkeys(PLAN_KEYS)
+    for text in blocks(page, "toml"):
+        table = tomllib.loads(text)
+        materials = dict.fromkeys(table, FILE_KEYS)
+        assert any(has_known_keys(table, sections) for sections in (case, plan, LUG_KEYS, materials)), text
+        if "grid" in table:
+            for section in table["grid"]:
+                assert section in KEYS, section
+
+
+def test_unknown_keys_are_noticed() -> None:
+    assert not has_known_keys({"contact": {"fricton": 0.3}}, KEYS)
+    assert not has_known_keys({"contacts": {}}, KEYS)
+    assert not has_known_keys({"load": [{"P": 1.0}, {"p": 1.0}]}, KEYS)
+
+
+@pytest.mark.parametrize("page", with_blocks("console", "sh", "bash"))
+def test_commands_exist(page: Path) -> None:
+    for text in blocks(page, "console"):
+        for line in filter(None, map(str.strip, text.replace("\\\n", " ").splitlines())):
+            check_command(line.removeprefix("$ "))
+    for text in blocks(page, "sh", "bash"):
+        subprocess.run(["bash", "-n"], input=text, text=True, check=True)
+
+
+def check_command(line: str) -> None:
+    """Check one command: the options of fastpin, or the file that it runs."""
+    words = shlex.split(re.split(r" [|>&]|&&", line)[0], comments=True)
+    while words and re.fullmatch(r"[A-Z_]+=\S*", words[0]):
+        words.pop(0)
+    if not words:
+        return
+    program, *arguments = words
+    if program == "fastpin":
+        parser().parse_args(join_words(arguments))
+    elif program.startswith(("./", ".ci/", "scripts/")):
+        assert os.access(ROOT / program, os.X_OK), line
+    elif program in ("python", "pytest"):
+        file = next(word for word in arguments if not word.startswith("-"))
+        assert (ROOT / file).exists() or (ROOT / f"{file.replace('.', '/')}.py").exists(), line
+    else:
+        assert program in PROGRAMS, line
+
+
+def test_queries_run(small_sweep: Path) -> None:
+    (text,) = blocks(ROOT / "docs" / "sweeps.md", "sql")
+    text = text.replace("'wear'", "'worn'")
+    with sqlite3.connect(small_sweep / "plan" / "index.sqlite") as index:
+        rows = [index.execute(query).fetchall() for query in text.split(";") if query.strip()]
+    index.close()
+    assert [len(found) for found in rows] == [2, 2, 1]
+
+
+def test_every_language_is_checked() -> None:
+    for page in PAGES:
+        languages = re.findall(r"^```(\w+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+        assert set(languages) <= set(CHECKED), page.name
