@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import re
 import runpy
 from pathlib import Path
@@ -70,6 +71,9 @@ def test_the_reference_has_every_public_name() -> None:
     modules = {name for name in fastpin.__all__ if isinstance(getattr(fastpin, name), ModuleType)}
     names = {f"fastpin.{name}" for name in set(fastpin.__all__) - modules - {"__version__"}}
     assert names - shown == set()
+    for name in shown:
+        module, _, last = name.rpartition(".")
+        assert hasattr(importlib.import_module(module), last), name
 
 
 def test_every_page_is_in_the_table_of_contents() -> None:
