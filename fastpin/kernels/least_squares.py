@@ -133,42 +133,6 @@ def fit(columns, values, coefficients):
     return _solve(A, coefficients)
 
 
-@compiled
-def pseudo_inverse(columns, inverse):
-    """The pseudo-inverse of any columns, shape (m, n), n <= m. Return the ratio of their least to their largest pivot.
-
-    The pivots are those of the columns in parts of their largest entries. If the ratio is 0, a column depends on the
-    ones before it. Then the output `inverse` (n, m) is not filled.
-    """
-    m, n = columns.shape
-    A, sizes = np.zeros((2 * n, m)), np.empty(n)
-    for k in range(n):
-        sizes[k] = np.abs(columns[:, k]).max()
-        if sizes[k] == 0.0:
-            return 0.0
-        for i in range(m):
-            A[k, i] = columns[i, k] / sizes[k]
-    diagonal, rows = np.empty(n), np.empty(n, np.int64)
-    if _factor(A[:n], n, diagonal, rows) < n:
-        return 0.0
-    for j in range(n):  # the column j of the orthonormal factor: reflections after the one of column j leave it
-        A[n + j, j] = 1.0
-        for k in range(j, -1, -1):
-            _turn(A, k, k, diagonal[k], A[n + j])
-    for k in range(n - 1, -1, -1):
-        inverse[k] = A[n + k]
-        for j in range(k + 1, n):
-            for i in range(m):
-                inverse[k, i] -= A[j, k] * inverse[j, i]
-        for i in range(m):
-            inverse[k, i] /= diagonal[k]
-    for k in range(n):
-        for i in range(m):
-            inverse[k, i] /= sizes[k]
-    pivots = np.abs(diagonal)
-    return pivots.min() / pivots.max()
-
-
 @inner
 def _window(x, half, skipped):
     """The window of half-width `half` about x = 0: its first node, the nodes left out, and the node after the last.

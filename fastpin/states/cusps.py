@@ -20,7 +20,7 @@ import numpy as np
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.states.ends import end_place
-from fastpin.states.half_line import End, Fit, half_line
+from fastpin.states.half_line import End, Fit, Tries, Try, half_line
 from fastpin.states.old_borders import OldBorder, old_borders, truly_sticking
 from fastpin.states.zones import runs, unrolled
 
@@ -74,16 +74,70 @@ class Cusp(NamedTuple):
     node: int
 
 
-class _Reading(NamedTuple):
-    """A fit of the nodes of a zone from the node number `first` on, and its error at a border.
+class _Window(NamedTuple):
+    """Neighbouring nodes of a zone whose values are fitted.
 
-    It is a fit of the reserve beside a slip zone with the `sign`, or of the traction itself if this is 0.
+    Attributes
+    ----------
+    first : int
+        The first node, counted in the zone.
+    sign : int
+        The values are the reserve beside a slip zone with this sign, or a traction itself if it is 0.
+    values : ndarray, shape (nodes,)
+    shapes : list of (tuple of End, int)
+        Ends to try, and degrees of the polynomial.
+    is_last : bool
+        Whether the window is left out if an earlier one has a fit.
     """
+
+    first: int
+    sign: int
+    values: np.ndarray
+    shapes: list[tuple[tuple[End, ...], int]]
+    is_last: bool = False
+
+
+class _Reading(NamedTuple):
+    """The best fit of some windows, its error, and its window."""
 
     fit: Fit
     error: float
-    first: int
-    sign: int
+    window: _Window
+
+
+@dataclass(frozen=True, eq=False)
+class _Patch:
+    """A contact: neighbouring closed nodes.
+
+    Attributes
+    ----------
+    nodes : ndarray of int, shape (n,)
+    integral : ndarray, shape (n,)
+        Integral of the shear over the angle from the first node.
+    margins : (float, float)
+        Integrals of the shear from the first and the last node to the ends of the contact.
+    cusps : list of End
+        The cusps of the pressure of unlike bodies, as parts of a fit of all nodes.
+    """
+
+    nodes: np.ndarray
+    integral: np.ndarray
+    margins: tuple[float, float]
+    cusps: list[End]
+
+    def turned(self, first: int, last: int) -> np.ndarray:
+        """The integral of the shear over the angle at the nodes first : last, shape (last - first,).
+
+        Where the shear has a cusp, the pressure less this integral is smooth: on the curved surface the two turn into
+        each other. The integral begins at the end of the contact, if one of the nodes is there, for the difference must
+        be zero there. It is left out between two ends.
+        """
+        part, size = self.integral[first:last], self.nodes.size
+        if last - first == size:
+            return np.zeros(size)
+        if last == size:
+            return part - (part[-1] + self.margins[1])
+        return part - (part[0] if first > 0 else -self.margins[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +178,23 @@ class ShearNodes:
         return cls(grid, pressure, shear, sticking, marks, places, problem.friction, tilt, coupling)
 
     @cached_property
-    def _patches(self) -> list[np.ndarray]:
-        return runs(self.grid, self.pressure > 0.0)
+    def _patches(self) -> list[_Patch]:
+        return [self._patch(nodes) for nodes in runs(self.grid, self.pressure > 0.0)]
+
+    def _patch(self, nodes: np.ndarray) -> _Patch:
+        """The contact of some neighbouring `nodes`."""
+        theta, shear = unrolled(self.grid, nodes), self.shear[nodes]
+        areas = 0.5 * (shear[1:] + shear[:-1]) * (theta[1:] - theta[:-1])
+        margins = (0.0, 0.0)
+        if nodes.size > 1:
+            margins = 0.5 * float(shear[0] * (theta[1] - theta[0])), 0.5 * float(shear[-1] * (theta[-1] - theta[-2]))
+        cusps = []
+        for node, border in self._coupled_borders:
+            at = (node - int(nodes[0])) % self.grid.size
+            if at < nodes.size:
+                end = self._end(border._replace(at=at), 0, CUSP_TERMS, border.sign)
+                cusps.append(end._replace(parts=(1.0, -1.0)))
+        return _Patch(nodes, np.concatenate([[0.0], np.cumsum(areas)]), margins, cusps)
 
     def old_cusps(self, least: float) -> Iterator[Cusp]:
         """Read the cusps at old borders beside which a node has the shear `least` or more."""
@@ -142,13 +211,22 @@ class ShearNodes:
                 if cusp is not None:
                     yield cusp
 
+    @cached_property
+    def _border_places(self) -> dict[tuple[int, int], float]:
+        """The places of borders that were read, by the outermost node and the direction inwards."""
+        return {}
+
     def _border_place(self, run: np.ndarray, inwards: int) -> float:
         """Place of the border at an end of the stick zone of the nodes `run`; NaN if no fit is good enough."""
-        sign, nodes = self._end_sign(run, inwards), run[::inwards]
-        borders = self.old_borders(run)
-        inside = borders if inwards > 0 else [border.mirrored(run.size) for border in borders]
-        reserve = self.friction * self.pressure[nodes] - sign * self.shear[nodes]
-        return end_place(reserve, half_line(0.5 - self.tilt * sign * inwards, self.coupling), inside)
+        nodes = run[::inwards]
+        key = int(nodes[0]), inwards
+        if key not in self._border_places:
+            sign, borders = self._end_sign(run, inwards), self.old_borders(run)
+            inside = borders if inwards > 0 else [border.mirrored(run.size) for border in borders]
+            reserve = self.friction * self.pressure[nodes] - sign * self.shear[nodes]
+            line = half_line(0.5 - self.tilt * sign * inwards, self.coupling)
+            self._border_places[key] = end_place(reserve, line, inside)
+        return self._border_places[key]
 
     def border_cusp(self, nodes: np.ndarray, outwards: int, angle: float) -> Cusp | None:
         """mu N at an end of the stick zone of some `nodes`, which begin there, at an `angle`, rad.
@@ -180,14 +258,22 @@ class ShearNodes:
             inside = [border for border in self.old_borders(run) if border.sign and not border.is_end(run.size)]
             found += [(int(run[border.at]), border) for border in inside]
             for inwards, at in ((1, 0), (-1, run.size - 1)):
-                sign, place = self._end_sign(run, inwards), self._border_place(run, inwards)
-                if sign and not math.isnan(place):
+                sign = self._end_sign(run, inwards)
+                place = self._border_place(run, inwards) if sign else math.nan
+                if not math.isnan(place):
                     found.append((int(run[at]), OldBorder(at, inwards, sign, place)))
         return found
 
     def old_borders(self, run: np.ndarray) -> list[OldBorder]:
         """The marked borders in the stick zone of the nodes `run`."""
-        return old_borders(self.marks[run], self.places[run])
+        first, n = int(run[0]), self.grid.size
+        inside = [border._replace(at=(border.at - first) % n) for border in self._marked]
+        return sorted(border for border in inside if border.at < run.size)
+
+    @cached_property
+    def _marked(self) -> list[OldBorder]:
+        """All marked borders, with their nodes in the grid."""
+        return old_borders(self.marks, self.places)
 
     def _end_sign(self, run: np.ndarray, inwards: int) -> int:
         """Sign of the shear in the slip zone at an end of a stick zone; 0 if the contact ends there."""
@@ -196,40 +282,26 @@ class ShearNodes:
 
     def _old_cusp(self, run: np.ndarray, border: OldBorder, borders: list[OldBorder]) -> Cusp | None:
         """Read the cusp at an old border; None if no fit has it near its node."""
-        best: _Reading | None = None
         around = run[max(border.at - 2, 0) : border.at + 3]
-        highest = around[np.argmax(np.abs(self.shear[around]))]
-        enough = GOOD_ENOUGH * abs(float(self.shear[highest]))
-        for half in HALF_WIDTHS:
-            first, last = max(border.at - half, 0), min(border.at + half + 1, run.size)
-            if best is not None and (best.error <= enough or last - first == run.size):
-                break
+        highest = int(around[np.argmax(np.abs(self.shear[around]))])
+        windows = []
+        for first, last in _spans(border.at, run.size):
             nodes = run[first:last]
-            signs = [self._end_sign(run, side) for side, met in ((1, first == 0), (-1, last == run.size)) if met]
+            signs = [self._end_sign(run, side) for side in _met(first, last, run.size)]
             sign = signs[0] if len(signs) == 1 else 0
-            wanted = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
-            for ends, degree in self._shapes(run, border, borders, first, last, sign):
-                unknowns = degree + 1 + sum(end.unknowns for end in ends)
-                if nodes.size < unknowns + SPARE:
-                    continue
-                fit = Fit(wanted, ends, degree)
-                place = fit.place(0)
-                if math.isnan(place):
-                    continue
-                beside = fit.values(place - border.inwards * np.array([0.0, 0.1]))
-                slope = abs(float(beside[1] - beside[0])) / 0.1
-                error = fit.value_error(place) + slope * fit.place_error(0)
-                if best is None or error < best.error:
-                    best = _Reading(fit, error, first, sign)
-        return None if best is None else self._read(best, int(run[border.at]), border, int(highest))
+            values = self.friction * self.pressure[nodes] - sign * self.shear[nodes] if sign else self.shear[nodes]
+            shapes = list(self._shapes(run, border, borders, first, last, sign))
+            windows.append(_Window(first, sign, values, shapes, nodes.size == run.size))
+        best = _best(windows, None, GOOD_ENOUGH * abs(float(self.shear[highest])))
+        return None if best is None else self._read(best, int(run[border.at]), border, highest)
 
     def _read(self, reading: _Reading, node: int, border: OldBorder, highest: int) -> Cusp | None:
         """Read the cusp at an old border, whose outermost node is `node`, from the best fit beside it."""
-        fit, error = reading.fit, reading.error
+        fit, error, window = reading
         places = fit.place(0) - border.inwards * (self._beyond if border.sign else np.zeros(1))
-        offsets = places + reading.first - border.at
+        offsets = places + window.first - border.at
         values = fit.values(places)
-        if reading.sign:
+        if window.sign:
             read = self._pressure_at(node, offsets, border.inwards)
             if read is None:
                 return None
@@ -247,7 +319,7 @@ class ShearNodes:
         others.pop((border.at, border.inwards), None)
         others = {key: other for key, other in others.items() if not other.is_end(run.size)}
         inside = [self._end(other, first, CUSP_TERMS, sign) for other in others.values()]
-        met = [side for side, is_met in ((1, first == 0), (-1, last == run.size)) if is_met]
+        met = _met(first, last, run.size)
         if not met:
             yield from (((own, *inside), degree) for degree in DEGREES)
         for terms in END_TERMS if met else ():
@@ -273,73 +345,34 @@ class ShearNodes:
         The `offsets` (k,) are node distances from the outermost `node` of the border.
         """
         for patch in self._patches:
-            found = np.flatnonzero(patch == node)
-            if not found.size:
+            at, size, windows = (node - int(patch.nodes[0])) % self.grid.size, patch.nodes.size, []
+            if at >= size:
                 continue
-            at, best, start = int(found[0]), None, float(offsets[0])
-            for half in HALF_WIDTHS:
-                first, last = max(at - half, 0), min(at + half + 1, patch.size)
-                if best is not None and best.error <= 0.1 * GOOD_ENOUGH * float(self.pressure[node]):
-                    break
-                met = [side for side, is_met in ((1, first == 0), (-1, last == patch.size)) if is_met]
-                nodes = patch[first:last]
-                turned, inside = self._turned(nodes, met), self._pressure_cusps(nodes)
-                for terms in END_TERMS if met else DEGREES:
-                    ends = [End(half_line(0.5), 0 if side > 0 else nodes.size - 1, side, terms) for side in met]
-                    unknowns = (terms * len(ends) or terms + 1) + sum(end.unknowns for end in inside)
-                    if nodes.size < unknowns + SPARE:
-                        continue
-                    fit = Fit(self.pressure[nodes] - turned, (*ends, *inside), -1 if met else terms)
-                    error = fit.value_error(at - first + start)
-                    if best is None or error < best.error:
-                        best = _Reading(fit, error, first, 0)
-                        beside = nodes, turned, at - first
+            for first, last in _spans(at, size):
+                values = self.pressure[patch.nodes[first:last]] - patch.turned(first, last)
+                windows.append(_Window(first, 0, values, _pressure_shapes(patch, first, last)))
+            best = _best(windows, at + float(offsets[0]), 0.1 * GOOD_ENOUGH * float(self.pressure[node]))
             if best is None:
                 return None
-            nodes, turned, place = beside
-            return best.fit.values(place + offsets) + self._turned_until(
-                nodes, turned, place, inwards, offsets
-            ), best.error
+            first, count = best.window.first, best.window.values.size
+            smooth = best.fit.values(at - first + offsets)
+            return smooth + self._turned_until(patch, first, first + count, at, inwards, offsets), best.error
         return None
 
-    def _pressure_cusps(self, nodes: np.ndarray) -> list[End]:
-        """The cusps of the pressure of unlike bodies at some neighbouring nodes, as parts of a fit."""
-        found = []
-        for node, border in self._coupled_borders:
-            at = np.flatnonzero(nodes == node)
-            if at.size:
-                end = self._end(border._replace(at=int(at[0])), 0, CUSP_TERMS, border.sign)
-                found.append(end._replace(parts=(1.0, -1.0)))
-        return found
-
-    def _turned(self, nodes: np.ndarray, met: list[int]) -> np.ndarray:
-        """The integral of the shear over the angle at some neighbouring nodes, shape (nodes,).
-
-        Where the shear has a cusp, the pressure less this integral is smooth: on the curved surface the two turn into
-        each other. The integral begins at the end of the contact, which the nodes have `met` at their start (1) or stop
-        (-1), for the difference must be zero there. It is left out between two ends.
-        """
-        if len(met) == 2:
-            return np.zeros(nodes.size)
-        theta, shear = unrolled(self.grid, nodes), self.shear[nodes]
-        steps = np.diff(theta)
-        integral = np.r_[0.0, np.cumsum(0.5 * (shear[1:] + shear[:-1]) * steps)]
-        if met == [1]:
-            return integral + 0.5 * shear[0] * steps[0]
-        return integral - integral[-1] - 0.5 * shear[-1] * steps[-1] if met else integral
-
     def _turned_until(
-        self, nodes: np.ndarray, turned: np.ndarray, at: int, inwards: int, offsets: np.ndarray
+        self, patch: _Patch, first: int, last: int, at: int, inwards: int, offsets: np.ndarray
     ) -> np.ndarray:
-        """The integral `turned` up to a border, from the node beyond it, where the shear is smooth."""
-        outer = at - inwards
-        if not turned.any() or not 0 <= outer < nodes.size:
-            return np.full(offsets.size, turned[at])
-        before = outer - inwards
-        shear = float(self.shear[nodes[outer]])
-        change = shear - float(self.shear[nodes[before]]) if 0 <= before < nodes.size else 0.0
-        steps, spacing = inwards * offsets + 1.0, float(self.grid.weights[nodes[outer]])
-        return np.asarray(turned[outer] + inwards * spacing * (shear * steps + 0.5 * change * steps**2))
+        """The integral of the shear up to a border, from the node beyond it, where the shear is smooth.
+
+        It is that of the nodes first : last of a contact.
+        """
+        turned, outer, before = patch.turned(first, last), at - inwards, at - 2 * inwards
+        if last - first == patch.nodes.size or not first <= outer < last:
+            return np.full(offsets.size, turned[at - first])
+        shear = float(self.shear[patch.nodes[outer]])
+        change = shear - float(self.shear[patch.nodes[before]]) if first <= before < last else 0.0
+        steps, spacing = inwards * offsets + 1.0, float(self.grid.weights[patch.nodes[outer]])
+        return np.asarray(turned[outer - first] + inwards * spacing * (shear * steps + 0.5 * change * steps**2))
 
     def _index(self, node: int, angle: float) -> float:
         """Distance of an angle from a node, in node distances."""
@@ -353,6 +386,59 @@ class ShearNodes:
         left, right = self.grid.knots()
         theta = float(self.grid.theta[node])
         return theta + offset * float(right[node] - theta if offset > 0.0 else theta - left[node])
+
+
+def _spans(at: int, size: int) -> list[tuple[int, int]]:
+    """The windows to try about the node number `at` of a zone of `size` nodes: first node, and node after the last."""
+    return list(dict.fromkeys((max(at - half, 0), min(at + half + 1, size)) for half in HALF_WIDTHS))
+
+
+def _met(first: int, last: int, size: int) -> list[int]:
+    """The ends of a zone of `size` nodes in the window first : last: 1 for the start, -1 for the stop."""
+    return [side for side, is_met in ((1, first == 0), (-1, last == size)) if is_met]
+
+
+def _pressure_shapes(patch: _Patch, first: int, last: int) -> list[tuple[tuple[End, ...], int]]:
+    """Ends and degrees to try for the pressure at the nodes first : last of a contact."""
+    cusps = [end._replace(node=end.node - first) for end in patch.cusps if first <= end.node < last]
+    met = _met(first, last, patch.nodes.size)
+    if not met:
+        return [(tuple(cusps), degree) for degree in DEGREES]
+    line = half_line(0.5)
+    return [
+        ((*(End(line, 0 if side > 0 else last - first - 1, side, terms) for side in met), *cusps), -1)
+        for terms in END_TERMS
+    ]
+
+
+def _best(windows: list[_Window], at: float | None, enough: float) -> _Reading | None:
+    """The fit with the smallest standard error at the place `at` of the zone; None takes the place of its first end.
+
+    No wider window is tried after a fit with an error that is small `enough`. None if there is no fit.
+    """
+    tries, places, owners, start = [], [], [], 0
+    for window in windows:
+        for ends, degree in window.shapes:
+            fit = Try(start, window.values.size, degree, ends)
+            if fit.spare >= SPARE:
+                tries.append(fit)
+                owners.append(window)
+                places.append(math.nan if at is None else at - window.first)
+        start += window.values.size
+    if not tries:
+        return None
+    errors = Tries(tries).value_errors(np.concatenate([window.values for window in windows]), np.array(places))
+    best, least = None, math.inf
+    for number, (error, window) in enumerate(zip(errors.tolist(), owners, strict=True)):
+        is_new = best is not None and window is not owners[best]
+        if best is not None and is_new and (least <= enough or window.is_last):
+            break
+        if error < least:
+            best, least = number, error
+    if best is None:
+        return None
+    window, fit = owners[best], tries[best]
+    return _Reading(Fit(window.values, fit.ends, fit.degree), least, window)
 
 
 def _top(values: np.ndarray) -> int:

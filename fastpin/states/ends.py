@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin.states.half_line import End, Fit, HalfLine
+from fastpin.states.half_line import End, Fit, HalfLine, Tries, Try
 from fastpin.states.old_borders import OldBorder
 
 WINDOWS = ((8, 4), (6, 4), (5, 3), (6, 3), (10, 5), (14, 5), (20, 5))
@@ -18,6 +19,12 @@ CROWDED = ((8, 3), (10, 3), (12, 4), (14, 4), (18, 4), (24, 5))
 
 MOST_VALUES = 2 * max(count for count, _ in (*WINDOWS, *CROWDED))
 """Values of a zone that count: a window takes at most half of them. More values give the same place."""
+
+LEAST_NODES = 10
+"""Number of nodes that a fit may use in a small zone, all but one node at most.
+
+In a zone of more than twice this number of nodes, it is the outer half.
+"""
 
 CUSP_TERMS = 3
 """Terms at an old border."""
@@ -41,8 +48,7 @@ def end_place(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = (
 
     It is in node distances inwards from the outermost node; NaN if no fit is good enough.
     """
-    found = end_fit(values, line, cusps)
-    return math.nan if found is None else found.place(0)
+    return _best(values, line, cusps)[1]
 
 
 def end_fit(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = ()) -> Fit | None:
@@ -61,23 +67,55 @@ def end_fit(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder] = ())
     Fit or None
         None if no fit is good enough.
     """
-    best: Fit | None = None
-    least = LARGEST_COUPLED if line.coupling else LARGEST_ERROR
+    best, place = _best(values, line, cusps)
+    return None if best is None or math.isnan(place) else Fit(values[: best.nodes], best.ends)
+
+
+def _best(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder]) -> tuple[Try | None, float]:
+    """The best fit at the end of a zone, and the place of the end by it, NaN if it is not plausible."""
     others = [
-        End(line, cusp.at, cusp.inwards, CUSP_TERMS, cusp.place) for cusp in cusps if (cusp.at, cusp.inwards) != (0, 1)
+        End(line, cusp.at, cusp.inwards, CUSP_TERMS, cusp.place)
+        for cusp in sorted(cusps)
+        if cusp.at < MOST_VALUES // 2 and (cusp.at, cusp.inwards) != (0, 1)
     ]
-    crowded = any(other.node < CROWDED[0][0] for other in others)
-    most = max(values.size // 2, min(values.size - 1, 10))
-    for count, terms in CROWDED if crowded else WINDOWS:
-        if count > most:
-            continue
-        ends = (End(line, 0, 1, terms), *(other for other in others if other.node < count))
-        if count < sum(end.unknowns for end in ends) + 1:
-            continue
-        fit = Fit(values[:count], ends)
-        error = fit.place_error(0)
+    most = max(values.size // 2, min(values.size - 1, LEAST_NODES))
+    return _best_fit(values[:MOST_VALUES].tobytes(), line, tuple(others), min(most, MOST_VALUES // 2))
+
+
+@functools.lru_cache(maxsize=64)
+def _best_fit(values: bytes, line: HalfLine, others: tuple[End, ...], most: int) -> tuple[Try | None, float]:
+    """The best fit of up to `most` of the `values`, with the old borders `others`; and the place of the end by it.
+
+    The same end is read for the zones of a state, for its cusps, and at later corners as an old border.
+    """
+    tries, packed = _tries(line, others, most)
+    best, found, least = None, math.nan, LARGEST_COUPLED if line.coupling else LARGEST_ERROR
+    if packed is None:
+        return None, math.nan
+    is_crowded = _is_crowded(others)
+    for each, (place, error) in zip(tries, packed.end_places(np.frombuffer(values)).tolist(), strict=True):
         if error < least:
-            best, least = fit, error
-        if least <= GOOD_ENOUGH and not crowded:
+            best, found, least = each, place, error
+        if least <= GOOD_ENOUGH and not is_crowded:
             break
-    return None if best is None or math.isnan(best.place(0)) else best
+    return best, found
+
+
+def _is_crowded(others: Sequence[End]) -> bool:
+    """Whether one of the old borders `others` lies near the end."""
+    return any(other.node < CROWDED[0][0] for other in others)
+
+
+@functools.lru_cache(maxsize=256)
+def _tries(line: HalfLine, others: tuple[End, ...], most: int) -> tuple[list[Try], Tries | None]:
+    """The fits of up to `most` nodes to try at the end of a zone with the old borders `others`; None if there is none.
+
+    They are the same for all ends of like bodies without old borders.
+    """
+    tries = []
+    for count, terms in CROWDED if _is_crowded(others) else WINDOWS:
+        ends = (End(line, 0, 1, terms), *(other for other in others if other.node < count))
+        fit = Try(0, count, -1, ends)
+        if count <= most and fit.spare >= 1:
+            tries.append(fit)
+    return tries, Tries(tries) if tries else None

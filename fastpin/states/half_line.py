@@ -21,44 +21,27 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from fastpin.kernels import least_squares
-
-TERMS = 6
-"""Most terms of a fit at one end."""
+from fastpin.kernels import half_line as kernel
+from fastpin.kernels.half_line import MOST_NODES, TERMS
 
 SHEAR_TERMS = 3
 """Most terms of a fit of the shear of unlike bodies. Sums for more terms converge badly."""
 
-MOST_NODES = 64
-"""Nodes for which the solutions are tabulated. The widest window is smaller."""
-
 SAMPLES = 4096
 """Samples of the symbol. The coefficients of its logarithm fall with the fourth power: the last ones are 1e-15."""
-
-NEWTON_STEPS = 5
-"""Steps of Newton's method for the place of an end. It starts within half a node distance."""
-
-LEAST_PLACE, MOST_PLACE = -1.3, 0.5
-"""Least and largest distance of an end from its outermost node, in node distances inwards.
-
-The next node outwards is at -1, and the solution of the nodes has an end up to 0.3 of a node distance beyond.
-"""
-
-AT_END = 1e-12
-"""Distance from an end that is rounding, in node distances. Its root, 1e-6, would be none."""
-
-DEPENDENT = 1e-10
-"""Ratio of pivots below which columns of a fit depend on each other. In other fits it is above 1e-7."""
 
 SUMMED = 16
 """Terms of Hurwitz's zeta function that are summed. The rest, by Euler and Maclaurin, then has an error of 1e-15."""
 
-_FACTORIALS = np.array([float(math.factorial(k)) for k in range(TERMS)])
+
+_LOGARITHM = np.array([0.0, -0.5, 1.0 / 24.0, 0.0, -1.0 / 2880.0, 0.0])
+"""Coefficients of log((1 - exp(-s))/s) in powers of s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,14 +65,6 @@ class HalfLine:
     matching: np.ndarray
     coupling: float
 
-    @functools.cached_property
-    def _gammas(self) -> np.ndarray:
-        return np.array([math.gamma(self.exponent + m) for m in range(TERMS)])
-
-    def powers(self, x: np.ndarray, terms: int) -> np.ndarray:
-        """The powers x^(a - 1 + m) / Gamma(a + m) for x > 0, shape (k,), as an array (k, terms)."""
-        return np.asarray(x[:, None] ** (self.exponent - 1.0 + np.arange(terms)) / self._gammas[:terms])
-
 
 @functools.lru_cache(maxsize=64)
 def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
@@ -103,20 +78,16 @@ def half_line(exponent: float, coupling: float | None = None) -> HalfLine:
         Dundurs' parameter beta_D, for the reserve of a stick zone; None for the pressure in a slip zone.
     """
     smooth, order = _log_factor(exponent, coupling), np.arange(SAMPLES // 2)
-    series = smooth[:MOST_NODES].copy()
+    series, first = smooth[:MOST_NODES].copy(), np.empty(MOST_NODES)
     series[1:] -= (1.0 - exponent) / order[1:MOST_NODES]
-    first = np.zeros(MOST_NODES)  # coefficients of the inverse of one factor of the symbol: exp(series)
-    first[0] = math.exp(series[0])
-    for k in range(1, MOST_NODES):
-        first[k] = (order[1 : k + 1] * series[1 : k + 1]) @ first[k - 1 :: -1][:k] / k
+    kernel.exponential(series, first)  # coefficients of the inverse of one factor of the symbol
     nodal = np.empty((MOST_NODES, TERMS))
     for m in range(TERMS):
         nodal[:, m] = first = np.cumsum(first)
     moments = np.array([smooth.sum(), -(order @ smooth), 0.5 * (order**2 @ smooth)])
     matching = np.zeros((TERMS, TERMS))
     for m in range(TERMS):
-        far = _far_field(moments, -exponent - m, m + 1)
-        matching[: m + 1, m] = far[::-1]
+        matching[: m + 1, m] = _far_field(moments, -exponent - m)[m::-1]
     return HalfLine(exponent, nodal, matching, coupling or 0.0)
 
 
@@ -129,12 +100,16 @@ class _Samples(NamedTuple):
         g and h.
     inner, outer : ndarray
         log(1 - z) and log(1 - 1/z) of z = exp(-i p).
+    turns : ndarray
+        The samples lie half a step off the places of the discrete Fourier transform. These are the factors of its
+        coefficients, in its order.
     """
 
     even: np.ndarray
     odd: np.ndarray
     inner: np.ndarray
     outer: np.ndarray
+    turns: np.ndarray
 
 
 @functools.cache
@@ -143,7 +118,8 @@ def _samples() -> _Samples:
     part = p / (2.0 * math.pi)
     here, there = (4.0 * np.sin(0.5 * p) ** 2 / (2.0 * math.pi) ** 3 * zeta_3(t) for t in (part, 1.0 - part))
     z = np.exp(-1j * p)
-    return _Samples(here + there, here - there, np.log(1.0 - z), np.log(1.0 - 1.0 / z))
+    turns = np.exp(1j * math.pi * np.fft.fftfreq(SAMPLES, 1.0 / SAMPLES) / SAMPLES)
+    return _Samples(here + there, here - there, np.log(1.0 - z), np.log(1.0 - 1.0 / z), turns)
 
 
 @functools.lru_cache(maxsize=64)
@@ -152,14 +128,12 @@ def _log_factor(exponent: float, coupling: float | None) -> np.ndarray:
 
     The array has the shape (SAMPLES // 2,).
     """
-    even, odd, inner, outer = _samples()
+    even, odd, inner, outer, turns = _samples()
     turn = 1j * math.tan(math.pi * (exponent - 0.5)) * odd
     symbol = even + turn if coupling is None else (even**2 - (coupling * odd) ** 2) / (even - turn)
     # Without its singular factors (1 - z)^(a - 1) (1 - 1/z)^-a, the symbol has a smooth logarithm.
     logarithm = np.log(symbol) + (1.0 - exponent) * inner + exponent * outer
-    order = np.arange(SAMPLES // 2)
-    halves = np.fft.ifft(logarithm)[: order.size] * np.exp(1j * math.pi * order / SAMPLES)
-    smooth = -np.real(halves)
+    smooth = -np.real((np.fft.ifft(logarithm) * turns)[: SAMPLES // 2])
     smooth[0] *= 0.5
     return smooth
 
@@ -176,18 +150,22 @@ def shear_columns(exponent: float, coupling: float) -> np.ndarray:
     ndarray, shape (2 MOST_NODES - 1, SHEAR_TERMS)
         At the nodes from -MOST_NODES + 1 to MOST_NODES - 1; the stick zone begins at the node 0.
     """
-    smooth, (even, odd, inner, outer) = _log_factor(exponent, coupling), _samples()
-    tilt = exponent - 0.5
-    order = np.arange(SAMPLES // 2)
-    factor = np.exp(np.fft.fft(np.r_[smooth * np.exp(-1j * math.pi * order / SAMPLES), np.zeros(order.size)]))
+    half = SAMPLES // 2
+    even, odd, inner, outer, turns = (values[:half] for values in _samples())
+    tilt, smooth = exponent - 0.5, _log_factor(exponent, coupling)
+    factor = np.fft.fft(smooth * turns.conj(), SAMPLES)[:half]
     ratio = even / (even - 1j * math.tan(math.pi * tilt) * odd)
     # Without its singular factors (1 - z)^tilt (1 - 1/z)^-tilt, the ratio is smooth.
-    ratio *= np.exp(tilt * (outer - inner))
-    twist = np.exp(1j * math.pi * np.fft.fftfreq(SAMPLES, 1.0 / SAMPLES) / SAMPLES)
-    weights = np.fft.fftshift(np.real(np.fft.ifft(factor * ratio) * twist))
-    reach = SAMPLES // 2 + MOST_NODES - 1
-    columns = [np.convolve(_two_sided(-0.5 - m, -tilt, reach)[1:], weights, "valid") for m in range(SHEAR_TERMS)]
-    return np.column_stack(columns)
+    product = np.exp(factor + tilt * (outer - inner)) * ratio
+    whole = np.concatenate([product, product[::-1].conj()])  # at 2 pi - p it is the complex conjugate
+    weights = np.fft.fftshift(np.real(np.fft.ifft(whole) * _samples().turns))
+    reach = half + MOST_NODES - 1
+    columns = np.empty((2 * MOST_NODES - 1, SHEAR_TERMS))
+    columns[:, 0] = np.convolve(_two_sided(-0.5, -tilt, reach)[1:], weights, "valid")
+    for m in range(1, SHEAR_TERMS):  # a solution is the sum of the one before
+        columns[0, m] = _two_sided(-0.5 - m, -tilt, reach)[1 : SAMPLES + 1] @ weights[::-1]
+        columns[1:, m] = columns[0, m] + np.cumsum(columns[1:, m - 1])
+    return columns
 
 
 def _two_sided(inner: float, outer: float, reach: int) -> np.ndarray:
@@ -206,15 +184,11 @@ def zeta_3(t: np.ndarray) -> np.ndarray:
     return np.asarray(((t + np.arange(SUMMED)[:, None]) ** -3.0).sum(axis=0) + rest)
 
 
-def _far_field(moments: np.ndarray, power: float, terms: int) -> np.ndarray:
-    """Coefficients of exp(moments) ((1 - exp(-s))/s)^power in powers of s, shape (terms,)."""
-    logarithm = np.zeros(max(terms, 5))
-    logarithm[:5] = power * np.array([0.0, -0.5, 1.0 / 24.0, 0.0, -1.0 / 2880.0])
-    logarithm[:3] += moments
-    far = np.zeros(terms)
-    far[0] = math.exp(logarithm[0])
-    for k in range(1, terms):
-        far[k] = sum(j * logarithm[j] * far[k - j] for j in range(1, k + 1)) / k
+def _far_field(moments: np.ndarray, power: float) -> np.ndarray:
+    """Coefficients of exp(moments) ((1 - exp(-s))/s)^power in powers of s, shape (TERMS,)."""
+    logarithm, far = power * _LOGARITHM, np.empty(TERMS)
+    logarithm[: moments.size] += moments
+    kernel.exponential(logarithm, far)
     return far
 
 
@@ -248,61 +222,86 @@ class End(NamedTuple):
         """Number of unknowns of the fit."""
         return self.terms - (self.place is not None)
 
-    def columns(self, nodes: int) -> np.ndarray:
-        """The solutions at the nodes of a window, shape (nodes, terms). The reserve is 0 outside the zone."""
-        columns, line = np.zeros((nodes, self.terms)), self.half_line
-        offsets = self.inwards * (np.arange(nodes) - self.node)
-        inside = offsets >= 0
-        columns[inside] = self.parts[0] * line.nodal[offsets[inside], : self.terms]
-        if self.parts[1] != 0.0:
-            sheared = shear_columns(line.exponent, line.coupling)
-            columns += self.parts[1] * sheared[MOST_NODES - 1 + offsets, : self.terms]
-        return columns if self.place is None else columns @ self.solutions()
 
-    def powers(self, inside: np.ndarray) -> np.ndarray:
-        """The powers of the quantity at some distances from the end, inwards, shape (k,), as an array (k, terms)."""
-        powers = np.zeros((inside.size, self.terms))
-        zone = inside > AT_END
-        powers[zone] = sum(self.parts) * self.half_line.powers(inside[zone], self.terms)
-        if self.parts[1] != 0.0:
-            beyond = inside < -AT_END
-            height = self.parts[1] * math.cos(math.pi * self.half_line.exponent)
-            signs = height * (-1.0) ** (np.arange(self.terms) - 1)
-            powers[beyond] = signs * self.half_line.powers(-inside[beyond], self.terms)
-        return powers
+class Try(NamedTuple):
+    """A fit to try.
 
-    def solutions(self) -> np.ndarray:
-        """The solutions whose far fields are powers 1, 2, ... of the distance from the known place, a column each."""
-        assert self.place is not None
-        moved = _shift(-self.place, self.terms)[:, 1:]
-        return np.asarray(np.linalg.solve(self.half_line.matching[: self.terms, : self.terms], moved))
+    Attributes
+    ----------
+    first, nodes : int
+        The first of its values, and their number.
+    degree : int
+        Degree of the polynomial; -1 for none.
+    ends : tuple of End
+    """
+
+    first: int
+    nodes: int
+    degree: int
+    ends: tuple[End, ...]
+
+    @property
+    def spare(self) -> int:
+        """Number of nodes beyond the number of unknowns."""
+        return self.nodes - self.degree - 1 - sum(end.unknowns for end in self.ends)
+
+
+class Tries:
+    """Fits to try, as compiled code takes them."""
+
+    def __init__(self, tries: Sequence[Try]) -> None:
+        tables: dict[tuple[HalfLine, tuple[float, float]], int] = {}
+        ends: list[tuple[float, ...]] = []
+        rows = []
+        for first, nodes, degree, own in tries:
+            rows.append((first, nodes, degree, len(ends), len(ends) + len(own)))
+            for line, node, inwards, terms, place, parts in own:
+                number = tables.setdefault((line, parts), len(tables))
+                ends.append((number, node, inwards, terms, math.nan if place is None else place))
+        self.rows, self.tables = np.array(rows), _tables(tuple(tables))
+        self.ends = np.array(ends, dtype=float).reshape(-1, kernel.PLACE + 1)
+
+    def end_places(self, values: np.ndarray) -> np.ndarray:
+        """The place of the first end of each fit of `values`, and its standard error, shape (t, 2).
+
+        The place is in node distances inwards from the outermost node of the zone. It is NaN if it is not plausible.
+        """
+        found = np.empty((len(self.rows), 2))
+        kernel.end_places(np.array(values), self.rows, self.ends, self.tables, found)
+        return found
+
+    def value_errors(self, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """The standard error of each fit of `values` at the place `at`, shape (t,); NaN takes the first end's place.
+
+        See :func:`fastpin.kernels.half_line.value_errors`.
+        """
+        found = np.empty(len(self.rows))
+        kernel.value_errors(np.array(values), self.rows, self.ends, self.tables, at, found)
+        return found
 
 
 @functools.lru_cache(maxsize=256)
-def _columns(end: End, nodes: int) -> np.ndarray:
-    """The columns of an end, kept for the fits of one window with several degrees."""
-    return end.columns(nodes)
+def _tables(keys: tuple[tuple[HalfLine, tuple[float, float]], ...]) -> np.ndarray:
+    """The tables of some half lines and parts, shape (t, LAW + 1, TERMS)."""
+    return np.array([table(line, parts) for line, parts in keys]).reshape(-1, kernel.LAW + 1, TERMS)
 
 
-@dataclass(frozen=True, eq=False)
-class _Design:
-    """The columns of a fit, and their pseudo-inverse."""
+@functools.lru_cache(maxsize=64)
+def table(line: HalfLine, parts: tuple[float, float]) -> np.ndarray:
+    """The table of a half line for compiled code, shape (LAW + 1, TERMS), see :mod:`fastpin.kernels.half_line`.
 
-    columns: np.ndarray
-    inverse: np.ndarray
-
-
-@functools.lru_cache(maxsize=1024)
-def _design(nodes: int, degree: int, ends: tuple[End, ...]) -> _Design:
-    """The design of a window: powers of the place up to `degree` (none: -1), and the solutions of all ends."""
-    places = np.arange(nodes) / (nodes - 1.0)
-    columns = np.column_stack([places[:, None] ** np.arange(degree + 1), *(_columns(end, nodes) for end in ends)])
-    inverse = np.empty(columns.shape[::-1])
-    if not least_squares.pseudo_inverse(columns, inverse) > DEPENDENT:
-        # Solutions of two ends some nodes apart depend on each other: take the least coefficients.
-        sizes = np.abs(columns).max(axis=0)
-        inverse = np.linalg.pinv(columns / sizes) / sizes[:, None]
-    return _Design(columns, inverse)
+    The fitted quantity has the `parts` of the reserve and of its shear, see :class:`End`.
+    """
+    rows = np.zeros((kernel.LAW + 1, TERMS))
+    rows[kernel.MIDDLE : kernel.MATCHING] = parts[0] * line.nodal
+    beyond = 0.0
+    if parts[1] != 0.0:
+        rows[: kernel.MATCHING, :SHEAR_TERMS] += parts[1] * shear_columns(line.exponent, line.coupling)
+        beyond = parts[1] * math.cos(math.pi * line.exponent)
+    rows[kernel.MATCHING : kernel.GAMMAS] = line.matching
+    rows[kernel.GAMMAS] = [math.gamma(line.exponent + m) for m in range(TERMS)]
+    rows[kernel.LAW, :3] = line.exponent, sum(parts), beyond
+    return rows
 
 
 class Fit:
@@ -311,6 +310,7 @@ class Fit:
     Parameters
     ----------
     values : ndarray, shape (nodes,)
+        At most MOST_NODES values.
     ends : tuple of End
     degree : int
         Degree of the polynomial; -1 for none.
@@ -322,34 +322,23 @@ class Fit:
     """
 
     def __init__(self, values: np.ndarray, ends: tuple[End, ...], degree: int = -1) -> None:
-        design = _design(values.size, degree, ends)
+        packed = Tries([Try(0, values.size, degree, ends)])
         self._ends, self._degree, self.last = ends, degree, values.size - 1.0
-        self._coefficients = design.inverse @ values
-        left = design.columns @ self._coefficients - values
-        spare = values.size - self._coefficients.size
-        self._inverse = design.inverse
-        self._scatter = math.sqrt(float(left @ left) / spare) * (1.0 + 10.0 / spare)
-        self._matches: dict[int, _Match] = {}
-        self._matchings: dict[int, np.ndarray] = {}
+        self._packed = degree, packed.ends, packed.tables
+        unknowns = values.size - Try(0, values.size, degree, ends).spare
+        self._coefficients, self._spread = np.empty(unknowns), np.empty((unknowns, unknowns))
+        self._matches, self._levers = np.empty((len(ends), 3)), np.empty((len(ends), unknowns))
+        self._scatter = kernel.solve(np.array(values), *self._packed, self._coefficients, self._spread)
+        kernel.match(*self._packed, self._coefficients, self._matches, self._levers)
 
     def place(self, at: int) -> float:
         """Place of the end number `at`, in node distances from the node 0. NaN where there is none."""
         end = self._ends[at]
-        return end.node + end.inwards * self._match(at).place
+        return end.node + end.inwards * float(self._matches[at, 0])
 
     def place_error(self, at: int) -> float:
         """Standard error of this place."""
-        return self._scatter * float(np.linalg.norm(self._match(at).lever @ self._inverse[self._rows(at)]))
-
-    def _rows(self, at: int) -> slice:
-        """The coefficients of an end."""
-        first = self._degree + 1 + sum(end.unknowns for end in self._ends[:at])
-        return slice(first, first + self._ends[at].unknowns)
-
-    def _match(self, at: int) -> _Match:
-        if at not in self._matches:
-            self._matches[at] = _matched(self._ends[at], self._coefficients[self._rows(at)])
-        return self._matches[at]
+        return self._error(self._levers[at])
 
     def values(self, x: np.ndarray) -> np.ndarray:
         """The fitted function at some places, shape (k,), in node distances from the node 0."""
@@ -361,10 +350,10 @@ class Fit:
 
     def value_error(self, x: float) -> float:
         """Standard error of the fitted function at a place x, without the part from the places of the ends."""
-        return self._scatter * float(np.linalg.norm(self._rows_at(np.array([x])) @ self._inverse))
+        return self._error(self._rows_at(np.array([x]))[0])
 
     def series(self, at: int) -> tuple[np.ndarray, float]:
-        """The power series at the end number `at`, which has a place.
+        """The power series at the end number `at`, whose place is fitted.
 
         Returns
         -------
@@ -373,75 +362,26 @@ class Fit:
         error : float
             Standard error of the first one.
         """
-        rows, end = self._rows(at), self._ends[at]
-        matching, exponent = self._matching(at), end.half_line.exponent
-        series = matching[1:] / [[math.gamma(exponent + 1.0 + m)] for m in range(len(matching) - 1)]
-        error = self._scatter * float(np.linalg.norm(series[0] @ self._inverse[rows]))
-        return np.asarray(series @ self._coefficients[rows]), error
+        end, first = self._ends[at], self._degree + 1 + sum(end.unknowns for end in self._ends[:at])
+        line, terms = end.half_line, end.terms
+        series = np.zeros((terms - 1, self._coefficients.size))
+        moved = _shift(float(self._matches[at, 1]), terms) @ line.matching[:terms, :terms]
+        series[:, first : first + terms] = moved[1:] / [[math.gamma(line.exponent + m)] for m in range(1, terms)]
+        return np.asarray(series @ self._coefficients), self._error(series[0])
+
+    def _error(self, row: np.ndarray) -> float:
+        """Standard error of the number that a row (n,) gives from the coefficients."""
+        return self._scatter * float(np.linalg.norm(row @ self._spread))
 
     def _rows_at(self, x: np.ndarray) -> np.ndarray:
         """The continuous functions of the coefficients at some places, with the present places of the ends."""
-        rows = np.zeros((x.size, self._coefficients.size))
-        rows[:, : self._degree + 1] = (x[:, None] / self.last) ** np.arange(self._degree + 1)
-        for at, end in enumerate(self._ends):
-            match = self._match(at)
-            powers = end.powers(end.inwards * (x - end.node) - match.origin)
-            rows[:, self._rows(at)] = powers[:, match.least :] @ self._matching(at)[match.least :]
+        rows = np.empty((x.size, self._coefficients.size))
+        kernel.evaluate(np.array(x, dtype=float), self.last, *self._packed, self._matches, rows)
         return rows
-
-    def _matching(self, at: int) -> np.ndarray:
-        if at not in self._matchings:
-            self._matchings[at] = self._match(at).matching(self._ends[at])
-        return self._matchings[at]
-
-
-class _Match(NamedTuple):
-    """The continuous function with the far field of some solutions.
-
-    Attributes
-    ----------
-    place : float
-        Its end, in node distances inwards from the outermost node.
-    lever : ndarray, shape (terms,)
-        Change of the place for a unit of each coefficient.
-    origin : float
-        Point from which distances count: the place, or half a node distance outwards if the place is not plausible.
-    least : int
-        The least power, 0 or 1: without a plausible place there is also the first power.
-    """
-
-    place: float
-    lever: np.ndarray
-    origin: float
-    least: int
-
-    def matching(self, end: End) -> np.ndarray:
-        """Times the coefficients of the solutions, those of the powers of the distance from the origin."""
-        if end.place is not None:
-            return np.eye(end.terms)[:, 1:]
-        return np.asarray(_shift(self.origin, end.terms) @ end.half_line.matching[: end.terms, : end.terms])
-
-
-def _matched(end: End, coefficients: np.ndarray) -> _Match:
-    """Match the far field of some solutions: the first power of the distance from the place is 0."""
-    if end.place is not None:
-        return _Match(end.place, np.zeros(end.unknowns), end.place, 1)
-    scaled = end.half_line.matching[: end.terms, : end.terms] / _FACTORIALS[: end.terms, None]
-    series: list[float] = (scaled @ coefficients).tolist()
-    place, slope = -series[0] / (series[1] or math.nan), series[1]
-    for _ in range(NEWTON_STEPS):
-        value = slope = 0.0
-        for coefficient in reversed(series):
-            slope = slope * place + value
-            value = value * place + coefficient
-        place -= value / (slope or math.nan)
-    plausible = LEAST_PLACE <= place <= MOST_PLACE
-    lever = place ** np.arange(end.terms) @ scaled / (slope or math.nan)
-    return _Match(place if plausible else math.nan, lever, place if plausible else -0.5, int(plausible))
 
 
 def _shift(origin: float, terms: int) -> np.ndarray:
     """Times the coefficients of the powers of a distance, the coefficients for distances from an origin inwards."""
     orders = np.arange(terms)
-    shifted = origin**orders / _FACTORIALS[:terms]
+    shifted = origin**orders / [math.factorial(k) for k in range(terms)]
     return np.asarray(shifted[np.maximum(orders - orders[:, None], 0)] * (orders >= orders[:, None]))

@@ -27,6 +27,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
@@ -36,7 +37,6 @@ from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.states.cycles import Cycle
-from fastpin.states.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.states.marks import Marks
 from fastpin.states.old_borders import BITS
 from fastpin.states.state import State

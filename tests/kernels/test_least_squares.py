@@ -13,7 +13,6 @@ from fastpin.kernels import least_squares
 KERNELS = (
     "standard_error",
     "fit",
-    "pseudo_inverse",
     "border",
     "corner",
     "refine_cusp",
@@ -73,26 +72,6 @@ def test_a_fit_is_that_of_the_pseudo_inverse(kernels, shape):
     expected, expected_error = naive(columns, values)
     assert coefficients == pytest.approx(expected, abs=1e-13 * np.abs(expected).max())
     assert error == pytest.approx(expected_error, rel=1e-12)
-
-
-@pytest.mark.parametrize("shape", [(9, 1), (12, 7), (41, 15), (6, 6)])
-def test_the_pseudo_inverse_of_columns(kernels, shape):
-    """Measured: 6e-15 of the largest entry."""
-    columns, inverse = np.random.default_rng(2).normal(size=shape) * 10.0 ** np.arange(shape[1]), np.empty(shape[::-1])
-    ratio = kernels.pseudo_inverse(columns, inverse)
-    sizes = np.abs(columns).max(axis=0)
-    pivots = np.abs(np.diagonal(np.linalg.qr(columns / sizes)[1]))
-    assert ratio == pytest.approx(pivots.min() / pivots.max(), rel=1e-12)
-    exact = np.linalg.pinv(columns / sizes)
-    assert inverse * sizes[:, None] == pytest.approx(exact, abs=5e-14 * np.abs(exact).max())
-
-
-def test_the_pseudo_inverse_of_columns_that_depend_on_each_other(kernels):
-    columns = np.random.default_rng(3).normal(size=(9, 3))
-    columns[:, 1] = 0.0
-    assert kernels.pseudo_inverse(columns, np.empty((3, 9))) == 0.0
-    columns[:, 1] = 2.0 * columns[:, 0]
-    assert kernels.pseudo_inverse(columns, np.empty((3, 9))) < 1e-14
 
 
 def test_powers_lose_no_more_digits_than_singular_values(kernels):

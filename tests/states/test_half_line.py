@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from scipy.special import zeta
 
+from fastpin.kernels.half_line import MOST_NODES, TERMS
 from fastpin.states.ends import end_place
-from fastpin.states.half_line import MOST_NODES, SHEAR_TERMS, TERMS, End, Fit, half_line, shear_columns, zeta_3
+from fastpin.states.half_line import SHEAR_TERMS, End, Fit, half_line, shear_columns, zeta_3
 from fastpin.states.old_borders import OldBorder
+from tests.support.half_line import columns, powers
 
 
 def influence(nodes: int) -> np.ndarray:
@@ -64,7 +66,7 @@ def test_values_between_the_nodes_beside_an_edge() -> None:
 def test_solutions_are_powers_far_from_the_end(exponent: float, coupling: float | None) -> None:
     line = half_line(exponent, coupling)
     for m, bound in enumerate((5e-3, 3e-5, 1e-6, 1e-6)):
-        far = line.powers(np.array([60.0]), m + 1)[0] @ line.matching[: m + 1, m]
+        far = powers(line, np.array([60.0]), m + 1)[0] @ line.matching[: m + 1, m]
         assert line.nodal[60, m] == pytest.approx(far, rel=bound)
     assert np.array_equal(np.cumsum(line.nodal[:, 1]), line.nodal[:, 2])
     assert line.matching.shape == (TERMS, TERMS)
@@ -73,23 +75,23 @@ def test_solutions_are_powers_far_from_the_end(exponent: float, coupling: float 
 @pytest.mark.parametrize(("exponent", "coupling"), [(0.47, 0.2), (0.54, -0.15), (0.5, 1e-9)])
 def test_the_shear_beside_a_border_of_unlike_bodies(exponent: float, coupling: float) -> None:
     """Powers far from the border on both sides. Beside it the errors of the nodes change their sign."""
-    line, columns, x = half_line(exponent, coupling), shear_columns(exponent, coupling), np.array([50.0])
+    line, sheared, x = half_line(exponent, coupling), shear_columns(exponent, coupling), np.array([50.0])
     for m, bound in enumerate((8e-3, 6e-5, 2e-5)):
-        far = line.powers(x, m + 1)[0]
-        assert columns[MOST_NODES - 1 + 50, m] == pytest.approx(far @ line.matching[: m + 1, m], rel=bound)
+        far = powers(line, x, m + 1)[0]
+        assert sheared[MOST_NODES - 1 + 50, m] == pytest.approx(far @ line.matching[: m + 1, m], rel=bound)
         beyond = math.cos(math.pi * exponent) * (-1.0) ** (np.arange(m + 1) - 1.0) * far
-        assert columns[MOST_NODES - 1 - 50, m] == pytest.approx(beyond @ line.matching[: m + 1, m], rel=bound, abs=1e-9)
-    errors = columns[MOST_NODES - 1 :, 0] - line.nodal[:, 0]
+        assert sheared[MOST_NODES - 1 - 50, m] == pytest.approx(beyond @ line.matching[: m + 1, m], rel=bound, abs=1e-9)
+    errors = sheared[MOST_NODES - 1 :, 0] - line.nodal[:, 0]
     assert np.all(errors[:4] * errors[1:5] < 0.0) or exponent == 0.5
     assert np.all(np.abs(errors[8:]) < 2e-6)
-    assert np.allclose(np.diff(columns, axis=0)[:, 1:], columns[1:, : SHEAR_TERMS - 1], atol=1e-11)
+    assert np.allclose(np.diff(sheared, axis=0)[:, 1:], sheared[1:, : SHEAR_TERMS - 1], atol=1e-11)
 
 
 def test_the_largest_shear_lies_beyond_an_old_border_of_unlike_bodies() -> None:
     """The fitted function has its power on the slip side too."""
     line = half_line(0.47, 0.2)
     end = End(line, 12, 1, 3, -0.3, (0.0, 1.0))
-    fit = Fit(2.0 + 0.5 * end.columns(31) @ [1.0, 0.01], (end._replace(place=None),), 2)
+    fit = Fit(2.0 + 0.5 * columns(end, 31) @ [1.0, 0.01], (end._replace(place=None),), 2)
     place = fit.place(0)
     assert place == pytest.approx(11.7, abs=1e-6)
     near = fit.values(place + np.array([-0.01, 0.0, 0.01])) - fit.value(place)
@@ -103,7 +105,7 @@ def test_a_place_between_nodes_and_a_known_one(inwards: int) -> None:
     line, nodes = half_line(0.5), 21
     first, second = (End(line, node, inwards, 3, place) for node, place in ((10, -0.3), (10 + 3 * inwards, 0.2)))
     x = np.arange(float(nodes))
-    values = 1.0 + 0.02 * x + 3.0 * first.columns(nodes) @ [1.0, 0.1] - second.columns(nodes) @ [1.0, -0.05]
+    values = 1.0 + 0.02 * x + 3.0 * columns(first, nodes) @ [1.0, 0.1] - columns(second, nodes) @ [1.0, -0.05]
     fit = Fit(values, (first._replace(place=None), second), 1)
     assert fit.place(0) == pytest.approx(10.0 - 0.3 * inwards, abs=1e-6)
     assert fit.place(1) == pytest.approx(10.0 + 3.2 * inwards, abs=1e-12)
@@ -112,9 +114,12 @@ def test_a_place_between_nodes_and_a_known_one(inwards: int) -> None:
 
 def test_the_end_of_a_zone_beside_an_old_border() -> None:
     line = half_line(0.5)
-    values = End(line, 0, 1, 3, -0.4).columns(30) @ [1.0, 0.02] + End(line, 2, 1, 3, 0.1).columns(30) @ [0.7, 0.01]
+    first, second = End(line, 0, 1, 3, -0.4), End(line, 2, 1, 3, 0.1)
+    values = columns(first, 30) @ [1.0, 0.02] + columns(second, 30) @ [0.7, 0.01]
     assert end_place(values, line, [OldBorder(2, 1, 1, 0.1)]) == pytest.approx(-0.4, abs=1e-6)
-    assert end_place(values, line, [OldBorder(2, 1, 1)]) == pytest.approx(-0.4, abs=3e-3)
+    # Both ends have the same solutions. Without noise the choice among the fits would be rounding. Measured: 1.5e-3.
+    noisy = values + 1e-6 * np.random.default_rng(1).normal(size=30)
+    assert end_place(noisy, line, [OldBorder(2, 1, 1)]) == pytest.approx(-0.4, abs=3e-3)
     assert not abs(end_place(values, line) + 0.4) < 0.01  # without knowledge of the old border
     assert math.isnan(end_place(np.random.default_rng(1).uniform(0.5, 1.0, 30), line))
     assert math.isnan(end_place(values[:3], line))

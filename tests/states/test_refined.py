@@ -10,6 +10,7 @@ from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, s
 from fastpin.kernels.status import OPEN
 from fastpin.states import fits
 from fastpin.states.half_line import End, half_line
+from tests.support.half_line import columns, powers
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(Material(3.0, 0.3), Material(1.0, 0.33))
@@ -125,11 +126,11 @@ def test_a_peak_at_a_border_of_unlike_bodies_beside_an_earlier_edge():
 def test_a_law_of_the_half_line_and_of_other_nodes():
     """Equally spaced nodes and a place that the solutions of the half line show; otherwise powers at the nodes."""
     line = half_line(0.5)
-    values = End(line, 0, 1, 3, -0.3).columns(30) @ [1.0, 0.05]
+    values = columns(End(line, 0, 1, 3, -0.3), 30) @ [1.0, 0.05]
     theta = 0.2 + 0.01 * np.arange(30)
     between = 0.2 + 0.01 * np.array([0.4, 1.5, 3.5])
     x = (between - 0.2) / 0.01 + 0.3
-    exact = line.powers(x, 3)[:, 1:] @ [1.0, 0.05]
+    exact = powers(line, x, 3)[:, 1:] @ [1.0, 0.05]
     assert fits.law_of_nodes(0.197, line, theta, values).values(between) == pytest.approx(exact, rel=1e-6)
     for place, angles in ((0.1975, theta), (0.197, theta + 1e-4 * np.arange(30) ** 2)):
         other = fits.law_of_nodes(place, line, angles, values)

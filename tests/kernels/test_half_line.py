@@ -1,0 +1,143 @@
+"""Compiled fits of the solutions of a half line: compiled, as plain Python, and against NumPy."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fastpin.kernels import half_line
+from fastpin.states.half_line import End, Tries, Try
+from fastpin.states.half_line import half_line as line_of
+from tests.support.half_line import NaiveFit, columns
+
+KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors")
+INNER = ("_product", "_unknowns", "_known_solution", "_fill", "_factor", "_invert", "_rotate", "_pseudo_invert",
+         "_solve", "_match", "_end_row", "_row", "_match_all", "_norm_of")  # fmt: skip
+
+LIKE, PRESSURE, RESERVE = line_of(0.5), line_of(0.46), line_of(0.53, 0.2)
+FITS = {
+    "an edge": (8, (End(PRESSURE, 0, 1, 4),), -1),
+    "both edges": (19, (End(LIKE, 0, 1, 5), End(PRESSURE, 18, -1, 4)), -1),
+    "an old border": (21, (End(LIKE, 10, 1, 3),), 4),
+    "an edge and a known border": (15, (End(RESERVE, 0, 1, 4), End(RESERVE, 6, -1, 3, 0.2)), -1),
+    "borders of unlike bodies": (
+        29, (End(RESERVE, 14, -1, 3, None, (0.0, 1.0)), End(RESERVE, 17, 1, 3, -0.4, (1.0, -2.0))), 3
+    ),
+    "no place": (12, (End(LIKE, 6, 1, 3), End(LIKE, 3, -1, 3)), 0),
+}  # fmt: skip
+
+
+def plain_python():
+    """The kernels as plain Python: their parts are taken from the same module."""
+    space = dict(vars(half_line))
+    for name in (*INNER, *KERNELS):
+        function = getattr(getattr(half_line, name), "py_func", None) or getattr(half_line, name)
+        space[name] = type(function)(function.__code__, space, name)
+    return SimpleNamespace(**{name: space[name] for name in KERNELS})
+
+
+@pytest.fixture(params=["compiled", "plain Python"], scope="module")
+def kernels(request):
+    return half_line if request.param == "compiled" else plain_python()
+
+
+def values_of(name: str) -> np.ndarray:
+    """Values like those of a contact, with an error of 1e-4; without any order for "no place"."""
+    nodes, ends, degree = FITS[name]
+    rng = np.random.default_rng(len(name))
+    if name == "no place":
+        return rng.uniform(0.5, 1.0, nodes)
+    values = 1e-4 * rng.normal(size=nodes) + (1.0 + 0.01 * np.arange(nodes) if degree >= 0 else 0.0)
+    for end in ends:
+        place = -0.3 if end.place is None else end.place
+        values += columns(end._replace(place=place), nodes) @ [1.0, 0.03, 0.001, 1e-4][: end.terms - 1]
+    return values
+
+
+@pytest.mark.parametrize("name", FITS)
+def test_a_fit_is_that_of_the_pseudo_inverse(kernels, name):
+    """Measured: 3e-12 of the places, 2e-11 of their errors; the scatter has the rounding of the values."""
+    nodes, ends, degree = FITS[name]
+    values, packed = values_of(name), Tries([Try(0, nodes, degree, ends)])
+    expected = NaiveFit(values, ends, degree)
+    n = expected.coefficients.size
+    coefficients, spread, matches, levers = (
+        np.empty(n),
+        np.empty((n, n)),
+        np.empty((len(ends), 3)),
+        np.empty((len(ends), n)),
+    )
+    scatter = kernels.solve(values, degree, packed.ends, packed.tables, coefficients, spread)
+    kernels.match(degree, packed.ends, packed.tables, coefficients, matches, levers)
+    assert coefficients == pytest.approx(expected.coefficients, abs=1e-9 * np.abs(expected.coefficients).max())
+    assert scatter == pytest.approx(expected.scatter, rel=1e-9)
+    for at in range(len(ends)):
+        place = expected.match(at)[0]
+        assert matches[at, 0] == pytest.approx(place, rel=1e-9, nan_ok=True)
+        assert matches[at, 2] == (0 if math.isnan(place) else 1)
+        if not math.isnan(place):
+            error = scatter * np.linalg.norm(levers[at] @ spread)
+            assert error == pytest.approx(expected.place_error(at), rel=1e-8)
+    x = np.array([-0.9, 0.0, 2.3, 6.1, nodes - 1.0])
+    rows = np.empty((x.size, n))
+    kernels.evaluate(x, nodes - 1.0, degree, packed.ends, packed.tables, matches, rows)
+    for each, row in zip(x, rows, strict=True):
+        assert row @ coefficients == pytest.approx(expected.value(each), rel=1e-9, abs=1e-12)
+        assert scatter * np.linalg.norm(row @ spread) == pytest.approx(expected.value_error(each), rel=1e-8, abs=1e-12)
+
+
+def test_many_fits_in_one_call(kernels):
+    """The same as one after the other. "At its place" has the error of the place, too."""
+    names = list(FITS)
+    values = [values_of(name) for name in names]
+    starts = np.cumsum([0, *(each.size for each in values)])
+    packed = Tries(
+        [Try(int(start), *FITS[name][::2], FITS[name][1]) for name, start in zip(names, starts, strict=False)]
+    )
+    places, errors, at_place = np.empty((len(names), 2)), np.empty(len(names)), np.empty(len(names))
+    flat, at = np.concatenate(values), np.full(len(names), 2.4)
+    kernels.end_places(flat, packed.rows, packed.ends, packed.tables, places)
+    kernels.value_errors(flat, packed.rows, packed.ends, packed.tables, at, errors)
+    kernels.value_errors(flat, packed.rows, packed.ends, packed.tables, np.full(len(names), np.nan), at_place)
+    for k, name in enumerate(names):
+        _, ends, degree = FITS[name]
+        fit = NaiveFit(values[k], ends, degree)
+        place = fit.match(0)[0]
+        assert places[k, 0] == pytest.approx(place, rel=1e-9, nan_ok=True)
+        assert errors[k] == pytest.approx(fit.value_error(2.4), rel=1e-8, abs=1e-12)
+        if math.isnan(place):
+            assert name == "no place"
+            assert math.isnan(at_place[k])
+            continue
+        assert places[k, 1] == pytest.approx(fit.place_error(0), rel=1e-8)
+        x = ends[0].node + ends[0].inwards * place
+        slope = abs(fit.value(x - 0.1 * ends[0].inwards) - fit.value(x)) / 0.1
+        assert at_place[k] == pytest.approx(fit.value_error(x) + slope * fit.place_error(0), rel=1e-8, abs=1e-12)
+
+
+@pytest.mark.parametrize("equal", [True, False])
+def test_columns_that_depend_on_each_other_get_the_least_coefficients(kernels, equal):
+    """Two ends with the same solutions, at the same node or not quite: the values of the fit are still right."""
+    ends = (End(LIKE, 4, 1, 3, -0.2), End(LIKE, 4, 1, 3, -0.2 if equal else -0.2 + 1e-12))
+    values = 1.0 + 2.0 * columns(ends[0], 17) @ [1.0, 0.1] + 1e-5 * np.random.default_rng(5).normal(size=17)
+    packed = Tries([Try(0, 17, 0, ends)])
+    coefficients, spread = np.empty(5), np.empty((5, 5))
+    scatter = kernels.solve(values, 0, packed.ends, packed.tables, coefficients, spread)
+    expected = NaiveFit(values, ends, 0)
+    if equal:
+        assert coefficients == pytest.approx(expected.coefficients, abs=1e-10)
+        assert scatter == pytest.approx(expected.scatter, rel=1e-8)
+        amplified = np.linalg.norm(expected.row(6.3) @ expected.inverse)
+        assert np.linalg.norm(expected.row(6.3) @ spread) == pytest.approx(amplified, rel=1e-8)
+    assert expected.row(6.3) @ coefficients == pytest.approx(expected.value(6.3), rel=1e-4)
+
+
+def test_the_exponential_of_a_power_series(kernels):
+    found = np.empty(6)
+    kernels.exponential(np.array([0.3, 2.0, 0.0, 0.0, 0.0, 0.0]), found)
+    assert found == pytest.approx([math.exp(0.3) * 2.0**k / math.factorial(k) for k in range(6)], rel=1e-15)
+    kernels.exponential(np.array([0.0, -1.0, -0.5, -1.0 / 3.0, -0.25, -0.2]), found)  # log(1 - x)
+    assert found == pytest.approx([1.0, -1.0, 0.0, 0.0, 0.0, 0.0], abs=1e-15)
