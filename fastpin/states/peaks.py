@@ -167,7 +167,7 @@ def _peaks_at_borders(
 def _top(grid: Grid, values: np.ndarray) -> int:
     """The node with the largest value. In symmetric contacts two nodes have it: take the one to the right."""
     equal = np.flatnonzero(values >= (1.0 - TIE) * values.max())
-    return int(equal[np.argmax([near_bottom(angle) for angle in grid.theta[equal]])])
+    return int(max(equal, key=lambda node: near_bottom(float(grid.theta[node]))))
 
 
 def _borders(grid: Grid, sticking: np.ndarray, stick: list[Interval]) -> Iterator[tuple[float, int, np.ndarray]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
@@ -32,9 +33,18 @@ Cusps = Callable[[np.ndarray], list[OldBorder]]
 """Gives for the node indices of a zone the old borders in it."""
 
 
+Sides = Callable[[np.ndarray], tuple[bool, bool]]
+"""Tells for the node indices of a zone whether its start and its stop are to be read."""
+
+
 def no_cusps(run: np.ndarray) -> list[OldBorder]:
     """No old borders in the zone of any nodes `run`."""
     return []
+
+
+def both_sides(run: np.ndarray) -> tuple[bool, bool]:
+    """Read the start and the stop of the zone of any nodes `run`."""
+    return True, True
 
 
 def square_root(run: np.ndarray) -> tuple[HalfLine, HalfLine]:
@@ -63,15 +73,13 @@ def in_order(zones: Sequence[Zone]) -> list[Zone]:
 
 def runs(grid: Grid, mask: np.ndarray) -> list[np.ndarray]:
     """Index arrays of the runs of consecutive True nodes. On a circle a run may continue past the last node."""
-    n = grid.size
-    if mask.all():
-        return [np.arange(n)]
-    inside = np.flatnonzero(mask)
-    if inside.size == 0:
-        return []
-    parts = np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1)
+    n, inside = grid.size, np.flatnonzero(mask)
+    if inside.size in (0, n):
+        return [inside] * (inside.size > 0)
+    stops = np.flatnonzero(inside[1:] - inside[:-1] > 1) + 1
+    parts = [inside[start:stop] for start, stop in pairwise([0, *stops.tolist(), inside.size])]
     if grid.closed and len(parts) > 1 and parts[0][0] == 0 and parts[-1][-1] == n - 1:
-        parts[-1] = np.r_[parts[-1], parts[0]]
+        parts[-1] = np.concatenate([parts[-1], parts[0]])
         parts = parts[1:]
     return parts
 
@@ -83,6 +91,7 @@ def intervals(
     lines: Lines = square_root,
     kinds: np.ndarray | None = None,
     cusps: Cusps = no_cusps,
+    sides: Sides = both_sides,
 ) -> list[Interval]:
     """Intervals of the zones in `mask`. A quantity falls to zero at their ends.
 
@@ -100,6 +109,9 @@ def intervals(
         The quantity may have a kink inside a zone where `kinds` changes.
     cusps : callable
         Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp.
+    sides : callable
+        Tells for the node indices of a zone whether its start and its stop are to be read. Any other end is the angle
+        of the outermost node.
 
     Returns
     -------
@@ -111,31 +123,39 @@ def intervals(
         start = float(grid.theta[0])
         return [(start, start + 2.0 * math.pi)]
     left, right = grid.knots()
-    at_starts, at_stops = np.broadcast_to(quantity, (2, grid.size))
+    at_starts, at_stops = quantity if quantity.ndim == 2 else (quantity, quantity)
     zones = []
     for run in runs(grid, mask):
         theta = unrolled(grid, run)
-        outside = theta[0] - (grid.theta[run[0]] - left[run[0]]), theta[-1] + (right[run[-1]] - grid.theta[run[-1]])
+        ends, back, inside = [float(theta[0]), float(theta[-1])], run[::-1], cusps(run)
         at_start, at_stop = lines(run)
-        back = run[::-1]
-        inside = cusps(run)
-        start = _end(theta, at_starts[run], at_start, outside[0], _alike(kinds[run]), inside)
-        inside = [cusp.mirrored(run.size) for cusp in inside]
-        stop = _end(theta[::-1], at_stops[back], at_stop, outside[1], _alike(kinds[back]), inside)
-        zones.append((start, stop))
+        is_read = sides(run)
+        if is_read[0]:
+            outside = float(theta[0] - (grid.theta[run[0]] - left[run[0]]))
+            ends[0] = _end(theta, at_starts[run], at_start, outside, kinds[run], inside)
+        if is_read[1]:
+            outside = float(theta[-1] + (right[run[-1]] - grid.theta[run[-1]]))
+            inside = [cusp.mirrored(run.size) for cusp in inside]
+            ends[1] = _end(theta[::-1], at_stops[back], at_stop, outside, kinds[back], inside)
+        zones.append((ends[0], ends[1]))
     return zones
 
 
 def _end(
-    theta: np.ndarray, quantity: np.ndarray, line: HalfLine, outside: float, alike: int, cusps: list[OldBorder]
+    theta: np.ndarray,
+    quantity: np.ndarray,
+    line: HalfLine,
+    outside: float,
+    kinds: np.ndarray,
+    cusps: list[OldBorder],
 ) -> float:
     """Angle of an end of a zone, rad: see :func:`fastpin.states.fits.edge`.
 
-    `cusps` are the old borders in the zone.
+    `cusps` are the old borders in the zone. The quantity may have a kink where `kinds` changes.
     """
     place = end_place(quantity, line, cusps)
     if math.isnan(place):
-        return float(fits.edge(theta, quantity, line.exponent, outside, alike))
+        return float(fits.edge(theta, quantity, line.exponent, outside, _alike(kinds)))
     if place < 0.0:
         return float(theta[0] - max(place, -1.0) * (outside - theta[0]))
     return float(theta[0] + place * (theta[1] - theta[0]))
@@ -183,7 +203,12 @@ def stick_intervals(
         return intervals(grid, sticking, reserve, lines, cusps=cusps)
     zones = []
     outer = list(zip(runs(grid, closed), contact, strict=True))
-    found = intervals(grid, sticking, reserve, lines, cusps=cusps)
+    starts, stops = ({int(nodes[end]) for nodes, _ in outer} for end in (0, -1))
+
+    def sides(run: np.ndarray) -> tuple[bool, bool]:
+        return int(run[0]) not in starts, int(run[-1]) not in stops
+
+    found = intervals(grid, sticking, reserve, lines, cusps=cusps, sides=sides)
     for run, (start, stop) in zip(runs(grid, sticking), found, strict=True):
         for nodes, (first, last) in outer:
             if run[0] in nodes:
@@ -197,8 +222,10 @@ def stick_intervals(
 
 def unrolled(grid: Grid, run: np.ndarray) -> np.ndarray:
     """Increasing angles of the nodes of a run, rad; a full turn is added past the last node of a circle."""
-    theta = grid.theta[run].copy()
-    theta[np.r_[False, np.cumsum(np.diff(run) < 0) > 0]] += 2.0 * math.pi
+    theta: np.ndarray = grid.theta[run]
+    turn = np.flatnonzero(run[1:] < run[:-1])
+    if turn.size:
+        theta[turn[0] + 1 :] += 2.0 * math.pi
     return theta
 
 
@@ -253,5 +280,5 @@ def _by_sign(grid: Grid, start: float, stop: float, status: np.ndarray) -> list[
     signs, angles = status[order], theta[order]
     changes = np.flatnonzero(np.diff(signs))
     borders = [start, *(0.5 * (angles[changes] + angles[changes + 1])), stop]
-    first = np.r_[0, changes + 1]
-    return [(float(borders[k]), float(borders[k + 1]), int(signs[first[k]])) for k in range(first.size)]
+    first = [0, *(changes + 1)]
+    return [(float(borders[k]), float(borders[k + 1]), int(signs[start])) for k, start in enumerate(first)]
