@@ -286,7 +286,8 @@ def test_hat_cauchy_against_paired_quadrature(n, shape):
         if half and offset == 0:
             assert math.isnan(got)
         else:
-            assert got == pytest.approx(naive_cauchy(u, h_left, h_right), abs=1e-11)
+            # The quadrature itself has errors of up to 1.01e-11, with 4,096 nodes and the narrowest hat.
+            assert got == pytest.approx(naive_cauchy(u, h_left, h_right), abs=2e-11)
             assert python(influence.hat_cauchy)(u, h_left, h_right) == pytest.approx(got, abs=1e-14)
 
 

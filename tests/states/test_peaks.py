@@ -97,5 +97,6 @@ def test_coarse_peaks_of_solved_contacts_are_near_those_of_a_fine_grid(
     problem = Problem.from_load_parameter(similar, parameter, friction, "body")
     coarse = solve(problem, corners, nodes=nodes)
     fine = solve(problem, corners, grid=coarse.grid.with_nodes(4 * nodes - 3))
-    assert coarse[-1].peak_shear == pytest.approx(fine[-1].peak_shear, rel=0.05)
+    # Under P alone the peaks on both sides are equal, and rounding chooses one of them.
+    assert abs(coarse[-1].peak_shear) == pytest.approx(abs(fine[-1].peak_shear), rel=0.05)
     assert nodal(coarse[-1].shear) <= abs(coarse[-1].peak_shear)
