@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -68,7 +71,7 @@ def log(project: Path) -> list[str]:
     return lines
 
 
-@pytest.mark.parametrize("name", ["scripts/run", "scripts/test", "scripts/docs", ".ci/run"])
+@pytest.mark.parametrize("name", ["scripts/run", "scripts/test", "scripts/docs", "scripts/oldest-versions", ".ci/run"])
 def test_scripts_can_be_run_and_parsed(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
     subprocess.run(["bash", "-n", ROOT / name], check=True)
@@ -163,3 +166,34 @@ def test_a_failed_installation_shows_why_and_is_tried_again(project: Path) -> No
     log(project)
     assert run(project, "run", "x").returncode == 0
     assert log(project)[0] == f"pip {project}"
+
+
+def test_the_oldest_versions_are_the_lower_bounds() -> None:
+    done = subprocess.run(
+        [ROOT / "scripts" / "oldest-versions", "--list"],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHON": sys.executable},
+        check=True,
+    )
+    listed = dict(line.split("==") for line in done.stdout.splitlines())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"].values()
+    for requirement in (*project["dependencies"], *(entry for extra in extras for entry in extra)):
+        name, bound = re.split(r"(?:\[\w+\])?>=", requirement)
+        version = listed[name].removesuffix(".*").split(".")
+        least = bound.split(".")
+        assert version[: len(least)] == least
+        assert listed[name].endswith(".*") == (len(version) == 2)
+
+
+def test_the_environment_of_the_oldest_versions_is_made_once(project: Path) -> None:
+    first = run(project, "oldest-versions", "tests/model")
+    assert first.returncode == 0, first.stderr
+    found = log(project)
+    assert [line for line in found if line in ("venv", f"pip {project}[dev]")] == ["venv", f"pip {project}[dev]"]
+    tests = f"{project}> -m pytest -n auto -m not slow -W ignore::DeprecationWarning tests/model"
+    assert found[-1] == tests
+    assert (project / ".venv-oldest" / "constraints.txt").exists()
+    run(project, "oldest-versions", "tests/model")
+    assert "venv" not in log(project)
