@@ -37,10 +37,17 @@ def pages(names: str) -> str:
     return "\n".join(name for name in names.split() if (ROOT / "docs" / f"{name}.md").exists())
 
 
+def folder(name: str) -> str:
+    """A hidden list of contents: the pages of a folder of docs/, in the order of the links of its index."""
+    index = (ROOT / "docs" / name / "index.md").read_text(encoding="utf-8")
+    return "\n".join(["```{toctree}", ":hidden:", "", *re.findall(r"\]\(([\w-]+)\.md\)", index), "```"])
+
+
 PARTS: dict[str, Callable[..., str]] = {
     "file": file_text,
     "section": section,
     "pages": pages,
+    "folder": folder,
     "case_keys": case_keys,
     "command_line": command_line,
     "file_layout": file_layout,
