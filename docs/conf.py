@@ -38,8 +38,8 @@ extensions = [
 ]
 exclude_patterns = ["extensions", "gallery", "joss", "static"]
 nitpicky = True
-# Two dashes are the beginning of an option, and quotes are those of a value.
-smartquotes = False
+# Dashes only: quotes are those of a value.
+smartquotes_action = "D"
 # Words of types, such as "theta", may be the names of several attributes.
 suppress_warnings = ["ref.python"]
 today_fmt = "%Y-%m-%d"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Iterator
 
 from fastpin.cli.options import EXIT_CODES, parser
@@ -48,5 +49,5 @@ def _help(action: argparse.Action, command: argparse.ArgumentParser) -> str:
     """The help of an option, with its default filled in."""
     text = (action.help or "").replace("%(prog)s", command.prog)
     text = text % {**vars(action), "prog": command.prog} if "%" in text else text
-    text = " ".join(text.split())
+    text = re.sub(r"(?<![\w`])--?[a-z][\w-]*", r"`\g<0>`", " ".join(text.split()))
     return text.replace("*", "\\*").replace("<", "\\<") or "no more words are needed"

@@ -15,6 +15,7 @@ import sys
 from typing import Any
 
 from docutils import nodes
+from sphinx.domains.python import PyObject
 
 LITERAL = re.compile(r"(``.*?``|:\w+:`.*?`)")
 """Parts of a docstring that are markup on purpose."""
@@ -123,9 +124,20 @@ def part_remarks(app: Any, what: str, name: str, obj: Any, options: Any, lines: 
         place += 1
 
 
+def join_sentence(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Join the first sentence of a property: napoleon takes the words before a colon for its type."""
+    place = next((place for place, line in enumerate(lines) if line.startswith(":type: ")), None)
+    if what in ("attribute", "property") and place is not None:
+        lines[0] = f"{lines.pop(place).removeprefix(':type: ')}: {lines[0]}"
+
+
 def setup(app: Any) -> dict[str, Any]:
     app.connect("missing-reference", resolve)
     # Before napoleon, which makes fields of the sections.
     app.connect("autodoc-process-docstring", part_remarks, priority=300)
     app.connect("autodoc-process-docstring", escape_symbols, priority=400)
+    app.connect("autodoc-process-docstring", join_sentence, priority=600)
+    for field in PyObject.doc_field_types:
+        if field.name == "variable":
+            field.label = "Attributes"
     return {"parallel_read_safe": True}

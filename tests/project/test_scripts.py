@@ -102,6 +102,15 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     assert log(project) == ["/> -P -m fastpin run x"]
 
 
+def test_the_site_needs_its_own_tools(project: Path) -> None:
+    (project / "docs" / "examples").mkdir(parents=True)
+    assert run(project, "docs", "--fresh", "-E").stdout == f"site: {project}/out/docs/index.html\n"
+    found = log(project)
+    assert (found[0], found[1]) == ("venv", f"pip {project}[docs]")
+    assert found[-1] == f"{project}> -m sphinx -b html -W --keep-going -q -d out/docs/.doctrees -E docs out/docs"
+    assert not (project / "docs" / "examples").exists()
+
+
 def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> None:
     done = run(project, "run")
     assert log(project)[-1].endswith(f"--plot {project}/out/tractions.png --json {project}/out/summary.json")
@@ -109,7 +118,7 @@ def test_without_arguments_the_built_in_case_with_its_figure(project: Path) -> N
     assert "out/tractions.png" in done.stdout
 
 
-@pytest.mark.parametrize(("script", "arguments"), [("run", ()), ("run", ("x",)), ("test", ())])
+@pytest.mark.parametrize(("script", "arguments"), [("run", ()), ("run", ("x",)), ("test", ()), ("docs", ())])
 def test_exit_codes_come_through(script: str, arguments: tuple[str, ...], project: Path) -> None:
     assert run(project, script, *arguments, FAIL="7").returncode == 7
 
