@@ -70,8 +70,11 @@ DEPENDENT = 1e-10
 SMALLEST = 1e-15
 """A singular value below this part of the largest one counts as zero, as in ``numpy.linalg.pinv``."""
 
+ORTHOGONAL = 1e-14
+"""Cosine of the angle of two vectors that counts as zero: the rounding of a product of ten to twenty numbers."""
+
 SWEEPS = 30
-"""Most sweeps of Jacobi's method. It ends by itself after some eight."""
+"""Most sweeps of Jacobi's method. It ends by itself after some seven."""
 
 SLOPE_STEP = 0.1
 """Distance from a cusp over which the slope on its smooth side is taken, in node distances."""
@@ -188,7 +191,7 @@ def _invert(A, diagonal, inverse):
 def _rotate(a, b, also_a, also_b):
     """Rotate the vectors `a` and `b` until they are orthogonal, and two others alike. Return whether they were so."""
     size_a, size_b, part = _product(a, a, 0), _product(b, b, 0), _product(a, b, 0)
-    if abs(part) <= SMALLEST * math.sqrt(size_a * size_b):
+    if abs(part) <= ORTHOGONAL * math.sqrt(size_a * size_b):
         return True
     ratio = 0.5 * (size_b - size_a) / part
     tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + math.sqrt(1.0 + ratio**2))
