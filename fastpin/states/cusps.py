@@ -45,6 +45,9 @@ GOOD_ENOUGH = 5e-5
 The standard error of a wide window misses a part of its error: its terms are too few for all places in it.
 """
 
+PRESSURE_GOOD_ENOUGH = 0.1 * GOOD_ENOUGH
+"""The same for the pressure. It is smoother than the shear, and its error comes on top of the error of the shear."""
+
 BEYOND, TRIED = 6.0, 81
 """Reach on the slip side of a border of unlike bodies, in node distances, and the number of places tried there.
 
@@ -351,7 +354,7 @@ class ShearNodes:
             for first, last in _spans(at, size):
                 values = self.pressure[patch.nodes[first:last]] - patch.turned(first, last)
                 windows.append(_Window(first, 0, values, _pressure_shapes(patch, first, last)))
-            best = _best(windows, at + float(offsets[0]), 0.1 * GOOD_ENOUGH * float(self.pressure[node]))
+            best = _best(windows, at + float(offsets[0]), PRESSURE_GOOD_ENOUGH * float(self.pressure[node]))
             if best is None:
                 return None
             first, count = best.window.first, best.window.values.size

@@ -247,7 +247,17 @@ class Try(NamedTuple):
 
 
 class Tries:
-    """Fits to try, as compiled code takes them."""
+    """Fits to try, as compiled code takes them.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (t, 5)
+        Values, degree and ends of each fit, see :data:`fastpin.kernels.half_line.FIRST`.
+    ends : ndarray, shape (e, 5)
+        The ends of all fits, see :data:`fastpin.kernels.half_line.TABLE`.
+    tables : ndarray
+        The tables of their half lines, see :func:`table`.
+    """
 
     def __init__(self, tries: Sequence[Try]) -> None:
         tables: dict[tuple[HalfLine, tuple[float, float]], int] = {}
