@@ -417,7 +417,7 @@ def _pressure_shapes(patch: _Patch, first: int, last: int) -> list[tuple[tuple[E
 def _best(windows: list[_Window], at: float | None, enough: float) -> _Reading | None:
     """The fit with the smallest standard error at the place `at` of the zone; None takes the place of its first end.
 
-    No wider window is tried after a fit with an error that is small `enough`. None if there is no fit.
+    No wider window counts after a fit with an error that is small `enough`. None if there is no fit.
     """
     tries, places, owners, start = [], [], [], 0
     for window in windows:
@@ -433,8 +433,7 @@ def _best(windows: list[_Window], at: float | None, enough: float) -> _Reading |
     errors = Tries(tries).value_errors(np.concatenate([window.values for window in windows]), np.array(places))
     best, least = None, math.inf
     for number, (error, window) in enumerate(zip(errors.tolist(), owners, strict=True)):
-        is_new = best is not None and window is not owners[best]
-        if best is not None and is_new and (least <= enough or window.is_last):
+        if best is not None and window is not owners[best] and (least <= enough or window.is_last):
             break
         if error < least:
             best, least = number, error

@@ -86,7 +86,7 @@ def _best(values: np.ndarray, line: HalfLine, cusps: Sequence[OldBorder]) -> tup
 def _best_fit(values: bytes, line: HalfLine, others: tuple[End, ...], most: int) -> tuple[Try | None, float]:
     """The best fit of up to `most` of the `values`, with the old borders `others`; and the place of the end by it.
 
-    The same end is read for the zones of a state, for its cusps, and at later corners as an old border.
+    It is kept, because the same end is read for the zones of a state and for its cusps.
     """
     tries, packed = _tries(line, others, most)
     best, found, least = None, math.nan, LARGEST_COUPLED if line.coupling else LARGEST_ERROR
