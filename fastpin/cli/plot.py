@@ -203,6 +203,7 @@ def _slip(options: argparse.Namespace, title: str) -> Made:
 
 def _loops(options: argparse.Namespace, title: str) -> Made:
     cycle = _result(options).cycle()
+    figures.check_loops(cycle)
     return lambda path: figures.plot_loops(cycle, path, title), _curves(report.cycle.loop_curves(cycle))
 
 

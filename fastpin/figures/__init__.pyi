@@ -7,6 +7,7 @@ from .convergence import plot_convergence as plot_convergence
 from .cycles import plot_cycles as plot_cycles
 from .fatigue import plot_fatigue as plot_fatigue
 from .history import plot_history as plot_history
+from .load_cycle import check_loops as check_loops
 from .load_cycle import plot_loops as plot_loops
 from .load_cycle import plot_slip as plot_slip
 from .lug import plot_lug as plot_lug

@@ -202,9 +202,17 @@ def plot_loops(
         :func:`fastpin.plot_tractions`.
     """
     look, found = Look(path, title, width, dpi, ax), _cycle_of(cycle)
-    if not _changing(found):
-        raise InputError("cycle", "has no loop: no load changes in it")
+    check_loops(found)
     return look.drawn(lambda: _draw_loops(found, look))
+
+
+def check_loops(cycle: LoadCycle) -> None:
+    """Raise :class:`InputError` if a cycle has no hysteresis loop."""
+    if _changing(cycle):
+        return
+    if len(cycle.states) == 2 and cycle.last - cycle.first > 1:
+        raise InputError("cycle", 'has no loop: only its ends were kept; keep "corners" or "all" keeps its corners')
+    raise InputError("cycle", "has no loop: no load changes in it")
 
 
 def _changing(cycle: LoadCycle) -> list[str]:

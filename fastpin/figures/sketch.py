@@ -19,7 +19,7 @@ from fastpin.figures.words import ROUNDING, caption, point_text, short_load, sho
 from fastpin.kernels.status import STICK
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml
+from fastpin.model.checks import as_toml, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
@@ -104,9 +104,14 @@ def plot_sketch(
     Raises
     ------
     InputError
-        If `joint` is something else. Also see :func:`fastpin.plot_tractions`.
+        If `joint` is something else, or a `history` is given with another joint than a problem. Also see
+        :func:`fastpin.plot_tractions`.
     """
     look = Look(path, title, width, dpi, ax)
+    if history is not None:
+        instance("history", history, LoadHistory, "a LoadHistory")
+        if not isinstance(joint, Problem):
+            raise InputError("history", "is for a Problem; a case, a result and a state have loads of their own")
     if isinstance(joint, State):
         return look.drawn(lambda: draw_sketch(joint.problem, load_ranges([joint]), look, joint))
     if isinstance(joint, Problem):

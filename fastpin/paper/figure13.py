@@ -73,7 +73,8 @@ def draw(curves: Sequence[Curve]) -> Figure:
         layout.append(row)
     states = {"steady state": steady, "first load": forward, "first load the other way": reverse}
     legend = [[(f"{SYMBOLS[load]}, {words}", lines[load]) for words, lines in states.items()] for load in FIRST_LOADS]
-    figure = traction_figure(layout, style, *legend, heading=case_lines(curves[0], "eta"))
+    heading = [case_lines(curves[0], "eta")[0], "pin that can't rotate; P at its centre, then three cycles of Q"]
+    figure = traction_figure(layout, style, *legend, heading=heading)
     for panel, content in zip(figure.axes, (content for row in layout for content in row), strict=True):
         _name_steady_states(panel, content.curves)
     return figure

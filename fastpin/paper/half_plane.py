@@ -266,7 +266,8 @@ def draw(curves: Sequence[Curve]) -> Figure:
     head(
         figure,
         f"P at the centre of the pin, plane strain; friction coefficient {FRICTION:g} unless said otherwise",
-        f"unlike bodies: Dundurs' β = ±{BETA:g}; curves end where the grid has errors as large",
+        f"unlike bodies: Dundurs' β = ±{BETA:g}",
+        "curves end where the grid has errors as large, and dip where an error changes its sign",
     )
     for panel, (name, theory) in zip(axes.flat, THEORIES.items(), strict=True):
         for curve in curves:

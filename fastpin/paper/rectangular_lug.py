@@ -86,7 +86,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
         (axes[1, 0], "hoop", "hoop stress (F/R)"),
     ):
         for curve in curves:
-            if column in curve.columns:
+            if column in curve.columns and (column != "T" or curve.parameters["mu"] > 0.0):
                 panel.plot(
                     curve["angle_deg"], curve[column], **style(curve.parameters["plate"], curve.parameters["mu"])
                 )

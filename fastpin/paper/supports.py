@@ -91,6 +91,10 @@ def draw(curves: Sequence[Curve]) -> Figure:
         panel.minorticks_off()
         panel.set_xlabel("outer radius of the ring over the hole radius")
         panel.set_ylabel(label)
+    axes[0, 0].annotate(
+        "all round a free rim:\nfour tractions, nearly equal", (1.55, 0.451), (2.6, 0.42), fontsize=8.0, va="center",
+        arrowprops={"arrowstyle": "-", "linewidth": 0.7},
+    )  # fmt: skip
     rows = [(NAMES[support], style) for support, style in lines.items()]
     add_legend(figure, [*rows[:3], (INFINITE, {"color": "0.55", "linewidth": 1.0})], rows[3:])
     return figure

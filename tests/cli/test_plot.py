@@ -140,6 +140,17 @@ def test_a_cycle_without_its_corners_has_no_fatigue(tmp_path, capsys):
     assert "must hold all corners of the cycle, 5 to 7" in capsys.readouterr().err
 
 
+def test_a_cycle_without_its_corners_has_no_loop(tmp_path, capsys):
+    path = tmp_path / "ends.h5"
+    history = LoadHistory([{"P": 1e5}]) + LoadHistory([{"Q": 2e4}, {"Q": -2e4}]).repeated(2)
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    record(Problem(pair, 1e-2, 1e-5, 0.3), history, path, nodes=31, keep="cycles")
+    assert main(["plot", str(path), "loops", "-o", str(tmp_path / "a.png")]) == 2
+    message = 'cycle: has no loop: only its ends were kept; keep "corners" or "all" keeps its corners'
+    assert capsys.readouterr().err.strip() == f"fastpin: {message}"
+    assert not (tmp_path / "a.png").exists()
+
+
 def test_the_result_is_not_overwritten(stored, capsys):
     before = stored.read_bytes()
     for option in ("--csv", "-o"):

@@ -191,6 +191,10 @@ def test_remote_stresses_stand_at_the_sides_of_the_plate():
 def test_a_sketch_needs_a_joint_and_may_stand_in_given_axes():
     with pytest.raises(InputError, match="joint: must be a Problem, Case, Result or State"):
         figures.plot_sketch("case.toml")
+    with pytest.raises(InputError, match="history: must be a LoadHistory"):
+        figures.plot_sketch(sample_result().problem, history=[{"P": 1.0}])
+    with pytest.raises(InputError, match="history: is for a Problem; a case, a result and a state have loads"):
+        figures.plot_sketch(sample_result(), history=LoadHistory([{"P": 1.0}]))
     figure = figures.plot_polar(sample_result())
     panel = figure.add_axes((0.8, 0.8, 0.2, 0.2))
     assert figures.plot_sketch(sample_result()[0], ax=panel) is figure
