@@ -11,9 +11,12 @@ from PIL import Image
 
 from fastpin.errors import InputError
 from fastpin.figures.cycles import plot_cycles
+from fastpin.figures.polar import plot_polar
+from fastpin.figures.sketch import plot_sketch
 from fastpin.figures.states import drawn_states
 from fastpin.figures.stick_slip import plot_stick_slip
-from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, spread
+from fastpin.figures.stress import plot_hoop_stress
+from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, spread
 from fastpin.figures.tractions import plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
@@ -191,6 +194,8 @@ def test_axes_of_the_caller() -> None:
 
 def test_notebooks_show_a_figure_without_pyplot() -> None:
     assert plot_tractions(sample_result())._repr_png_().startswith(b"\x89PNG")
+    for plot in (plot_polar, plot_stick_slip, plot_sketch, plot_hoop_stress):
+        assert isinstance(plot(sample_result()), Drawing)
 
 
 @pytest.mark.parametrize("centre", [-0.5 * np.pi, 0.0, 0.5 * np.pi, 0.75 * np.pi])
