@@ -162,17 +162,18 @@ def test_nodes_gather_at_the_bottom_and_at_narrow_slip_zones() -> None:
     assert spacing[:10] == pytest.approx(0.0263, rel=0.01)
     assert np.all(np.diff(spacing) > -1e-3)
     finer = np.degrees(sweep.gathered_grid(700, slip=(20, 27)).theta - tractions.BOTTOM)
-    middle = (finer[:-1] > 20.0) & (finer[1:] < 27.0)
-    assert np.diff(finer)[middle] == pytest.approx(0.05, rel=0.05)
+    middle = (finer[:-1] > 20.1) & (finer[1:] < 26.9)
+    assert np.diff(finer)[middle] == pytest.approx(0.025, rel=0.05)
 
 
 def test_stick_zones_have_no_gaps_and_no_jogs() -> None:
     """With equal spacings of a quarter of a decade each, the first curve ended, and the others had 0.012 and 0.044."""
-    narrow, small_slip, wide = sweep.swept([("Ti/Al", 0.1), ("Al/Ti", 0.3), ("Ti/Al", 0.2)], 201, None)
+    narrow, wide = sweep.swept([("Ti/Al", 0.1), ("Ti/Al", 0.2)], 201, None)
+    (small_slip,) = sweep.swept([("Al/Ti", 0.3)], 400, None)
     assert narrow["rho_deg"].min() == pytest.approx(0.22, abs=0.02)
     ratio = np.tan(np.radians(0.5 * small_slip["rho_deg"])) / np.tan(np.radians(0.5 * small_slip["epsilon_deg"]))
     assert np.all(np.diff(ratio) < 0.0)
-    assert np.abs(np.diff(ratio, 2)).max() < 0.006
+    assert np.abs(np.diff(ratio, 2)).max() < 0.004  # measured: 0.0032; 0.0061 with twice the spacing at narrow slip
     conforming = wide["L_p"] < 0.06
     assert np.abs(np.diff(np.log(wide["rho_deg"][conforming]), 2)).max() < 0.012
 
