@@ -15,13 +15,13 @@ def printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
-class InputError(FastpinError, ValueError):
-    """Input that can't be used. The message says what is allowed.
+class FieldMessage(Exception):  # noqa: N818 - the base of errors and warnings
+    """A message on a field of the input. Copies and pickles keep both.
 
     Attributes
     ----------
     field : str
-        The field at fault.
+        The field.
     reason : str
         The message without the field.
     """
@@ -31,8 +31,20 @@ class InputError(FastpinError, ValueError):
         self.field = field
         self.reason = printable(message)
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, str]]:
+    def __reduce__(self) -> tuple[type[FieldMessage], tuple[str, str]]:
         return type(self), (self.field, self.reason)
+
+
+class InputError(FieldMessage, FastpinError, ValueError):
+    """Input that can't be used. The message says what is allowed.
+
+    Attributes
+    ----------
+    field : str
+        The field at fault.
+    reason : str
+        The message without the field.
+    """
 
 
 class CaseFileError(InputError):
@@ -54,7 +66,7 @@ class CaseFileError(InputError):
         return type(self), (self.field, self.problems)
 
 
-class InputWarning(UserWarning):
+class InputWarning(FieldMessage, UserWarning):
     """Input that can be used, but is probably a mistake. The result is not changed by the warning.
 
     Attributes
@@ -64,11 +76,3 @@ class InputWarning(UserWarning):
     reason : str
         The message without the field.
     """
-
-    def __init__(self, field: str, message: str) -> None:
-        super().__init__(printable(f"{field}: {message}"))
-        self.field = field
-        self.reason = printable(message)
-
-    def __reduce__(self) -> tuple[type[InputWarning], tuple[str, str]]:
-        return type(self), (self.field, self.reason)
