@@ -9,9 +9,11 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TextIO
 
+LOAD_POINTS = "{whole} of {total:,} load points"
+"""Text of the progress bar of a run."""
+
 DELAY = 2.0
 """Seconds after which a bar appears. Most runs are finished before: then tqdm, which takes 60 ms, is not imported."""
-
 
 LONG = 60.0
 """Seconds above which a user is told before the work begins."""

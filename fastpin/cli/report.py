@@ -8,8 +8,9 @@ import dataclasses
 from pathlib import Path
 
 from fastpin import casefile, pages, solver, studies
-from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail
+from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
+from fastpin.cli.run import note_run
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.pages.html import check_page
@@ -18,9 +19,6 @@ from fastpin.pages.source import Source
 
 SECTIONS = "section {n:.0f} of {total:.0f}"
 """Text of the progress bar of the page."""
-
-CORNERS = "load point {n:.2f} of {total}"
-"""Text of the progress bar of a case that is solved."""
 
 APPLIES = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",), "error_bars": ("case",)}
 """Options, and the kinds of sources on which they have an effect."""
@@ -35,14 +33,14 @@ def run(options: argparse.Namespace) -> int:
     for name, kinds in APPLIES.items():
         if getattr(options, name) is not None and kind not in kinds:
             allowed = " or ".join(KINDS[each] for each in kinds)
-            raise InputError(_flag(name), f"has no effect on {KINDS[kind]}; it is for {allowed}")
+            raise InputError(flag(name), f"has no effect on {KINDS[kind]}; it is for {allowed}")
     page = Path(f"{options.source.resolve().stem}.html") if options.output is None else options.output
     check_page("--output", page)
     try:
         code = _WRITERS[kind](options, page)
     except InputError as error:
         named = error.field in ("title", "case", "plan", "error_bars")
-        raise InputError(_flag(error.field), error.reason) if named else error from None
+        raise InputError(flag(error.field), error.reason) if named else error from None
     print(f"wrote {page}")
     return code
 
@@ -52,10 +50,6 @@ def _kind(source: Path) -> str:
     if source.is_dir():
         return "sweep"
     return "case" if source.suffix == ".toml" else "result"
-
-
-def _flag(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
 
 
 def _of_result(options: argparse.Namespace, page: Path) -> int:
@@ -88,7 +82,8 @@ def _of_case(options: argparse.Namespace, page: Path) -> int:
     case, code, reason = _case(options.source), EXIT_OK, None
     if options.error_bars:
         case = dataclasses.replace(case, options=case.options.changed(error_bars=True))
-    with Bar(len(case.history), CORNERS) as bar:
+    note_run(case)
+    with Bar(len(case.history), LOAD_POINTS) as bar:
         try:
             result = solver.solve(case.problem, case.history, progress=progress_to(bar), **case.options.keywords())
         except solver.SolveError as error:

@@ -15,21 +15,21 @@ import numpy as np
 
 from fastpin import casefile, figures, live, report, solver, storage
 from fastpin.cli.options import literal
-from fastpin.cli.progress import Bar, note_duration, progress_to
+from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_OK,
     check_outputs,
     fail,
+    flag,
     write_files,
     write_text,
 )
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
-from fastpin.report.cycle import MOST_STOPS
-from fastpin.report.notes import note_lines, solver_line
+from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
@@ -42,9 +42,6 @@ SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "sho
 
 LISTS = ("arc", "between")
 """Options that take a number or a list of numbers, written with commas."""
-
-PROGRESS = "{whole} of {total:,} load points"
-"""Text of the progress bar."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -63,9 +60,8 @@ def run(options: argparse.Namespace) -> int:
     if start is not None:
         keywords["arc"] = None  # the grid is the one of the start
     solved: list[solver.Result] = []
-    seconds = solver.expected_seconds(case.problem, case.history, case.options)
-    note_duration(seconds, f", with {case.options.nodes:,} nodes; half as many take a fifth of the time")
-    with Bar(len(case.history), PROGRESS) as progress_bar, _as_options(options):
+    note_run(case)
+    with Bar(len(case.history), LOAD_POINTS) as progress_bar, _as_options(options):
         keywords["progress"] = progress_to(progress_bar)
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
@@ -77,13 +73,19 @@ def run(options: argparse.Namespace) -> int:
     return _write_result(case, options, solved[0] if ended is None else ended.result, ended)
 
 
+def note_run(case: Case) -> None:
+    """Print a note before a run that will take more than a minute."""
+    seconds = solver.expected_seconds(case.problem, case.history, case.options)
+    note_duration(seconds, f", with {case.options.nodes:,} nodes; half as many take a fifth of the time")
+
+
 def resume(options: argparse.Namespace) -> int:
     """Continue a run that ended early, and write its states."""
     case = storage.stored_case(options.output)
     _check_outputs(options)
     _check_cycles(case, options)
     _check_states(case, options)
-    with Bar(len(case.history), PROGRESS) as progress_bar:
+    with Bar(len(case.history), LOAD_POINTS) as progress_bar:
         ended = _ending(lambda: storage.resume(options.output, progress_to(progress_bar)))
     return _write_stored(case, options, ended)
 
@@ -101,14 +103,15 @@ def show(options: argparse.Namespace) -> int:
 
 
 def _note_unfinished(case: Case, path: Path) -> None:
-    """Say that a stored run has not come to its end, how far it is, and how to continue it."""
+    """Say that a stored run has not come to its end, how far it is, and why or how to continue it."""
     last = storage.load(path, states=slice(-1, None))
     if last.complete:
         return
     reached = f"{last[0].step + 1:,}" if len(last) else "0"
     reason = storage.stored_error(path)
     why = f" ({reason})" if reason else ""
-    print(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}; continue with: fastpin resume {path}")
+    more = f"; {how}" if (how := way_on(path, reason)) else ""
+    print(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
 
 
 def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:
@@ -146,8 +149,8 @@ def _as_options(options: argparse.Namespace) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if error.field in SOLVE_OPTIONS and getattr(options, error.field) is not None:
-            raise InputError(_flag(error.field), error.reason) from None
+        if error.field in (*SOLVE_OPTIONS, "start") and getattr(options, error.field) is not None:
+            raise InputError(flag(error.field), error.reason) from None
         raise
 
 
@@ -155,7 +158,7 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     """Refuse options that would have no effect, and figures that can't be drawn."""
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
-            raise InputError(_flag(name), "needs --output FILE")
+            raise InputError(flag(name), "needs --output FILE")
     for name in ("output", "start"):
         if options.error_bars and getattr(options, name) is not None:
             raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
@@ -169,7 +172,7 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
 def _check_cycles(case: Case, options: argparse.Namespace) -> None:
     for name in ("cycles", "cycle_csv"):
         if getattr(options, name) is not None and not case.history.longest_cycle:
-            raise InputError(_flag(name), "the history has no cycles: none of its blocks is repeated")
+            raise InputError(flag(name), "the history has no cycles: none of its blocks is repeated")
 
 
 def _check_states(case: Case, options: argparse.Namespace) -> None:
@@ -183,11 +186,6 @@ def _check_states(case: Case, options: argparse.Namespace) -> None:
         raise InputError("--states", error.reason) from None
 
 
-def _flag(name: str) -> str:
-    """Return an option as it is written on the command line."""
-    return f"--{name.replace('_', '-')}"
-
-
 def _corners(corners: int, text: str | None) -> list[int]:
     """Return the corners of ``--save-after``, from 1 to `corners`."""
     try:
@@ -195,7 +193,7 @@ def _corners(corners: int, text: str | None) -> list[int]:
     except ValueError:
         numbers = [0]
     if not all(1 <= number <= corners for number in numbers):
-        raise InputError("--save-after", f"must be corners from 1 to {corners}, such as 1,{corners}, not {text!r}")
+        raise InputError("--save-after", f'must be corners from 1 to {corners}, such as 1,{corners}, not "{text}"')
     return numbers
 
 
@@ -223,8 +221,8 @@ def _check_outputs(options: argparse.Namespace) -> None:
     """Check before the work that all output files can be written."""
     names = ("json", "plot", "cycles", "cycle_csv", "record", "output")
     if options.record is not None and options.record.suffix.lower() not in (".html", ".htm"):
-        raise InputError("--record", f"the page's name must end in .html, not {options.record.name!r}")
-    check_outputs({_flag(name): getattr(options, name) for name in names}, getattr(options, "case", None))
+        raise InputError("--record", f'must be the name of a page, which ends in .html, not "{options.record.name}"')
+    check_outputs({flag(name): getattr(options, name) for name in names}, getattr(options, "case", None))
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:
@@ -236,7 +234,7 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     points, cycles = storage.load_points(options.output), storage.load(options.output, states=[]).cycles
     rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states)
     places = set(rows.printed)
-    if cycles and len(last := range(points.size)[_places(options, cycles[-1])]) <= MOST_STOPS:
+    if cycles and len(last := range(points.size)[_places(options, cycles[-1])]) <= report.cycle.MOST_STOPS:
         places |= set(last)  # the fatigue over the last cycle is printed
     if options.record is not None:
         places |= set(live.recorded_places(points.size))

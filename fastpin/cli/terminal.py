@@ -19,10 +19,15 @@ def fail(message: str, code: int) -> int:
     return code
 
 
+def flag(name: str) -> str:
+    """Return an option as it is written on the command line."""
+    return f"--{name.replace('_', '-')}"
+
+
 def check_figure(option: str, path: Path) -> None:
     """Raise :class:`InputError` with the option as its field if a file's name does not end as a figure's."""
     if path.suffix.lower() not in FIGURE_FORMATS:
-        raise InputError(option, f"the figure's name must end in {', '.join(FIGURE_FORMATS)}, not {path.name!r}")
+        raise InputError(option, f'must be the name of a figure, which ends in .png, .pdf or .svg, not "{path.name}"')
 
 
 def check_outputs(

@@ -31,6 +31,9 @@ DEEPEST_LIST = 3
 LONGEST_NAME, LONGEST_PATH = 255, 4095
 """Most bytes of a file's name and of its whole path, as usual systems allow them."""
 
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+"""The first bytes of an HDF5 file."""
+
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 
@@ -89,8 +92,13 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> str:
     if isinstance(value, str) and value in allowed:
         return value
     hint = closest(value, allowed) if isinstance(value, str) else ""
-    choices = " or ".join(f'"{word}"' for word in allowed)
-    raise InputError(field, f"must be {choices}, not {as_toml(value)}{hint}")
+    raise InputError(field, f"must be {alternatives(allowed)}, not {as_toml(value)}{hint}")
+
+
+def alternatives(words: Sequence[str]) -> str:
+    """Return words in quotes with commas, and "or" before the last one."""
+    quoted = [f'"{word}"' for word in words]
+    return " or ".join([", ".join(quoted[:-1]), quoted[-1]] if len(quoted) > 1 else quoted)
 
 
 def true_or_false(field: str, value: object) -> bool:
@@ -121,6 +129,17 @@ def file_path(field: str, value: object) -> Path:
     if len(encoded) > LONGEST_PATH or max(map(len, encoded.split(os.fsencode(os.sep)))) > LONGEST_NAME:
         raise InputError(field, f"is too long for the name of a file: {as_toml(value)}")
     return Path(name)
+
+
+def why_unreadable(error: Exception) -> str:
+    """Return why a file can't be read, from the error of its opening or reading, for the message."""
+    if isinstance(error, FileNotFoundError):
+        return "there is no such file"
+    if isinstance(error, IsADirectoryError):
+        return "is a directory, a file is needed"
+    if isinstance(error, UnicodeDecodeError):
+        return "is not UTF-8 text"
+    return f"can't be read: {getattr(error, 'strerror', None) or error}"
 
 
 def instance(field: str, value: object, kind: type[T], name: str) -> T:

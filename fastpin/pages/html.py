@@ -7,7 +7,7 @@ from pathlib import Path
 import jinja2
 
 from fastpin.errors import InputError
-from fastpin.model.checks import file_path
+from fastpin.model.checks import as_toml, file_path
 from fastpin.pages.content import Page
 from fastpin.storage.files import check_writable, replacing
 
@@ -28,7 +28,9 @@ def check_page(field: str, path: str | Path) -> Path:
     """
     found = file_path(field, path)
     if found.suffix.lower() not in SUFFIXES:
-        raise InputError(field, f"the page's name must end in {' or '.join(SUFFIXES)}, not {found.name!r}")
+        raise InputError(
+            field, f"must be the name of a page, which ends in {' or '.join(SUFFIXES)}, not {as_toml(found.name)}"
+        )
     check_writable(found)
     return found
 

@@ -25,7 +25,7 @@ from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDU
 from fastpin.report.case import case_rows, corner_columns, hole_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
-from fastpin.report.notes import note_lines, solver_line
+from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.solver.configuration import MAX_RESIDUAL
@@ -84,7 +84,7 @@ def overview(page: Shared) -> Section:
         sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
         sentences += cycle_lines(problem, source.result.cycles)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
-        sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue)]
+        sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue, states)]
         if len(states) < source.points.size:
             words = f"The sentences on states are on the {len(states)} states in the table of key figures."
             parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not among them."))
@@ -103,9 +103,14 @@ def _status(source: Source) -> Text:
     corners = len(source.case.history)
     if source.result.complete:
         return Text(f"Complete: all {corners:,} corners of the load history were followed; {_count(source)}.")
-    why = f" The reason: {source.error}." if source.error else " The run may still be going on." * bool(source.path)
-    how = f" To continue it: fastpin resume {source.path}" if source.path else ""
-    return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{how}", "note")
+    why = f" The reason: {source.error}." if source.error else ""
+    how = way_on(source.path, source.error)
+    return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{_said(how)}", "note")
+
+
+def _said(line: str) -> str:
+    """Return a line of a report as a sentence behind others; empty if the line is."""
+    return f" {_sentence(line)}" if line else ""
 
 
 def _count(source: Source) -> str:
@@ -127,15 +132,14 @@ def case(page: Shared) -> Section:
     known = page.source.knows_options
     options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
     solver = [(name, as_toml(value), OPTION_WORDS[name]) for name, value in options.items() if value is not None]
-    return Section(
-        "case",
-        "Case",
-        [
-            *_drawn(lambda: drawings.sketch(page.album, found)),
-            Facts("The problem", rows, ("subject", "in words")),
-            Facts("Options of the solver", solver, ("option", "value", "meaning")),
-        ],
-    )
+    parts = [
+        *_drawn(lambda: drawings.sketch(page.album, found)),
+        Facts("The problem", rows, ("subject", "in words")),
+        Facts("Options of the solver", solver, ("option", "value", "meaning")),
+    ]
+    if problem.thickness is not None:
+        parts.append(Text("Tables and sentences have forces for the whole thickness, figures per thickness.", "note"))
+    return Section("case", "Case", parts)
 
 
 _IN_RESULTS = ("nodes", "method", "error_bars")
@@ -336,7 +340,7 @@ def fatigue(page: Shared) -> Section:
     found = page.source.fatigue
     if isinstance(found, str):
         return Section("fatigue", "Fatigue", [Text(found, "missing")])
-    parts: list[Part] = [drawings.fatigue(page.album, found), Text(_sentence(hot_spot_line(found)))]
+    parts: list[Part] = [drawings.fatigue(page.album, found), Text(_sentence(hot_spot_line(found, page.source.drawn)))]
     if found.life is None:
         words = f"There is no life: the material of the {hole_body(found.problem)} lacks constants for it."
         parts.append(Text(f"{words} The key fatigue of a case file gives them; see docs/fatigue.md.", "missing"))
@@ -369,7 +373,9 @@ def checks(page: Shared) -> Section:
     ]
     parts: list[Part] = []
     if rows:
-        words = f"Largest violations of the contact conditions in all {source.points.size:,} states"
+        count = source.points.size
+        states = "the state" if count == 1 else f"all {count:,} states"
+        words = f"Largest violations of the contact conditions in {states}"
         heads = ("condition", "largest violation", f"at most {MAX_RESIDUAL:g}", "meaning")
         parts.append(Facts(words, rows, heads))
     else:
@@ -382,19 +388,19 @@ def provenance(page: Shared) -> Section:
     """Return the versions, the place and time of the run, its id, and its input."""
     source = page.source
     document = canonical(source.case)
-    rows, words = [*source.origin], "Input of the run (JSON, SI units)"
+    rows, listing = [*source.origin], "Input of the run (JSON, SI units)"
     if source.knows_options:
         rows.append(("id of the input", run_id(document)))
     else:
         del document["solve"]
-        words = "Input of the run without the options of the solver, which are not known (JSON, SI units)"
+        listing = "Input of the run without the options of the solver, which are not known (JSON, SI units)"
     parts: list[Part] = [Facts("Origin", rows, ("subject", "value"))]
     if source.case_text:
         parts.append(Listing("Case file", _shortened(source.case_text)))
     elif source.path is not None:
         words = "The text of the case file is not in a result file: fastpin report --case CASE.toml shows it."
         parts.append(Text(words, "missing"))
-    parts.append(Listing(words, _shortened(json.dumps(document, indent=1))))
+    parts.append(Listing(listing, _shortened(json.dumps(document, indent=1))))
     return Section("provenance", "Versions and provenance", parts)
 
 

@@ -20,8 +20,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.case import hole_body
 from fastpin.report.cycle import MOST_STOPS
-from fastpin.report.states import places_alike
-from fastpin.report.table import visible_rows
+from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
@@ -158,20 +157,9 @@ class Source:
 
     @cached_property
     def rows(self) -> tuple[list[State], dict[int, str]]:
-        """The states of the table, and words on those left out, by the row before which they are left out.
-
-        Cycles that repeat the cycle before are left out, all but the last one, and the middle of a long table.
-        """
-        repeats = places_alike(self.points, self.result.cycles) != np.arange(self.points.size)
-        shown = np.flatnonzero(~repeats)
-        shown = shown[visible_rows(shown.size)]
-        gaps = {}
-        for row, (before, place) in enumerate(zip(shown[:-1].tolist(), shown[1:].tolist(), strict=True), start=1):
-            if place > before + 1:
-                left_out = repeats[before + 1 : place]
-                reason = "of cycles that repeat the one before" if left_out.all() else "not shown here"
-                gaps[row] = f"{place - before - 1:,} states {reason}"
-        return self.read(shown.tolist()), gaps
+        """The states of the table, and words on those left out, by the row before which they are left out."""
+        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.read)
+        return self.read(rows.printed), rows.gaps
 
     @cached_property
     def drawn(self) -> list[State]:

@@ -13,7 +13,7 @@ from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.units import units, with_unit
-from fastpin.report.case import hole_body
+from fastpin.report.case import ROUNDING, hole_body
 from fastpin.report.curves import Curve
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
@@ -53,15 +53,20 @@ def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
     problem = stops[0].problem
     if problem.surfaces.plate.is_rigid or problem.surfaces.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
         return ""
-    return hot_spot_line(fatigue(stops, "smith-watson-topper"))
+    return hot_spot_line(fatigue(stops, "smith-watson-topper"), stops)
 
 
-def hot_spot_line(found: Fatigue) -> str:
+def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
     """Return a line of text: the hot spot of plate or bush over the last cycle, its plane, and its life if known.
 
-    The criterion of `found` is "smith-watson-topper".
+    The criterion of `found` is "smith-watson-topper". A parameter that is rounding beside the pressures of the states
+    is 0.
     """
     spot, problem = found.hot_spot, found.problem
+    name = f"fatigue of the {hole_body(problem)} in the last cycle, Smith-Watson-Topper"
+    pressure = max((state.peak_pressure for state in states), default=0.0)
+    if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
+        return f"{name}: none, no plane has both tension and a changing strain"
     parts = [
         f"{with_unit(spot.parameter, units(problem)['stress times strain'], 4)} at {from_bottom(spot.theta):z.2f} deg"
     ]
@@ -69,7 +74,7 @@ def hot_spot_line(found: Fatigue) -> str:
         parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
     if not np.isnan(spot.life):
         parts.append(f"life {spot.life:.3g} cycles" if np.isfinite(spot.life) else "infinite life")
-    return f"fatigue of the {hole_body(problem)} in the last cycle, Smith-Watson-Topper: {', '.join(parts)}"
+    return f"{name}: {', '.join(parts)}"
 
 
 def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:

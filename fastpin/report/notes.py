@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from fastpin import storage
 from fastpin.model.case import Case
+from fastpin.solver.errors import Interrupted
 from fastpin.solver.result import Result
 
 COUNTED = {
@@ -26,6 +30,17 @@ def note_lines(case: Case, result: Result) -> list[str]:
     if result.grid.size > case.options.nodes and not result.grid.uniform:
         notes.append(f"{result.grid.size} nodes instead of {case.options.nodes}, dense where the contact is narrow")
     return notes
+
+
+def way_on(path: Path | None, error: str | None) -> str:
+    """Return words on how an unfinished run of a file goes on; empty if it does not.
+
+    `error` is the error that ended the run. A run goes on after Ctrl-C or a kill. After another error the same loads
+    end at the same place.
+    """
+    if path is None or error not in (None, str(Interrupted())):
+        return ""
+    return "its run goes on" if storage.is_being_written(path) else f"continue with: fastpin resume {path}"
 
 
 def solver_line(result: Result) -> str:

@@ -23,6 +23,7 @@ from fastpin.report.table import (
     Line,
     cut_lines,
     folded_lines,
+    line_words,
     printed_rows,
     repeats,
     row_numbers,
@@ -33,7 +34,10 @@ from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round
 
-OWN_COLUMNS = ("load point", QUANTITIES["dissipation"].label, "residual")
+LOAD_POINT = "load point"
+"""Heading of the first column."""
+
+OWN_COLUMNS = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
 """Columns in which a state differs from the same state one cycle before: its number, a sum, and rounding."""
 
 MOST_COMPARED = 1_000
@@ -61,6 +65,24 @@ class TableRows:
     def printed(self) -> list[int]:
         """The places of the states that have a line of their own."""
         return printed_rows(self.lines)
+
+    @property
+    def names(self) -> list[str]:
+        """The load points of all rows as text."""
+        return [_number(point) for point in self.points]
+
+    @property
+    def gaps(self) -> dict[int, str]:
+        """Words on the rows between two printed ones, by the number of rows printed before them."""
+        found: dict[int, str] = {}
+        names, printed = self.names, 0
+        for line in self.lines:
+            if isinstance(line, int):
+                printed += 1
+            else:
+                words = line_words(LOAD_POINT, names, line)
+                found[printed] = f"{found[printed]}; {words}" if printed in found else words
+        return found
 
 
 def table_rows(
@@ -107,24 +129,17 @@ def stored_rows(
     read : callable
         ``read(places)`` gives the states at these places, in increasing order.
     """
-    alike = places_alike(points, cycles)
+    alike = _places_alike(points, cycles)
     places, rows = np.unique(alike, return_inverse=True)
     if places.size > MOST_COMPARED:
         return TableRows(cut_lines(points.size), points)
     return table_rows(problem, read(places.tolist()), rows, points)
 
 
-def places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
-    """Return for each state the place of a state like it, shape (states,): a place in the first steady cycle.
+def _places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
+    """The place of a state like each state, shape (states,): its own place, or one in the first steady cycle.
 
-    It is the own place of a state that belongs to no later steady cycle, or to the last one of its block.
-
-    Parameters
-    ----------
-    points : ndarray, shape (states,)
-        Load points of all states.
-    cycles : sequence of Cycle
-        All cycles of the result.
+    The states of the last cycle of a block have their own places.
     """
     places = np.arange(points.size)
     for block in consecutive_cycles(cycles):
@@ -169,7 +184,7 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
-    return table_of_lines(state_columns(problem, states), rows.lines, [_number(point) for point in rows.points])
+    return table_of_lines(state_columns(problem, states), rows.lines, rows.names)
 
 
 def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
@@ -190,7 +205,7 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
 
     strain = problem.surfaces.beta_star * max((state.peak_pressure for state in states), default=0.0)
     energy = max((abs(state.energy) for state in states), default=0.0)
-    columns = [("load point", "", [_point(state) for state in states])]
+    columns = [(LOAD_POINT, "", [_point(state) for state in states])]
     columns += load_columns(problem, [state.load for state in states])
     return [
         *columns,

@@ -192,13 +192,13 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     known = (*plan.outcomes, *KEY_FIGURES, "seconds")
     if value not in known:
         hint = closest(value, known) or f"; there are {', '.join(known)}"
-        raise InputError("value", f"there is no outcome or key figure {value!r}{hint}")
+        raise InputError("value", f"there is no outcome or key figure {as_toml(value)}{hint}")
     values = {name: _different([point.values.get(name) for point in plan.points]) for name in plan.fields}
     numeric = [name for name, found in values.items() if all(_is_number(item) for item in found)]
     for option, name in (("x", x), ("y", y)):
         if name is not None and name not in plan.fields:
             hint = closest(name, tuple(plan.fields)) or f"; there are {', '.join(plan.fields)}"
-            raise InputError(option, f"the plan does not vary {name!r}{hint}")
+            raise InputError(option, f"the plan does not vary {as_toml(name)}{hint}")
         if name is not None and name not in numeric:
             raise InputError(option, f"the values of {name} are not all numbers, which an axis needs")
     if y is not None and y == x:

@@ -136,21 +136,23 @@ def table_of_lines(columns: Sequence[Column], lines: Sequence[Line], names: Sequ
     text = [joined([name for name, _, _ in columns]), joined([unit for _, unit, _ in columns])]
     rows = zip(*(cells for _, _, cells in columns), strict=True)
     for line in lines:
-        if isinstance(line, LeftOut):
-            text.append(f"... {line.rows:,} more ...")
-        elif isinstance(line, Repeat):
-            text.append(_repeat_line(columns[0][0], names, line))
-        else:
-            text.append(joined(next(rows)))
+        text.append(
+            joined(next(rows)) if isinstance(line, int) else f"... {line_words(columns[0][0], names, line)} ..."
+        )
     return "\n".join(text)
 
 
-def _repeat_line(heading: str, names: Sequence[str], repeat: Repeat) -> str:
+def line_words(heading: str, names: Sequence[str], line: Repeat | LeftOut) -> str:
+    """Return the words of a line for several rows. `heading` is the name of the first column, `names` its cells."""
+    return f"{line.rows:,} more" if isinstance(line, LeftOut) else _repeat_words(heading, names, line)
+
+
+def _repeat_words(heading: str, names: Sequence[str], repeat: Repeat) -> str:
     last = names[repeat.end - 1]
     before = names[repeat.first - repeat.period], names[repeat.first - 1]
     plural = f"{heading}s {before[0]} to {before[1]}" if repeat.period > 1 else f"{heading} {before[1]}"
     times = "once" if repeat.times == 1 else f"{repeat.times:,} times"
-    return f"... {names[repeat.first]} to {last}: repeat {plural}, {times} ..."
+    return f"{names[repeat.first]} to {last}: repeat {plural}, {times}"
 
 
 def repeats(rows: np.ndarray) -> list[Repeat]:

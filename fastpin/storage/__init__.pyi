@@ -1,5 +1,6 @@
 from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
+from .journal import is_being_written as is_being_written
 from .layout import versions as versions
 from .provenance import largest_pressure as largest_pressure
 from .provenance import largest_residuals as largest_residuals

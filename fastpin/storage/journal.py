@@ -21,6 +21,7 @@ from types import ModuleType
 import h5py
 
 from fastpin.errors import InputError
+from fastpin.model.checks import HDF5_SIGNATURE
 
 fcntl: ModuleType | None
 try:
@@ -231,16 +232,35 @@ def open_h5(path: Path) -> h5py.File:
     try:
         return h5py.File(path, "r")  # This process has the file open already, with locks.
     except OSError:
-        raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
+        raise not_readable(path) from None
+
+
+def not_readable(path: Path) -> InputError:
+    """Return the error of a file that can't be opened as an HDF5 file."""
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        start = file.read(len(HDF5_SIGNATURE))
+        if not start:
+            return InputError(str(path), "is empty, and no result")
+        if start == HDF5_SIGNATURE:
+            return InputError(str(path), "is damaged or cut short")
+        if path.suffix == ".toml":
+            return InputError(str(path), f"is no result; of a case file, fastpin run {path} -o FILE makes one")
+        return InputError(str(path), "is no HDF5 file, and no result")
+    return InputError(str(path), "can't be read")
 
 
 def check_free(path: Path) -> None:
     """Raise :class:`InputError` if another process is writing to a file."""
+    if is_being_written(path):
+        raise InputError(str(path), "another run is writing to it")
+
+
+def is_being_written(path: Path) -> bool:
+    """Return whether another process is writing to a file, as far as its lock tells."""
     if fcntl is None or not path.is_file():
-        return
+        return False
     with path.open("rb") as file:
-        if not _try_lock(file.fileno()):
-            raise InputError(str(path), "another run is writing to it")
+        return not _try_lock(file.fileno())
 
 
 def _wait_for(journal: int, exclusive: bool | None) -> None:

@@ -13,9 +13,8 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import EXAMPLE, builtin_case
 from fastpin.cli import progress
-from fastpin.cli import run as run_command
 from fastpin.cli.main import main
-from fastpin.cli.progress import Bar, note_duration
+from fastpin.cli.progress import LOAD_POINTS, Bar, note_duration
 from fastpin.model.options import SolveOptions
 from fastpin.solver.duration import SETTLED, expected_seconds
 
@@ -111,7 +110,7 @@ def test_progress_counts_whole_load_points(monkeypatch: pytest.MonkeyPatch) -> N
     terminal.isatty = lambda: True  # type: ignore[method-assign]
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setattr(progress, "DELAY", -1.0)
-    with Bar(2000, run_command.PROGRESS) as bar:
+    with Bar(2000, LOAD_POINTS) as bar:
         bar.update(1234.9)
         bar._shown.refresh()
     assert "| 1,234 of 2,000 load points, " in terminal.getvalue()

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
+import h5py
 import pytest
 
 from fastpin.cli.main import main
@@ -46,9 +50,45 @@ def test_show_says_that_a_run_is_unfinished(case, tmp_path, capsys):
     assert main(["show", str(path)]) == 0
     expected = f"note: unfinished, at corner 1 of 3 (interrupted); continue with: fastpin resume {path}"
     assert capsys.readouterr().out.splitlines()[-1] == expected
+    assert main(["report", str(path), "-o", str(tmp_path / "a.html")]) == 0
+    assert f"The reason: interrupted. Continue with: fastpin resume {path}." in (tmp_path / "a.html").read_text()
+    capsys.readouterr()
     assert main(["resume", str(path)]) == 0
     assert main(["show", str(path)]) == 0
     assert "unfinished" not in capsys.readouterr().out.splitlines()[-1]
+
+
+def test_a_run_that_goes_on_is_told(case, tmp_path, capsys, monkeypatch):
+    path = tmp_path / "a.h5"
+    assert main(["run", str(case), "-o", str(path), "--nodes", "41"]) == 0
+    with h5py.File(path, "r+") as file:
+        file.attrs["complete"] = False
+    code = f"import fcntl, sys\nfile = open({str(path)!r}, 'rb')\nfcntl.flock(file, fcntl.LOCK_EX)\nprint(flush=True)\n"
+    code += "sys.stdin.read()"
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+        other.stdout.readline()
+        capsys.readouterr()
+        assert main(["show", str(path)]) == 0
+        assert main(["resume", str(path)]) == 2
+        other.stdin.close()
+    captured = capsys.readouterr()
+    assert captured.out.splitlines()[-1] == "note: unfinished, at corner 3 of 3; its run goes on"
+    assert captured.err == f"fastpin: {path}: another run is writing to it\n"
+
+
+def test_a_run_that_no_equilibrium_ended_is_not_to_be_resumed(case, tmp_path, capsys):
+    path = tmp_path / "a.h5"
+    case.write_text(case.read_text().replace("nodes = 61", "nodes = 41") + "\n[[load]]\nM = 1e6\n")
+    assert main(["run", str(case), "-o", str(path)]) == 1
+    capsys.readouterr()
+    assert main(["show", str(path)]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("note: unfinished, at corner 3 of 4 (step 4, at ")
+    assert "resume" not in last
+    assert main(["report", str(path), "-o", str(tmp_path / "a.html")]) == 0
+    text = (tmp_path / "a.html").read_text()
+    assert "Unfinished: corner 3 of 4; " in text
+    assert "fastpin resume" not in text
 
 
 def test_the_nodes_of_the_start_are_named(case, tmp_path, capsys):

@@ -60,13 +60,13 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["case.toml", "-o", "page.pdf"], "--output: the page's name must end in .html or .htm, not 'page.pdf'"),
+        (["case.toml", "-o", "page.pdf"], "--output: must be the name of a page, which ends in .html or .htm, not"),
         (["case.toml", "--plan", "x"], "--plan: has no effect on a case file; it is for the directory of a sweep"),
         (["a.h5", "--error-bars"], "--error-bars: has no effect on a stored result; it is for a case file"),
         ([".", "--title", "x"], "--title: has no effect on the directory of a sweep; it is for a stored result or a"),
         (["a.h5"], "a.h5: there is no such file"),
         (["."], ".: holds no sweep: there is no index.sqlite"),
-        (["junk.h5"], "junk.h5: is not a whole HDF5 file"),
+        (["junk.h5"], "junk.h5: is no HDF5 file, and no result"),
         (["plan.toml"], "plan.toml: is a plan: name the directory of its sweep, such as plan"),
     ],
 )

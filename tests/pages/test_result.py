@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import pickle
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import fastpin
@@ -129,29 +129,39 @@ def test_page_names_case_loads_key_figures_checks_and_origin(text: str, stored: 
     assert "not met" not in words
 
 
-def test_cycles_that_repeat_the_one_before_are_folded(text: str, stored: Path) -> None:
+def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
     states, gaps = Source.of_file(stored).rows
     points = [state.step + 1 for state in states]
-    (count,) = [int(re.findall(r"(\d+) states of cycles that repeat", words)[0]) for words in gaps.values()]
-    assert len(states) + count == 61
-    assert points[-2:] == [60, 61]
+    ((row, words),) = gaps.items()
+    first, last, begin, end, times = map(int, re.findall(r"\d+", words))
+    assert words == f"{first} to {last}: repeat load points {begin} to {end}, {times} times"
+    assert points[row - 1] == first - 1 == end
+    assert last - first + 1 == times * (end - begin + 1)
+    assert len(states) + last - first + 1 == 61
+    assert max(points[-1], last) == 61
     full = fastpin.load(stored)
-    (row,) = gaps
-    hidden = range(points[row - 1], points[row - 1] + count)
-    for place in hidden:
-        assert np.array_equal(full[place].pressure, full[place - 2].pressure)
-    assert f"{count} states of cycles that repeat the one before" in text
+    period = end - begin + 1
+    for place in range(first - 1, last):
+        assert full[place].peak_pressure == pytest.approx(full[place - period].peak_pressure, rel=1e-4)
+    assert words in text
+
+
+def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
+    result = sample_result([{"P": 1e6}, *[{"P": 1e6}] * 8], nodes=21)
+    states = [dataclasses.replace(result[0], step=step) for step in range(9)]
+    write_report(dataclasses.replace(result, states=states), tmp_path / "a.html")
+    assert "… 2 to 9: repeat load point 1, 8 times …" in (tmp_path / "a.html").read_text()
 
 
 def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
-    result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(200)], nodes=21)
+    result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(1200)], nodes=21)
     source = Source.of_result(result)
     read: list[int] = []
     object.__setattr__(source, "read", lambda places: read.extend(places) or [result[k] for k in places])
     states, gaps = source.rows
-    assert (len(states), gaps) == (MAX_ROWS, {MAX_ROWS // 2: "160 states not shown here"})
+    assert (len(states), gaps) == (MAX_ROWS, {MAX_ROWS // 2: "1,160 more"})
     assert len(source.drawn) == MOST_DRAWN
-    assert 199 in read
+    assert 1199 in read
     assert len(read) == MAX_ROWS + MOST_DRAWN + 1  # one tells the load at the beginning
 
 
@@ -259,7 +269,8 @@ def test_a_run_that_goes_on_or_ended_early_has_a_page(tmp_path: Path) -> None:
     write_report(path, page)
     for text in (*found, page.read_text(encoding="utf-8")):
         assert "Unfinished: corner" in Page(text).text
-        assert f"fastpin resume {path}" in Page(text).text
+        assert ("Its run goes on." in Page(text).text) == (text in found)
+        assert (f"fastpin resume {path}" in Page(text).text) == (text not in found)
     assert "interrupted" in Page(page.read_text(encoding="utf-8")).text
 
 
@@ -304,10 +315,10 @@ def test_words_cover_all_names() -> None:
 @pytest.mark.parametrize(
     ("change", "field", "words"),
     [
-        ({"path": "page.txt"}, "path", "must end in .html or .htm, not 'page.txt'"),
+        ({"path": "page.txt"}, "path", 'must be the name of a page, which ends in .html or .htm, not "page.txt"'),
         ({"path": "no/page.html"}, "no/page.html", "the directory no does not exist"),
         ({"result": "missing.h5"}, "missing.h5", "there is no such file"),
-        ({"result": "junk.h5"}, "junk.h5", "is not a whole HDF5 file"),
+        ({"result": "junk.h5"}, "junk.h5", "is no HDF5 file, and no result"),
         ({"result": 3.0}, "result", "must be"),
         ({"title": 5}, "title", "must be"),
         ({"case": "other.toml"}, "case", "other.toml is not the case of this result: friction differs"),

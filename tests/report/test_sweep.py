@@ -168,5 +168,5 @@ def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any
 
 
 def test_a_value_that_is_unknown_names_outcomes_first(with_outcomes: Plan) -> None:
-    with pytest.raises(InputError, match="value: there is no outcome or key figure 'los', did you mean \"loss\""):
+    with pytest.raises(InputError, match='value: there is no outcome or key figure "los", did you mean "loss"'):
         check_axes(with_outcomes, "los", None, None)
