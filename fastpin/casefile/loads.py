@@ -161,7 +161,7 @@ def _loads(block: Section, name: str) -> dict[str, float] | None:
 
 def _corners(block: Section) -> list[dict[str, float]]:
     """The corners of one block, loads by name. Faults are reported; an empty list stands for unusable corners."""
-    if not block.means(*LOADS):
+    if not block.means(*LOADS, *HARMONIC):
         block.report(f"[[load]]: gives no load; the loads are {', '.join(LOADS)}")
     columns = {name: column for name in LOADS if (column := _numbers(block, name)) is not None}
     lengths = {name: len(column) for name, column in columns.items() if isinstance(column, list)}

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from fastpin.casefile.toml_text import CaseText, Section, read_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
+from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, choice, file_path, number, positive, string, whole_number
 from fastpin.model.compliance import COLUMNS, LEAST_ORDER, MOST_ORDER
 from fastpin.model.lug import HOLD, Hole, Lug, Part, PartLoad, check_name, check_not_held, rectangle
@@ -61,10 +61,8 @@ def read_lug(path: str | Path) -> LugFile:
 
     Raises
     ------
-    CaseFileError
-        If the file can't be read or has faults. It lists all faults with their lines.
-    InputError
-        If `path` is no path.
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
     """
     path = file_path("path", path)
     return parse_lug(read_text(path), str(path))
@@ -75,17 +73,10 @@ def parse_lug(text: str, name: str = "lug file") -> LugFile:
 
     Raises
     ------
-    CaseFileError
-        If the text has faults. It lists all faults with their lines.
-    InputError
-        If an argument is of the wrong kind.
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
     """
-    source, shown = CaseText(text), string("name", name)
-    found = _lug_file(source) if source.readable else None
-    if source.faults:
-        raise CaseFileError(shown, source.faults)
-    assert found is not None
-    return found
+    return parse_text(text, name, "lug file", _lug_file)
 
 
 def _lug_file(source: CaseText) -> LugFile | None:
@@ -119,24 +110,30 @@ PLACES = {"holes": ("hole",), "radius": ("hole",), "hole_radius": ("plate", "hol
 """Place in the file of a field of the lug, where it has another name."""
 
 
+def _in_brackets(section: str) -> str:
+    return f"[[{section}]]" if section in BLOCKS else f"[{section}]"
+
+
 def _check_keys(source: CaseText) -> None:
     """Report unknown sections and keys."""
     for name, value in source.root.table.items():
         if name == "title":
             continue
-        shown = f"[[{name}]]" if name in BLOCKS else f"[{name}]"
+        shown = _in_brackets(name)
         if name not in LUG_KEYS:
-            hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(LUG_KEYS)}"
-            kind = f"section [{name}]" if isinstance(value, (dict, list)) else f'key "{name}" before the first section'
+            hint = closest(name, tuple(LUG_KEYS)) or f"; the sections are {', '.join(map(_in_brackets, LUG_KEYS))}"
+            kind = (
+                f"section {written(name, value)}" if written(name, value) else f'key "{name}" before the first section'
+            )
             source.report(f"unknown {kind}{hint}", name)
         elif not (isinstance(value, dict) or (name in BLOCKS and _are_tables(value))):
-            source.report(f"{name}: must be a section {shown}, not {as_toml(value)}", name)
+            source.report(f"{name}: must be a section {shown}, not {written(name, value) or as_toml(value)}", name)
         else:
-            for section in source.blocks(name):
-                for key in section.table:
+            for block in source.blocks(name):
+                for key in block.table:
                     if key not in LUG_KEYS[name]:
                         hint = closest(key, LUG_KEYS[name]) or f"; the keys are {', '.join(LUG_KEYS[name])}"
-                        section.report(f'unknown key "{key}" in {shown}{hint}', key)
+                        block.report(f'unknown key "{key}" in {shown}{hint}', key)
 
 
 def _are_tables(value: object) -> bool:

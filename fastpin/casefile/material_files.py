@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fastpin.casefile.materials import read_material
-from fastpin.casefile.toml_text import CaseText, Section, read_text
+from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError
 from fastpin.model.checks import as_toml, file_path, string
 from fastpin.model.materials import MATERIALS, Material
@@ -43,17 +43,11 @@ def read_materials(path: str | Path) -> dict[str, Material]:
 
     Raises
     ------
-    CaseFileError
-        If the file can't be read or has faults. It lists all faults with their lines.
-    InputError
-        If `path` is no path.
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
     """
     path = file_path("path", path)
-    source = CaseText(read_text(path))
-    materials = _materials(source) if source.readable else {}
-    if source.faults:
-        raise CaseFileError(str(path), source.faults)
-    return materials
+    return parse_text(read_text(path), str(path), "file of materials", _materials)
 
 
 def known_materials(source: CaseText, folder: Path) -> Mapping[str, Material]:
@@ -92,7 +86,9 @@ def _materials(source: CaseText) -> dict[str, Material]:
         source.report("no materials: a material is a section, such as [my-alloy], with E and nu")
     for name, table in source.root.table.items():
         if not isinstance(table, dict):
-            source.report(f"{name}: must be a section [{name}] with E and nu, not {as_toml(table)}", name)
+            source.report(
+                f"{name}: must be a section [{name}] with E and nu, not {written(name, table) or as_toml(table)}", name
+            )
             continue
         if name in MATERIALS:
             source.report(f"[{name}]: is a material of fastpin; choose another name", name)
@@ -102,7 +98,8 @@ def _materials(source: CaseText) -> dict[str, Material]:
                 hint = closest(key, FILE_KEYS) or f"; the keys are {', '.join(FILE_KEYS)}"
                 section.report(f'unknown key "{key}" in [{name}]{hint}', key)
         section.checked("source", string)
-        material = read_material(source, section, {}, may_be_rigid=False)
+        by_name = "material" in section or "rigid" in section  # such a key is reported already
+        material = None if by_name else read_material(source, section, {}, may_be_rigid=False)
         if material is not None:
             found[name] = replace(material, name=name)
     return found

@@ -17,8 +17,8 @@ from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.materials import DUNDURS_KEYS, MATERIAL_KEYS, read_pair
-from fastpin.casefile.toml_text import CaseText, Section, read_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
+from fastpin.errors import InputError
 from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
@@ -101,18 +101,11 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
 
     Raises
     ------
-    CaseFileError
-        If the text has faults. It lists all faults with their lines.
-    InputError
-        If an argument is of the wrong kind.
+    CaseFileError, InputError
+        See :func:`fastpin.read_case`.
     """
-    source = CaseText(text)
-    place, title = file_path("folder", folder), string("name", name)
-    case = case_from(source, place) if source.readable else None
-    if source.faults:
-        raise CaseFileError(title, source.faults)
-    assert case is not None
-    return case
+    place = file_path("folder", folder)
+    return parse_text(text, name, "case file", lambda source: case_from(source, place))
 
 
 def case_from(
@@ -169,14 +162,24 @@ def _check_keys(source: CaseText) -> None:
                 for key in section.table:
                     if key not in KEYS[name]:
                         section.report(f'unknown key "{key}" in {_in_brackets(name)}{key_hint(name, key)}', key)
-        elif isinstance(value, (dict, list)) and not _owners(name):
-            hint = closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
-            if name == "outline":
-                hint = "; a file with an outline is a lug file, see fastpin compliance"
-            source.report(f"unknown section [{name}]{hint}", name)
+        elif shown := written(name, value):
+            source.report(f"unknown section {shown}{_section_hint(name)}", name)
         else:
             hint = _owners(name) or closest(name, ROOT_KEYS) or _elsewhere(name)
             source.report(f'unknown key "{name}" before the first section{hint}', name)
+
+
+def _section_hint(name: str) -> str:
+    """A hint at what is meant by an unknown section."""
+    owners = sections_with(name)
+    if owners:
+        return f"; {name} is a key in {_in_words(owners)}"
+    if name in ROOT_KEYS:
+        return f"; {name} is a key before the first section"
+    for kind, (sections, command) in KINDS.items():
+        if name in sections:
+            return f"; a file with [{name}] is a {kind}, see fastpin {command}"
+    return closest(name, tuple(KEYS)) or f"; the sections are {', '.join(map(_in_brackets, KEYS))}"
 
 
 def key_hint(section: str, key: str) -> str:
@@ -190,17 +193,26 @@ def _owners(key: str) -> str:
     """A hint at the sections that have a key of this name; empty if there are none."""
     if key == "load":
         return "; loads are [[load]] blocks, with double brackets"
-    owners = [_in_brackets(section) for section, keys in KEYS.items() if key in keys]
-    return f"; it belongs in {' or '.join(owners)}" if owners else ""
+    owners = sections_with(key)
+    return f"; it belongs in {_in_words(owners)}" if owners else ""
+
+
+def sections_with(key: str) -> list[str]:
+    """Return the sections that have a key of this name, without brackets."""
+    return [section for section, keys in KEYS.items() if key in keys]
+
+
+def _in_words(sections: list[str]) -> str:
+    return " or ".join(map(_in_brackets, sections))
 
 
 def _elsewhere(word: str) -> str:
     """A hint at a key of some section that is meant by `word`; empty if there is none."""
     for name in meant(word):
-        owners = [_in_brackets(section) for section, keys in KEYS.items() if name in keys]
+        owners = sections_with(name)
         if owners:
             hint = closest(word, [name])
-            return f"{hint.removesuffix('?')} in {' or '.join(owners)}{'?' * hint.endswith('?')}"
+            return f"{hint.removesuffix('?')} in {_in_words(owners)}{'?' * hint.endswith('?')}"
     return ""
 
 

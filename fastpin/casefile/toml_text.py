@@ -14,11 +14,18 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import as_toml, choice, number
+from fastpin.model.checks import HDF5_SIGNATURE, as_toml, choice, number, string, why_unreadable
 from fastpin.model.synonyms import meant
 
 MOST_BYTES = 100_000_000
 """Most bytes of a case file or a plan."""
+
+KINDS = {
+    "case file": (("contact",), "run"),
+    "plan": (("grid", "list"), "sweep"),
+    "lug file": (("outline",), "compliance"),
+}
+"""The sections that only one kind of file has, and the command for such a file."""
 
 Place = tuple[str | int, ...]
 """The keys and indices that lead to a value: ("load", 0, "P")."""
@@ -40,15 +47,46 @@ def read_text(path: Path) -> str:
         with path.open("rb") as file:
             raw = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
+        raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
+    if raw.startswith(HDF5_SIGNATURE):
+        raise CaseFileError(str(path), [(0, "is a stored result (HDF5), not text; fastpin show prints it")])
     if len(raw) > MOST_BYTES:
         raise CaseFileError(str(path), [(0, f"is larger than {MOST_BYTES:,} bytes")])
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise CaseFileError(str(path), [(line, "is not UTF-8 text")]) from None
+        raise CaseFileError(str(path), [(line, why_unreadable(error))]) from None
+
+
+def parse_text(text: str, name: str, kind: str, read: Callable[[CaseText], T | None]) -> T:
+    """Parse a TOML text of a `kind`, and return what ``read(source)`` makes of it.
+
+    `read` reports all faults to the source. It may return None if there are any. A text of another kind in
+    :data:`KINDS` is not read.
+
+    Raises
+    ------
+    CaseFileError
+        If there are faults. It lists all of them with their lines. `name` is the name of the file.
+    InputError
+        If an argument is of the wrong kind.
+    """
+    source, title = CaseText(text), string("name", name)
+    other = _other_kind(source.root.table, kind)
+    if other and source.readable:
+        raise CaseFileError(title, [(0, f"is a {other}, not a {kind}; see fastpin {KINDS[other][1]}")])
+    found = read(source) if source.readable else None
+    if source.faults:
+        raise CaseFileError(title, source.faults)
+    assert found is not None
+    return found
+
+
+def _other_kind(tables: dict[str, Any], kind: str) -> str:
+    """The kind of file whose sections a text has; empty if it may be of the expected `kind`."""
+    found = [name for name, (sections, _) in KINDS.items() if any(section in tables for section in sections)]
+    return "" if kind in found or not found else found[0]
 
 
 class CaseText:
@@ -138,7 +176,8 @@ class CaseText:
         if isinstance(table, dict):
             return Section(self, (name,), table)
         if table is not None:
-            self.report(f"{name}: must be a section [{name}], not {as_toml(table)}", name)
+            given = written(name, table) or as_toml(table)
+            self.report(f"{name}: must be a section [{name}], not {given}", name)
         elif required and name not in self.root and not self.root.means(name):
             self.report(f"the section [{name}] is missing", name)
         return Section(self, (name,), {}, present=False)
@@ -242,6 +281,14 @@ class Section:
                 values[error.field] = left.pop(error.field)
 
 
+def written(name: str, value: object) -> str:
+    """Return a section or its blocks as they are written: "[name]" or "[[name]]". It is empty for another value."""
+    if isinstance(value, dict):
+        return f"[{name}]"
+    is_blocks = isinstance(value, list) and value and all(isinstance(table, dict) for table in value)
+    return f"[[{name}]]" if is_blocks else ""
+
+
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
 _KEY_LINE = re.compile(rf"\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*=(.*)")
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*\]")
@@ -330,13 +377,18 @@ def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
     reason = message[: found.start()]
     if twice := re.match(r"Cannot declare \((.*?),?\) twice", reason):
         name = twice[1].replace("'", "").replace(", ", ".")
-        hint = "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""
-        return f"the section [{name}] appears twice{hint}", line
+        return f"the section [{name}] appears twice{_block_hint(name)}", line
     key = _KEY_LINE.match(lines[line - 1])
     if reason.startswith("Cannot overwrite"):
-        return (f'"{key[1]}" is given twice' if key else "is given twice"), line
+        header = _HEADER.match(lines[line - 1])
+        name = header[2] if header else key[1] if key else ""
+        return f'"{name}" is given twice{_block_hint(name)}', line
+    value = key[2].split("#")[0].strip() if key else ""
+    if key and reason.startswith("Expected newline"):
+        return f"{key[1]}: {_behind_value(value)}", line
     if key and reason.startswith("Invalid value"):
-        value = key[2].split("#")[0].strip()
+        if not value:
+            return f"{key[1]}: its value is missing", line
         if re.fullmatch(r"[A-Za-z][A-Za-z0-9 .-]*", value):
             return f'{key[1]}: text must stand in quotes, "{value}"', line
         if re.fullmatch(r"[+-]?\.\d.*", value):
@@ -345,3 +397,16 @@ def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
     if reason.startswith("Expected '='"):
         return 'not of the form "key = value"', line
     return f"not TOML: {reason[0].lower()}{reason[1:]}", line
+
+
+def _behind_value(value: str) -> str:
+    """A sentence on a value with something behind it."""
+    if re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", value):
+        return f"a number has a decimal point, {value.replace(',', '.')}"
+    if re.fullmatch(r"[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z%/^0-9]+", value):
+        return f"must be a number without a unit, not {value}; SI units are meant"
+    return f"must be one value, not {value}"
+
+
+def _block_hint(name: str) -> str:
+    return "; several loads are [[load]] blocks, with double brackets" if name == "load" else ""

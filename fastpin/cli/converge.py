@@ -84,7 +84,7 @@ def _numbers(option: str, text: str) -> list[int]:
     try:
         return [int(part) for part in text.split(",")]
     except ValueError:
-        raise InputError(option, f"must be whole numbers with commas, such as 101,201,401, not {text!r}") from None
+        raise InputError(option, f'must be whole numbers with commas, such as 101,201,401, not "{text}"') from None
 
 
 def _write_study(study: studies.convergence.Convergence, options: argparse.Namespace, title: str) -> int:

@@ -10,7 +10,7 @@ import contextlib
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
@@ -47,6 +47,18 @@ PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
 """Kinds of figures of a stored result, and their options."""
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser that answers a word that is not allowed with the one that is meant."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and a message, and end the program."""
+        found = re.fullmatch(r"argument (.+): invalid choice: '(.*)' \(choose from (.*)\)", message)
+        if found:
+            words = re.findall(r"[\w.-]+", found[3])
+            message = f'{found[1]}: must be {", ".join(words)}, not "{found[2]}"{closest(found[2], words)}'
+        super().error(message)
+
+
 def parser() -> argparse.ArgumentParser:
     """Build the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
     return _parsers()[0]
@@ -54,7 +66,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
     """The parser of the command line, and the parsers of the commands by name."""
-    root = argparse.ArgumentParser(
+    root = Parser(
         prog="fastpin",
         description="Frictional contact of an elastic pin in the hole of an elastic plate.",
         epilog=f"Start with: fastpin example > case.toml; fastpin run case.toml. {EXIT_CODES}",

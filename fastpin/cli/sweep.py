@@ -106,7 +106,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
         return None
     parts = re.fullmatch(r"(\d+)/(\d+)", text)
     if not parts or not 1 <= int(parts[1]) <= int(parts[2]):
-        raise InputError("--shard", f"must be I/N with I from 1 to N, such as 1/8, not {text!r}")
+        raise InputError("--shard", f'must be I/N with I from 1 to N, such as 1/8, not "{text}"')
     return int(parts[1]), int(parts[2])
 
 

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, file_path, number, numbers, positive, string
+from fastpin.model.checks import as_toml, choice, file_path, number, numbers, positive, string, why_unreadable
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import PLANES, Plane
 
@@ -167,7 +167,7 @@ class Compliance:
             with place.open("rb") as file:
                 raw = file.read(MOST_BYTES + 1)
         except OSError as error:
-            raise InputError("file", f"{place} can't be read: {error.strerror}") from None
+            raise InputError("file", f"{place}: {why_unreadable(error)}") from None
         if len(raw) > MOST_BYTES:
             raise InputError("file", f"{place} is larger than {MOST_BYTES:,} bytes")
         try:

@@ -28,6 +28,7 @@ from fastpin.model.checks import (
     number_array,
     true_or_false,
     whole_number,
+    why_unreadable,
 )
 from fastpin.model.compliance import Compliance
 from fastpin.model.history_csv import read_corners
@@ -158,8 +159,10 @@ class LoadHistory:
     """
 
     def __init__(self, corners: Iterable[Corner]) -> None:
+        if isinstance(corners, (str, Mapping)):
+            raise InputError("history", f'must be a list of corners, such as [{{"P": 1e6}}], not {as_toml(corners)}')
         rows = []
-        for index, corner in enumerate(items("history", corners, "a sequence of corners")):
+        for index, corner in enumerate(items("history", corners, "a list of corners")):
             if not isinstance(corner, Mapping):
                 raise InputError("history", f"corner {index + 1} must map load names to numbers, not {as_toml(corner)}")
             row = np.full(len(LOADS), np.nan)
@@ -312,8 +315,7 @@ class LoadHistory:
             with path.open(encoding="utf-8-sig", newline="") as file:
                 return cls.of_blocks([_plain(read_corners(file, str(path)))])
         except (OSError, UnicodeDecodeError, csv.Error) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise CaseFileError(str(path), [(0, f"can't be read: {reason}")]) from None
+            raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
 
     def repeated(self, count: int) -> LoadHistory:
         """This history `count` times in a row. Each time is a cycle.

@@ -11,7 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import number
+from fastpin.model.checks import as_toml, number
 from fastpin.model.loads import LOADS, load_index
 
 LONGEST_LINE = 1_000_000
@@ -46,20 +46,24 @@ def read_corners(file: TextIO, name: str) -> np.ndarray:
             try:
                 header = [load_index(cell.strip(), f"column {k}") for k, cell in enumerate(cells, start=1)]
             except InputError as error:
-                raise CaseFileError(name, [(line_number, error.reason)]) from None
+                raise CaseFileError(name, [(line_number, str(error))]) from None
             if len(set(header)) < len(header):
                 raise CaseFileError(name, [(line_number, "a load is named twice")])
             continue
         if len(cells) != len(header):
-            faults.append((line_number, f"{len(cells)} cells where the header has {len(header)}"))
+            faults.append(
+                (line_number, f"the line has {len(cells)} cell{'s' * (len(cells) > 1)}, the header has {len(header)}")
+            )
         else:
             numbers.extend(empty_row)
             for index, cell in zip(header, cells, strict=True):
                 if cell and not cell.isspace():
                     try:
                         numbers[index - len(LOADS)] = number(LOADS[index], float(cell.replace("_", "x")))
+                    except InputError as error:
+                        faults.append((line_number, str(error)))
                     except ValueError:
-                        faults.append((line_number, f"{LOADS[index]} must be a finite number, not {cell.strip()!r}"))
+                        faults.append((line_number, f"{LOADS[index]}: must be a number, not {as_toml(cell.strip())}"))
         if len(faults) >= MOST_FAULTS:
             faults.append((line_number, "that is enough; what follows was not read"))
             break

@@ -55,14 +55,14 @@ def load_index(name: object, where: str) -> int:
     Raises
     ------
     InputError
-        If there is no such load. The message begins with `where`, the place of the name in the input.
+        If there is no such load. Its field is `where`, the place of the name in the input.
     """
     if isinstance(name, str) and name in LOADS:
         return LOADS.index(name)
     is_word = isinstance(name, str) and len(name) < LONGEST_TEXT
     hint = closest(str(name), LOADS) if is_word else ""
     known = f"the loads are {', '.join(LOADS)}{hint}"
-    raise InputError(str(name) if is_word else "loads", f"{where}: unknown load {as_toml(name)}; {known}")
+    raise InputError(where, f"unknown load {as_toml(name)}; {known}")
 
 
 def check_corner(field: str, loads: Corner) -> dict[str, float]:

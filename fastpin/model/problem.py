@@ -132,7 +132,8 @@ class Problem:
         if self.dimensionless:
             number("clearance", clearance, -MOST_PARAMETER, MOST_PARAMETER)
         elif abs(clearance) >= radius:
-            raise InputError("clearance", f"must be smaller than the hole radius {radius:g}, not {clearance:g}")
+            limits = f"must lie between minus and plus the hole radius {radius:g}"
+            raise InputError("clearance", f"{limits}, not {clearance:g}")
         friction = not_negative("friction", self.friction)
         number("friction", friction, 0.0, MOST_FRICTION)
         self._check_bodies(radius)
@@ -152,8 +153,8 @@ class Problem:
         if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",
-                'a body-loaded pin must rotate freely (rotation = "free"): holding it takes a moment, and uniform body '
-                "forces leave that moment's singularity at the centre (section 4 of the paper)",
+                'a pin with pin_load = "body" must rotate freely, rotation = "free": uniform body forces can\'t bear '
+                'the moment that holds it; choose pin_load = "centre"',
             )
         self._check_hub(radius)
         self._check_drive(radius)
@@ -170,7 +171,9 @@ class Problem:
         check_pin_body(self.pin_body, radius)
         check_plate_body(self.plate_body, radius, self.dimensionless)
         if isinstance(self.pin_body, Tube) and self.pin_load == "body":
-            raise InputError("pin_load", 'the load of a hollow pin is a field of its body: load = "body" of the tube')
+            raise InputError(
+                "pin_load", 'a hollow pin has its load in its own body, load = "body" of the tube; leave pin_load out'
+            )
         if isinstance(self.plate_body, Bushing):
             check_bush(self.pair, self.plate_body)
             number("interference", self.plate_body.interference, 0.0, MOST_PARAMETER)

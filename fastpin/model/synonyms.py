@@ -114,7 +114,7 @@ _VALUES: dict[str, str] = {
     "body": "body_force distributed",
     "held": "fixed clamped rigid core",
     "aluminium": "aluminum al alu",
-    "Ti-6Al-4V": "titanium ti64 ti6al4v ti_6_4 grade_5",
+    "Ti-6Al-4V": "titanium titan ti64 ti6al4v ti_6_4 grade_5",
     "2024-T3": "2024 al2024 aa2024",
     "7075-T6": "7075 al7075 aa7075",
     "SAE 1020": "1020 aisi_1020",

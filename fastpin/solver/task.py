@@ -5,9 +5,9 @@ from __future__ import annotations
 import functools
 import logging
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -260,8 +260,8 @@ def as_history(history: LoadHistory | Sequence[Corner], field: str = "history") 
     """
     if isinstance(history, LoadHistory):
         return history
-    if not isinstance(history, Sequence):
-        raise InputError(field, f"must be a LoadHistory or a sequence of corners, not {as_toml(history)}")
+    if not isinstance(history, (Sequence, Mapping)):
+        raise InputError(field, f"must be a LoadHistory or a list of corners, not {as_toml(history)}")
     return LoadHistory(history)
 
 
@@ -280,7 +280,12 @@ def check_start(problem: Problem, start: Result) -> None:
     """Raise :class:`InputError` if another solution of `problem` can't continue from a result."""
     instance("start", start, Result, "a Result")
     if start.problem != problem:
-        raise InputError("start", "the result to continue from belongs to another problem")
+        names = [
+            each.name for each in fields(problem) if getattr(start.problem, each.name) != getattr(problem, each.name)
+        ]
+        raise InputError(
+            "start", f"the result to continue from belongs to another problem; not the same: {', '.join(names)}"
+        )
     if start.restart is None:
         raise InputError("start", "nothing can continue from this result: its file holds states only")
 

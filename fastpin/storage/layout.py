@@ -507,6 +507,7 @@ def check_format(file: h5py.File, path: str) -> None:
     """Raise :class:`InputError` if a file is no result, or has another version of the format."""
     if file.attrs.get("format") != FORMAT:
         raise InputError(path, "is an HDF5 file, but not a result of fastpin")
-    made_by = file.attrs.get("version_fastpin", "unknown")
     if file.attrs.get("format_version") not in (FORMAT_VERSION, WITH_BODIES):
-        raise InputError(path, f"was written by fastpin {made_by} in a format that this version can't read")
+        made_by = file.attrs.get("version_fastpin")
+        origin = "" if made_by is None else f"; it was written by fastpin {made_by}"
+        raise InputError(path, f"has a format that this version of fastpin can't read{origin}")

@@ -26,7 +26,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage.damage import reading
 from fastpin.storage.files import replacing
-from fastpin.storage.journal import JournaledFile
+from fastpin.storage.journal import JournaledFile, not_readable
 from fastpin.storage.layout import (
     Rows,
     append,
@@ -151,8 +151,8 @@ class FileRecorder:
             raise InputError(str(self.path), "must be an ordinary file")
         if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
             return
-        reason = "holds an unfinished run; resume it, or overwrite it" if is_unfinished(self.path) else "exists already"
-        raise InputError(str(self.path), f"{reason} (overwrite replaces it)")
+        reason = "holds an unfinished run: resume it, or replace it" if is_unfinished(self.path) else "exists already"
+        raise InputError(str(self.path), f"{reason}; the option overwrite replaces it")
 
     # -- calls of the run ----------------------------------------------------------------------------------------
 
@@ -357,7 +357,7 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         try:
             h5 = h5py.File(file, "r+")
         except OSError:
-            raise InputError(str(path), "is not a whole HDF5 file: damaged, cut short, or of another kind") from None
+            raise not_readable(path) from None
         try:
             with reading(path):
                 check_format(h5, str(path))

@@ -253,7 +253,7 @@ def _increasing(field: str, numbers: object, least: int, most: int | None = None
         listed = items(field, numbers, "a list of numbers")
     if len(listed) < LEAST_GRIDS:
         raise InputError(
-            field, f"must be at least {LEAST_GRIDS} numbers, not {as_toml(numbers)}: an order takes as many"
+            field, f"must be at least {LEAST_GRIDS} numbers, from which an order follows, not {as_toml(numbers)}"
         )
     checked = tuple(whole_number(field, number, least, most) for number in listed)
     for before, after in pairwise(checked):

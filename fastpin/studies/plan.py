@@ -12,7 +12,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -20,8 +20,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint
-from fastpin.casefile.toml_text import CaseText, Place, Section, read_text
+from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
+from fastpin.casefile.toml_text import CaseText, Place, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, choice, file_path, instance, number, string, whole_number
@@ -205,13 +205,8 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
 
 def _parsed(text: str, name: str, folder: str | Path) -> Plan:
     """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
-    source = CaseText(text)
-    place, title = file_path("folder", folder), string("name", name)
-    plan = _plan(source, text, place) if source.readable else None
-    if source.faults:
-        raise CaseFileError(title, source.faults)
-    assert plan is not None
-    return plan
+    place = file_path("folder", folder)
+    return parse_text(text, name, "plan", lambda source: _plan(source, text, place))
 
 
 def describe_values(values: dict[str, Any]) -> str:
@@ -224,10 +219,7 @@ def describe_values(values: dict[str, Any]) -> str:
 
 def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
-    for key in source.root.table:
-        if key not in _ROOT_KEYS:
-            hint = closest(key, _ROOT_KEYS) or "; there are title, case, [grid], [[list]] and [outcomes]"
-            source.report(f'unknown key "{key}"{hint}', key)
+    _check_root(source)
     title = source.root.checked("title", string) or ""
     base = _base(source, folder)
     places: dict[str, Place] = {}
@@ -250,6 +242,25 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
     found: list[InputWarning] = []
     points = _points(source, base, places, rows or [{}], axes, (cases, found))
     return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, found, base, cases)
+
+
+def _check_root(source: CaseText) -> None:
+    """Report unknown sections, and unknown keys before the first section."""
+    for key, value in source.root.table.items():
+        if key in _ROOT_KEYS:
+            continue
+        section, owners = written(key, value), sections_with(key)
+        hint = closest(key, _ROOT_KEYS) or "; a plan has title, case, [grid], [[list]] and [outcomes]"
+        if section and key in KEYS:
+            hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
+        elif owners:
+            hint = f"; a plan varies it in [grid]: {_varied(owners[0], key)} = ..."
+        source.report(f"unknown section {section}{hint}" if section else f'unknown key "{key}"{hint}', key)
+
+
+def _varied(section: str, key: str) -> str:
+    """The field of a key, as a plan writes it."""
+    return f"load.1.{key}" if section == "load" else f"{section}.{key}"
 
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:
@@ -330,6 +341,8 @@ def _fields(
 def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     """Return the fault of a field's name, or None."""
     name, section = ".".join(names), names[0]
+    if section not in KEYS and len(names) == 1 and (owners := sections_with(name)):
+        return f'"{name}": a field is written section.key: {_varied(owners[0], name)}'
     if section not in KEYS:
         hint = closest(section, tuple(KEYS)) or f"; sections are {', '.join(KEYS)}"
         return f'"{name}": there is no section [{section}] in a case file{hint}'
@@ -360,9 +373,13 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
     for key in _RANGE_KEYS[:3]:
         if key not in table:
             section.report(f"{name}: {key} is missing; a range has from, to and count")
-    first, last = section.checked("from", number), section.checked("to", number)
-    count = section.checked("count", whole_number, 2, MAX_RUNS)
-    spacing: Any = section.checked("spacing", choice, ("linear", "log")) or "linear"
+
+    def checked(key: str, check: Callable[..., Any], *limits: Any) -> Any:
+        return section.checked(key, lambda _, value: check(f"{name}: {key}", value, *limits))
+
+    first, last = checked("from", number), checked("to", number)
+    count = checked("count", whole_number, 2, MAX_RUNS)
+    spacing: Any = checked("spacing", choice, ("linear", "log")) or "linear"
     if first is None or last is None or count is None or len(source.placed) > before:
         return [], spacing
     if spacing == "log" and not first * last > 0.0:

@@ -21,7 +21,16 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
-from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
+from fastpin.model.checks import (
+    HDF5_SIGNATURE,
+    as_toml,
+    check_callable,
+    file_path,
+    instance,
+    items,
+    true_or_false,
+    whole_number,
+)
 from fastpin.storage import store
 from fastpin.storage.files import replacing
 from fastpin.storage.packed import FOLDER, INDEX
@@ -29,9 +38,6 @@ from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point
 from fastpin.studies.work import Work, pickled_outcomes
-
-HDF5 = b"\x89HDF\r\n\x1a\n"
-"""First bytes of an HDF5 file."""
 
 PLAN = "plan.toml"
 """Name of the plan's copy in the directory of a sweep."""
@@ -317,7 +323,7 @@ def _is_hdf5(path: Path) -> bool:
     """Whether a file begins with the signature of HDF5."""
     try:
         with path.open("rb") as file:
-            return file.read(len(HDF5)) == HDF5
+            return file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
     except OSError:
         return False
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.casefile.reader import EXAMPLE, CaseFileError, builtin_case, parse_case, read_case
-from fastpin.errors import InputError
+from fastpin.casefile.reader import EXAMPLE, builtin_case, parse_case, read_case
+from fastpin.errors import CaseFileError, InputError
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, MaterialPair
@@ -198,7 +198,7 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         # contact
         ("friction = 0.3", "", 5, "friction is missing"),
         ("friction = 0.3", "friction = -1", 8, "must not be negative"),
-        ("clearance = 1e-5", "clearance = 0.02", 7, "smaller than the hole radius"),
+        ("clearance = 1e-5", "clearance = 0.02", 7, "must lie between minus and plus the hole radius"),
         ("hole_radius = 0.01", "hole_radius = 0", 6, "must be positive"),
         ("hole_radius = 0.01", "load_parameter = 0.1", 7, "clearance: can't be given together"),
         ("friction = 0.3", 'friction = 0.3\nplane = "strian"', 9, 'did you mean "strain"'),
@@ -218,12 +218,12 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         ("P = 1e6", "P = 1\nphase = {Q = 90}", 11, "phase: needs an amplitude"),
         ("P = 1e6", "amplitude = 3", 10, "amplitude: must be a table of loads"),
         ("P = 1e6", "amplitude = {Q = 'x'}", 10, "amplitude.Q: must be a number"),
-        ("P = 1e6", "amplitude = {q = 1}", 9, 'did you mean "Q"'),
+        ("P = 1e6", "amplitude = {q = 1}", 10, 'did you mean "Q"'),
         ("P = 1e6", "amplitude = {Q = 1}\nphase = {P = 1}", 11, "P has a phase but no amplitude"),
         ("P = 1e6", "amplitude = {Q = 1}\npoints = 1", 11, "points: must be a whole number from 2 to 100000"),
         ("P = 1e6", "amplitude = {Q = 1}\nrepeat = 100000000", 11, "more than"),
         ("P = 1e6", "P = 1e6\n[history]\nrepeat = 0", 12, "repeat: must be a whole number"),
-        ("[[load]]\nP = 1e6", "[history]\ncsv = 'no such file.csv'", 10, "No such file"),
+        ("[[load]]\nP = 1e6", "[history]\ncsv = 'no such file.csv'", 10, "there is no such file"),
         ("[[load]]\nP = 1e6", "[history]\nrepeat = 2", 9, "csv is missing"),
         ("P = 1e6", "P = 1e6\n[[load]]\nrotation = 0.1", 12, "rotation"),
         # solver
@@ -240,7 +240,12 @@ def test_line_ends_and_byte_order_mark(tmp_path: Path, ends: str) -> None:
         # TOML itself
         ("friction = 0.3", "friction = .3", 8, "digit before its point, 0.3"),
         ("friction = 0.3", "friction = 0.3\nplane = stress", 9, 'text must stand in quotes, "stress"'),
-        ("friction = 0.3", "friction = ", 8, "friction: must be a number"),
+        ("friction = 0.3", "friction = ", 8, "friction: its value is missing"),
+        ("friction = 0.3", "friction = 30 %", 8, "friction: must be a number without a unit, not 30 %; SI units"),
+        ("hole_radius = 0.01", "hole_radius = 10 mm", 6, "hole_radius: must be a number without a unit, not 10 mm"),
+        ("friction = 0.3", "friction = 0,3", 8, "friction: a number has a decimal point, 0.3"),
+        ("friction = 0.3", "friction = 0.3 or so", 8, "friction: must be one value, not 0.3 or so"),
+        ("[[load]]", "[load]\nP = 1\n[[load]]", 11, '"load" is given twice; several loads are [[load]] blocks'),
         ("friction = 0.3", "friction = 0.3\nfriction = 0.4", 9, '"friction" is given twice'),
         ("friction = 0.3", "friction = 0.3\nplane", 9, 'not of the form "key = value"'),
         ("friction = 0.3", "friction = 0.3\n[pin]", 9, "[pin] appears twice"),
@@ -364,10 +369,13 @@ def test_a_file_cut_anywhere_is_read_or_refused_in_words(cut: int) -> None:
 
 
 def test_files_that_can_not_be_read(tmp_path: Path) -> None:
-    with pytest.raises(CaseFileError, match="No such file"):
+    with pytest.raises(CaseFileError, match="there is no such file"):
         read_case(tmp_path / "none.toml")
-    with pytest.raises(CaseFileError, match="can't be read"):
+    with pytest.raises(CaseFileError, match="is a directory, a file is needed"):
         read_case(tmp_path)
+    (tmp_path / "a.h5").write_bytes(b"\x89HDF\r\n\x1a\n and more")
+    with pytest.raises(CaseFileError, match=r"is a stored result \(HDF5\), not text; fastpin show prints it"):
+        read_case(tmp_path / "a.h5")
     latin = tmp_path / "latin.toml"
     latin.write_bytes(b"[pin]\ntitle = 'M\xfcller'\n")
     with pytest.raises(CaseFileError, match="line 2: is not UTF-8"):

@@ -180,7 +180,7 @@ def test_every_control_can_be_sent_back_unchanged() -> None:
 @pytest.mark.parametrize(
     ("kind", "fields", "sentence"),
     [
-        ("load", {"loads": {"R": 1.0}}, "R: corner 1: unknown load"),
+        ("load", {"loads": {"R": 1.0}}, 'corner 1: unknown load "R"; the loads are'),
         ("load", {"loads": {"M": 1e3}}, "M: a body-loaded pin can't carry a moment"),
         ("load", {"loads": {"P": 1e300}}, "P: must lie between"),
         ("change", {"changes": {"friction": -1}}, "friction: must not be negative"),

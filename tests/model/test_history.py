@@ -135,7 +135,7 @@ def test_harmonic_loads() -> None:
         (({}, {}), "amplitude"),
         (({}, {"Q": 1.0}, {"P": 2.0}), "phase"),
         (({}, {"Q": np.nan}), "Q of amplitude"),
-        (({"X": 1.0}, {"Q": 1.0}), "X"),
+        (({"X": 1.0}, {"Q": 1.0}), "mean"),
         (({}, {"Q": 1.0}, {}, 0), "count"),
         (({}, {"Q": 1.0}, {}, 1, 1), "points"),
     ],
@@ -154,7 +154,7 @@ def test_arrays() -> None:
         (np.zeros((2, 3)), ["P", "Q"], "corners"),
         (np.full((2, 1), np.inf), ["P"], "corners"),
         (np.zeros((2, 2)), ["P", "P"], "loads"),
-        (np.zeros((2, 1)), ["p"], "p"),
+        (np.zeros((2, 1)), ["p"], "loads"),
         (np.zeros((0, 1)), ["P"], "history"),
     ):
         with pytest.raises(InputError) as caught:
@@ -174,11 +174,11 @@ def test_csv(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "faults"),
     [
-        ("P,Q\n1,0\n1,nan\n", [(3, "Q must be a finite number, not 'nan'")]),
-        ("P,Q\n1,inf\n", [(2, "Q must be a finite number")]),
+        ("P,Q\n1,0\n1,nan\n", [(3, "Q: must be a finite number, not nan")]),
+        ("P,Q\n1,inf\n", [(2, "Q: must be a finite number, not inf")]),
         (
             "P,Q\n1,0\n1,two\nx,y\n1\n1,0\n",
-            [(3, "Q must be"), (4, "P must be"), (4, "Q must be"), (5, "1 cells where the header has 2")],
+            [(3, "Q: must be"), (4, "P: must be"), (4, "Q: must be"), (5, "the line has 1 cell, the header has 2")],
         ),
         (
             "P,q\n1,0\n",

@@ -365,7 +365,7 @@ def test_a_change_may_need_more_nodes_or_the_whole_circle(titanium_in_aluminium)
         ({"friction": -0.1}, "friction: must not be negative"),
         ({"hole_radius": 2.0}, "hole_radius: is the unit of a dimensionless problem"),
         ({"drive": "ux"}, 'Q: the force is a reaction where drive = "ux"; give ux'),
-        ({"friction": 0.1, "replay": "all"}, 'replay: must be "history" or "load" or "none"'),
+        ({"friction": 0.1, "replay": "all"}, 'replay: must be "history", "load" or "none"'),
     ],
 )
 def test_a_wrong_change_names_the_field(problem, change, sentence):
@@ -448,7 +448,7 @@ def test_loads_of_other_types_are_numbers_too(problem):
         ({"grid": 5}, "grid: must be a Grid"),
         ({"arc": (0.0, 1.0), "grid": fastpin.Grid.circle(41)}, "arc: has no effect where a grid is given"),
         ({"expected": [{"rotation": 1.0}]}, "rotation: a rotation can be prescribed only"),
-        ({"expected": 1}, "expected: must be a LoadHistory or a sequence of corners"),
+        ({"expected": 1}, "expected: must be a LoadHistory or a list of corners"),
     ],
 )
 def test_wrong_options_are_named(problem, options, sentence):

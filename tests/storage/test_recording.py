@@ -379,8 +379,8 @@ def test_only_unfinished_runs_are_gone_on_with(problem, path, tmp_path):
     follow(problem, RANDOM[:3], path, nodes=61, overwrite=True)
     whole = path.read_bytes()
     for content, words in (
-        (whole[: len(whole) // 2], "not a whole HDF5 file"),
-        (b"P,Q\n1,2\n", "not a whole HDF5 file"),
+        (whole[: len(whole) // 2], "is damaged or cut short"),
+        (b"P,Q\n1,2\n", "is no HDF5 file, and no result"),
     ):
         path.write_bytes(content)
         with pytest.raises(InputError, match=words):

@@ -298,7 +298,7 @@ contact.friction = 0.3
         (3, '"contact.frition": there is no key "frition" in [contact], did you mean "friction"?'),
         (4, '"load.5.Q": the case has 2 [[load]] blocks, counted from 1'),
         (5, 'pin.nu: unknown key "spac" in a range; there are from, to, count, spacing'),
-        (5, "count: must be a whole number from 2 to 100000, not 2.5"),
+        (5, "pin.nu: count: must be a whole number from 2 to 100000, not 2.5"),
         (6, "contact.load_parameter: the base case gives a hole radius and a clearance, and loads in N/m"),
         (7, "contact.friction: is varied already, in line 14"),
         (8, '"x.y": there is no section [x] in a case file'),
@@ -338,7 +338,9 @@ def test_what_a_field_breaks_elsewhere_is_told_with_the_case_s_line(tmp_path: Pa
     line = EXAMPLE.splitlines().index(next(row for row in EXAMPLE.splitlines() if row.startswith("clearance"))) + 1
     text = 'case = "case.toml"\n[grid]\ncontact.hole_radius = [1e-2, 1e-5]\n'
     (found,) = faults(text, tmp_path)
-    assert found.startswith(f"plan, line 1: case.toml, line {line}: clearance: must be smaller than the hole radius")
+    assert found.startswith(
+        f"plan, line 1: case.toml, line {line}: clearance: must lie between minus and plus the hole"
+    )
     assert found.endswith("(in the run contact.hole_radius = 1e-05)")
 
 
@@ -352,7 +354,7 @@ def test_sections_that_a_plan_makes_are_checked(tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("", "nothing is varied"),
-        ('case = "missing.toml"\n[grid]\nsolve.nodes = [41]', "missing.toml: can't be read: No such file"),
+        ('case = "missing.toml"\n[grid]\nsolve.nodes = [41]', "missing.toml: there is no such file"),
         ("[list]\npin.E = 1", "line 1: lists are [[list]] blocks"),
         ("[[list]]", "line 1: [[list]]: gives no field"),
         ("grid = 3", "line 1: grid: must be a section [grid], not 3"),

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.casefile.lug import LUG_KEYS
+from fastpin.casefile.lug import LUG_EXAMPLE, LUG_KEYS, parse_lug
 from fastpin.casefile.reader import EXAMPLE, KEYS, parse_case
 from fastpin.cli.main import main
 from fastpin.cli.options import parser
@@ -79,6 +79,13 @@ UNKNOWN_KEYS: list[tuple[str, str, str]] = [
     ("nodes = 401", "nodes = 401\nxyzzy = 1", 'unknown key "xyzzy" in [solve]; the keys are nodes, method, increments'),
     ("[solve]", "[solver]", 'unknown section [solver], did you mean "solve"?'),
     ("[contact]", "[geometry]", 'unknown section [geometry], did you mean "contact"?'),
+    (
+        "[solve]",
+        "[[repeat]]\nn = 3\n[solve]",
+        "unknown section [[repeat]]; repeat is a key in [[load]] or [history]",
+    ),
+    ("[solve]", "[xyzzy]\n[solve]", "unknown section [xyzzy]; the sections are [pin], [plate], [dundurs], [contact],"),
+    ("[solve]", "[pin.title]\n[solve]", 'unknown key "title" in [pin]; the keys are material, E, nu, rigid,'),
     ("[pin]  ", "mu = 0.4\n[pin]  ", 'unknown key "mu" before the first section, did you mean "friction" in [contact]'),
     ('method = "path"', 'method = "exact"', 'method: must be "path" or "increment", not "exact", did you mean "path"?'),
 ]
@@ -108,6 +115,59 @@ def test_an_unknown_field_of_a_plan_is_answered_with_the_one_that_is_meant(field
     with pytest.raises(CaseFileError) as error:
         parse_plan(f"[grid]\n{field} = [0.1, 0.2]\n")
     assert error.value.problems[0][1].startswith(sentence)
+
+
+PLAN_ROOTS = [
+    (
+        "[contact]\nfriction = [0.1]\n[grid]\ncontact.friction = [0.1]",
+        "unknown section [contact]; it belongs in the case file, which a plan names",
+    ),
+    ("[xyzzy]", "unknown section [xyzzy]; a plan has title, case, [grid], [[list]] and [outcomes]"),
+    ("friction = [0.1]", 'unknown key "friction"; a plan varies it in [grid]: contact.friction = ...'),
+    ("Q = [1e5]", 'unknown key "Q"; a plan varies it in [grid]: load.1.Q = ...'),
+    ("[[grid]]\ncontact.friction = [0.1]", "grid: must be a section [grid], not [[grid]]"),
+]
+"""The root of a plan, and the beginning of the first answer."""
+
+
+@pytest.mark.parametrize(("text", "sentence"), PLAN_ROOTS)
+def test_an_unknown_part_of_a_plan_is_named_with_what_is_allowed(text: str, sentence: str) -> None:
+    with pytest.raises(CaseFileError) as error:
+        parse_plan(text)
+    assert error.value.problems[0][1].startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    ("text", "read", "kind", "sentence"),
+    [
+        (EXAMPLE, parse_plan, "plan", "is a case file, not a plan; see fastpin run"),
+        (EXAMPLE, parse_lug, "lug file", "is a case file, not a lug file; see fastpin run"),
+        (LUG_EXAMPLE, parse_case, "case file", "is a lug file, not a case file; see fastpin compliance"),
+        ("[grid]\na.b = [1]\n", parse_case, "case file", "is a plan, not a case file; see fastpin sweep"),
+    ],
+)
+def test_a_file_of_another_kind_is_told_in_one_sentence(
+    text: str, read: Callable[[str], object], kind: str, sentence: str
+) -> None:
+    with pytest.raises(CaseFileError) as error:
+        read(text)
+    assert str(error.value) == f"{kind}: {sentence}"
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["repot", "a.h5"], 'must be example, check, .*, not "repot", did you mean "report"\\?'),
+        (["plot", "a.h5", "tracton"], 'kind: must be tractions, .*, not "tracton", did you mean "tractions"\\?'),
+        (["completion", "fish"], 'shell: must be bash, zsh, tcsh, not "fish"'),
+    ],
+)
+def test_a_word_of_the_command_line_that_is_not_allowed_is_answered_with_the_one_that_is_meant(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(words)
+    assert re.search(f"error: .*{sentence}\n$", capsys.readouterr().err)
 
 
 KEYWORDS: list[tuple[Callable[..., Any], dict[str, Any], str]] = [
