@@ -132,14 +132,15 @@ def case(page: Shared) -> Section:
     known = page.source.knows_options
     options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
     solver = [(name, as_toml(value), OPTION_WORDS[name]) for name, value in options.items() if value is not None]
-    parts = [
-        *_drawn(lambda: drawings.sketch(page.album, found)),
-        Facts("The problem", rows, ("subject", "in words")),
-        Facts("Options of the solver", solver, ("option", "value", "meaning")),
-    ]
-    if problem.thickness is not None:
-        parts.append(Text("Tables and sentences have forces for the whole thickness, figures per thickness.", "note"))
-    return Section("case", "Case", parts)
+    return Section(
+        "case",
+        "Case",
+        [
+            *_drawn(lambda: drawings.sketch(page.album, found)),
+            Facts("The problem", rows, ("subject", "in words")),
+            Facts("Options of the solver", solver, ("option", "value", "meaning")),
+        ],
+    )
 
 
 _IN_RESULTS = ("nodes", "method", "error_bars")

@@ -43,6 +43,9 @@ OWN_COLUMNS = (LOAD_POINT, QUANTITIES["dissipation"].label, "residual")
 MOST_COMPARED = 1_000
 """Most different states whose rows are compared: a row takes some 2 ms. Of more states no row is folded."""
 
+IN_PHASE = 1e-9
+"""Largest difference of two load points, in cycles, that is rounding. A larger one only lets more states be read."""
+
 _DEGREE = math.degrees(1.0)
 
 
@@ -139,7 +142,8 @@ def stored_rows(
 def _places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
     """The place of a state like each state, shape (states,): its own place, or one in the first steady cycle.
 
-    The states of the last cycle of a block have their own places.
+    The states of the last cycle of a block have their own places. So have states at another place of the cycle: of
+    those that ``keep = "every 2"`` leaves, each cycle has others.
     """
     places = np.arange(points.size)
     for block in consecutive_cycles(cycles):
@@ -149,7 +153,10 @@ def _places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
         bounds = [steady.corner + 1 - steady.length, steady.corner + 1, last.corner + 1 - last.length]
         begin, end, stop = np.searchsorted(points, bounds, side="right").tolist()
         if stop > end > begin:
-            places[end:stop] = begin + (places[end:stop] - begin) % (end - begin)
+            earlier = begin + (places[end:stop] - begin) % (end - begin)
+            cycles_between = (points[end:stop] - points[earlier]) / steady.length
+            in_phase = np.abs(cycles_between - np.round(cycles_between)) < IN_PHASE
+            places[end:stop][in_phase] = earlier[in_phase]
     return places
 
 

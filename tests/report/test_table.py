@@ -111,6 +111,15 @@ def test_of_a_stored_result_few_states_are_read() -> None:
     assert read[-3:] == [598, 599, 600]
 
 
+def test_kept_states_out_of_phase_with_the_cycles_are_not_taken_for_equal() -> None:
+    case = parse_case(EXAMPLE.replace("# repeat = 1000  ", "repeat = 60  "))
+    result = solve(case.problem, case.history, nodes=61, keep="every 2")
+    rows = stored_rows(case.problem, points_of(result), result.cycles, lambda places: [result[k] for k in places])
+    text = state_table(case.problem, list(result))
+    assert state_table(case.problem, [result[k] for k in rows.printed], rows) == text
+    assert re.search(r"repeat load points \d+ to \d+, \d+ times", text)
+
+
 def test_a_stored_result_of_many_different_states_is_cut_without_reading_them() -> None:
     points = np.arange(1.0, 5001.0)
     rows = stored_rows(sample_result().problem, points, (), lambda places: pytest.fail("states were read"))
