@@ -319,11 +319,18 @@ class Session:
         self._redo.clear()
         self._run = None
 
-    def copy(self) -> Session:
-        """Another session at the same place. Both share the matrices and go on by themselves."""
+    def copy(self, matrices: bool = True) -> Session:
+        """Another session at the same place. Both go on by themselves.
+
+        Parameters
+        ----------
+        matrices : bool
+            Whether both share the matrices. A copy without them is small, and makes them anew with its next load.
+        """
         other = Session.__new__(Session)
         other.__setstate__(self.__getstate__())
-        other._system, other._recorder.outside = self._system, self._recorder.outside
+        if matrices:
+            other._system, other._recorder.outside = self._system, self._recorder.outside
         return other
 
     def result(self, keep: str | KeepRule = DEFAULTS.keep) -> Result:
