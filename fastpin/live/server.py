@@ -48,6 +48,9 @@ TOKEN_BYTES = 16
 HEARTBEAT = 20.0
 """Seconds between two pings of a websocket. A page that has gone without a word is noticed after this time."""
 
+LAST_WAIT = 1.0
+"""Seconds that pages have to answer when the server ends."""
+
 POLICY = (
     "default-src 'none'; script-src 'self' {map}; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self' ws://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -202,7 +205,7 @@ class Server:
         self._files = page_files()
         self._page, self._map = live_page()
         self._connections = 0
-        self._sockets: set[web.WebSocketResponse] = set()
+        self._sockets: dict[web.WebSocketResponse, web.Request] = {}
         self._thread = ThreadPoolExecutor(1, "fastpin")
 
     @contextlib.asynccontextmanager
@@ -219,7 +222,7 @@ class Server:
         application.router.add_get("/{token}/socket", self._talk)
         application.router.add_get("/{token}/save/{session}/{file}", self._save)
         application.router.add_get("/{token}/{file:.*}", self._send_file)
-        runner = web.AppRunner(application, access_log=None, shutdown_timeout=1.0)
+        runner = web.AppRunner(application, access_log=None, shutdown_timeout=LAST_WAIT)
         listening = bound_socket(port)
         try:
             await runner.setup()
@@ -230,8 +233,7 @@ class Server:
             yield self
         finally:
             self._sessions.stop()
-            for page in list(self._sockets):
-                await page.close(code=WSCloseCode.GOING_AWAY, message=b"the server ends")
+            await self._end_pages()
             await runner.cleanup()
             listening.close()
             self._thread.shutdown(wait=True, cancel_futures=True)
@@ -241,10 +243,10 @@ class Server:
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
         """Refuse requests for another host, from another page, or without the token."""
-        origin = request.headers.get("Origin")
+        origins = set(request.headers.getall("Origin", []))
         if request.headers.get("Host") not in self._hosts:
             response: web.StreamResponse = _refused(403, "This server answers to its own address only.")
-        elif origin is not None and origin not in [f"http://{host}" for host in self._hosts]:
+        elif not origins <= {f"http://{host}" for host in self._hosts}:
             response = _refused(403, "Another page may not use this server.")
         elif not hmac.compare_digest(request.match_info.get("token", "").encode(), self.token.encode()):
             response = _refused(403, "The address lacks the token: take the address that fastpin live has printed.")
@@ -303,12 +305,22 @@ class Server:
         self._connections += 1
         try:
             await page.prepare(request)
-            self._sockets.add(page)
+            self._sockets[page] = request
             await self._serve_page(page)
         finally:
             self._connections -= 1
-            self._sockets.discard(page)
+            self._sockets.pop(page, None)
         return page
+
+    async def _end_pages(self) -> None:
+        """Tell all pages that the server ends. A page that reads nothing is cut off."""
+        transports = [request.transport for request in self._sockets.values()]
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(LAST_WAIT):
+                await asyncio.gather(*map(_end, self._sockets), return_exceptions=True)
+        for transport in transports:
+            if transport is not None:
+                transport.abort()
 
     async def _serve_page(self, page: web.WebSocketResponse) -> None:
         mailbox, limit = Mailbox(), RateLimit(MOST_A_SECOND)
@@ -390,6 +402,10 @@ def _failure(message: Message, error: Exception) -> str:
         log.error("a message failed", exc_info=error)
         words = f"the message failed unexpectedly ({type(error).__name__}); the contact is where it was"
     return json.dumps(refusal(message.id, InputError("contact", words)))
+
+
+async def _end(page: web.WebSocketResponse) -> None:
+    await page.close(code=WSCloseCode.GOING_AWAY, message=b"the server ends")
 
 
 async def _send(page: web.WebSocketResponse, answer: dict[str, Any]) -> None:

@@ -173,6 +173,14 @@ def test_another_origin_is_refused(server: Server, origin: str) -> None:
     assert ask(work) == 403
 
 
+def test_one_foreign_origin_of_two_is_refused(server: Server) -> None:
+    host = host_of(server)
+    origins = f"Origin: http://{host}\r\nOrigin: http://example.org"
+    with socket.create_connection((host.split(":")[0], int(host.split(":")[1]))) as raw:
+        raw.sendall(f"GET /{server.token}/ HTTP/1.1\r\nHost: {host}\r\n{origins}\r\n\r\n".encode())
+        assert raw.recv(65_536).split(b" ")[1] == b"403"
+
+
 def test_a_websocket_needs_an_origin(server: Server) -> None:
     assert get(f"{server.address}socket")[:2] == (403, "Only the page may use this server.\n")
 
@@ -476,6 +484,27 @@ def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
     assert printed.out == "live page: http://127.0.0.1:1/token/\nCtrl-C ends it\n"
     assert printed.err == "note: no browser was found; open the address above in one\n"
     assert opened == ["http://127.0.0.1:1/token/"]
+
+
+def test_a_page_that_reads_nothing_does_not_keep_the_server_from_ending() -> None:
+    with socket.socket() as raw:
+        with served() as running:
+            host = host_of(running)
+            raw.connect((host.split(":")[0], int(host.split(":")[1])))
+            lines = (
+                f"GET /{running.token}/socket HTTP/1.1", f"Host: {host}", f"Origin: http://{host}",
+                "Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {'A' * 22}==",
+                "Sec-WebSocket-Version: 13",
+            )  # fmt: skip
+            raw.sendall("\r\n".join((*lines, "", "")).encode())
+            assert b"101" in raw.recv(20)
+            raw.settimeout(0.5)
+            pings = (b"\x89\xfd" + bytes(4) + b"x" * 125) * 1000
+            with contextlib.suppress(TimeoutError):
+                for _ in range(1_000):
+                    raw.sendall(pings)  # until the answers have filled all buffers
+            began = time.monotonic()
+        assert time.monotonic() - began < 5.0  # without a limit the server waits for ten seconds
 
 
 def test_the_mailbox_has_an_end() -> None:
