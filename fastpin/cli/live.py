@@ -14,6 +14,7 @@ from fastpin.errors import InputError
 from fastpin.live.contact import NODES, LiveContact
 from fastpin.live.protocol import MOST_LIVE_NODES
 from fastpin.model.checks import whole_number
+from fastpin.model.doubts import doubts_given
 from fastpin.model.grid import LEAST_NODES
 
 MOST_PORT = 65_535
@@ -36,7 +37,8 @@ def run(options: argparse.Namespace) -> int:
             print("note: no browser was found; open the address above in one", file=sys.stderr)
 
     try:
-        serve(lambda: LiveContact(case, nodes), port, ready)
+        with doubts_given():  # the page shows them, for each problem that is tried
+            serve(lambda: LiveContact(case, nodes), port, ready)
     except InputError as error:
         raise InputError(f"--{error.field}" if error.field == "port" else error.field, error.reason) from None
     return EXIT_OK

@@ -5,6 +5,7 @@ Nothing here knows of servers or browsers.
 
 from __future__ import annotations
 
+import gc
 import math
 import threading
 from collections import deque
@@ -19,7 +20,7 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.kernels.status import OPEN
 from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
-from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, Message, refusal
+from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, MOST_UNDONE_NODES, Message, refusal
 from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts
@@ -42,6 +43,9 @@ LEAST_CLOSED = 20
 MOST_PLAYED = 500
 """Corners of the case's history that the page can play."""
 
+MOST_LEFT = 4
+"""Sessions left behind before the garbage is collected. Each is in a cycle of references, with 32 MB of tables."""
+
 NO_GESTURE = -1
 """The gesture of what stands alone. Those of a page are not negative."""
 
@@ -57,6 +61,11 @@ class Mark(NamedTuple):
     session: Session
     trail: tuple[int, ...]
     nodes: int
+
+    @property
+    def size(self) -> int:
+        """Number of the nodes that the session has; 0 before the first load."""
+        return 0 if self.session.grid is None else self.session.grid.size
 
 
 class LiveContact:
@@ -90,7 +99,7 @@ class LiveContact:
         self._trail: list[int] = []
         self._shown: list[int] = []
         self._grids: dict[str, tuple[Grid, str]] = {}
-        self._serial, self._gesture = 0, NO_GESTURE
+        self._serial, self._gesture, self._left = 0, NO_GESTURE, 0
         self._reference: Answer | None = None
         self._known: dict[str, Any] = {}
         self._stop = threading.Event()
@@ -124,7 +133,16 @@ class LiveContact:
         except BaseException:
             self._return_to(before)
             raise
+        finally:
+            self._collect(before.session)
         return [self._changes(message.id)]
+
+    def _collect(self, before: Session) -> None:
+        """Count the sessions that are left, and collect them now and then. Python itself would wait for long."""
+        self._left += before is not self.session
+        if self._left >= MOST_LEFT:
+            self._left = 0
+            gc.collect()
 
     def stop(self) -> None:
         """End a long history that is being followed. The message that it belongs to is refused."""
@@ -134,7 +152,7 @@ class LiveContact:
 
     def _obey_load(self, loads: dict[str, float], gesture: int, drag: bool) -> None:
         is_new = gesture != self._gesture
-        mark = self._mark()._replace(session=self.session.copy()) if is_new else None
+        mark = self._lasting_mark() if is_new else None
         self._step(self.session, loads, gesture)
         if mark is not None:
             self._remember(mark, gesture)
@@ -148,23 +166,23 @@ class LiveContact:
         self._lead(session, follow, gesture)
 
     def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
-        mark, self._nodes = self._mark(), nodes
+        mark, self._nodes = self._lasting_mark(), nodes
         self._lead(self._new_session(self.session.problem), follow, gesture, mark)
 
     def _obey_undo(self) -> None:
         if not self._past:
             raise InputError("undo", "there is nothing before to go back to")
-        self._future.append(self._mark())
+        self._future.append(self._lasting_mark())
         self._go(self._past.pop())
 
     def _obey_redo(self) -> None:
         if not self._future:
             raise InputError("redo", "nothing was undone")
-        self._past.append(self._mark())
+        self._past.append(self._lasting_mark())
         self._go(self._future.pop())
 
     def _obey_reset(self) -> None:
-        mark = self._mark()
+        mark = self._lasting_mark()
         session = self.session.copy()
         session.reset()
         self.session = session
@@ -191,7 +209,7 @@ class LiveContact:
 
     def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> None:
         """Lead a new session from no load, and make it the present one. `mark` is the place before."""
-        mark, rows = mark or self._mark(), self._rows(follow)
+        mark, rows = mark or self._lasting_mark(), self._rows(follow)
         self.session, self._trail = session, []
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
         left_out = sorted({name for row in rows for name, value in row.items() if name not in allowed and value != 0.0})
@@ -258,11 +276,17 @@ class LiveContact:
         """Make the place before a gesture one to go back to. What was undone before is forgotten."""
         if gesture != self._gesture or gesture == NO_GESTURE:
             self._past.append(mark)
+            while sum(past.size for past in self._past) > MOST_UNDONE_NODES:
+                self._past.popleft()
         self._future.clear()
         self._gesture = gesture
 
     def _mark(self) -> Mark:
         return Mark(self.session, tuple(self._trail), self._nodes)
+
+    def _lasting_mark(self) -> Mark:
+        """The present place, to be kept. Its session is a copy without matrices, which would fill the memory."""
+        return self._mark()._replace(session=self.session.copy(matrices=False))
 
     def _go(self, mark: Mark) -> None:
         self._return_to(mark)

@@ -67,6 +67,9 @@ MOST_PICTURES = 2_000
 MOST_UNDONE = 200
 """Gestures that can be undone."""
 
+MOST_UNDONE_NODES = 20_000
+"""Nodes of all states for undo together: 99 gestures with 201 nodes, 12 with 1,601. A state takes 4 kB a node."""
+
 MOST_LIVE_NODES = 1_601
 """Most nodes of a live contact. A step then takes half a second."""
 
