@@ -8,15 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.model.angles import from_bottom, interval_from_bottom
+from fastpin.model.angles import BOTTOM, degrees_from_bottom, from_bottom, interval_from_bottom
 from fastpin.model.doubts import pressure_doubts
 from fastpin.model.history import LoadHistory
 from fastpin.report.summary import json_ready
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.state import State
 
-HOOP_ANGLES = 181
-"""Angles of the curve of the hoop stress: every two degrees round the hole, the first and the last at the top."""
+EVERY = 2.0
+"""Degrees between two points of the curve of the hoop stress."""
+
+BESIDE = (-0.4, -0.1, -0.02, 0.0, 0.02, 0.1, 0.4)
+"""Further points, in degrees from each border of contact and stick. The hoop stress has its sharp peaks there."""
 
 
 def packed(values: np.ndarray, kind: str = "<f4") -> str:
@@ -24,9 +27,12 @@ def packed(values: np.ndarray, kind: str = "<f4") -> str:
     return base64.b64encode(np.asarray(values).astype(kind).tobytes()).decode("ascii")
 
 
-def hoop_angles() -> np.ndarray:
-    """The angles of the curve of the hoop stress, rad."""
-    return np.linspace(-1.5 * math.pi, 0.5 * math.pi, HOOP_ANGLES)
+def hoop_degrees(state: State) -> np.ndarray:
+    """The angles of the curve of the hoop stress, degrees from the bottom, ascending from -180 to 180, float32."""
+    borders = [degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
+    beside = np.add.outer(borders, BESIDE).ravel()
+    regular = np.linspace(-180.0, 180.0, round(360.0 / EVERY) + 1)
+    return np.unique(np.concatenate([regular, np.remainder(beside + 180.0, 360.0) - 180.0]).astype(np.float32))
 
 
 def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHistory) -> dict[str, Any]:
@@ -62,7 +68,7 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "shear": packed(state.shear),
         "gap": packed(state.gap),
         "status": packed(state.status, "i1"),
-        "hoop": None if rigid else packed(state.hoop_stress("plate", hoop_angles())),
+        "hoop": None if rigid else _hoop(state),
     }
 
 
@@ -85,6 +91,12 @@ def _numbers(state: State) -> dict[str, Any]:
         "residual": max(state.residuals.values()),
         "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
+
+
+def _hoop(state: State) -> dict[str, str]:
+    degrees = hoop_degrees(state)
+    stress = state.hoop_stress("plate", np.radians(degrees.astype(float)) + BOTTOM)
+    return {"degrees": packed(degrees), "stress": packed(stress)}
 
 
 def _degrees(angle: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 
@@ -10,6 +11,7 @@ import pytest
 
 import fastpin
 from fastpin import casefile
+from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.state import State
@@ -358,3 +360,44 @@ def test_a_long_history_can_be_stopped() -> None:
     assert (count, page.live.session) == (3, session)
     page.tell("load", loads={"Q": 0.0}, gesture=9)
     assert page.pictures[:-1] == pictures
+
+
+@pytest.mark.parametrize("nodes", [61, 201])
+def test_the_curve_of_the_hoop_stress_has_its_peak(nodes: int) -> None:
+    """Every two degrees alone miss 12 % of it: the peak is at a border of the contact."""
+    page = Page(contact(nodes=nodes))
+    for _ in range(2):
+        hoop, state = page.pictures[-1]["hoop"], page.live.session.state
+        degrees, stress = floats(hoop["degrees"]), floats(hoop["stress"])
+        assert stress.max() == pytest.approx(state.peak_hoop_stress().value, rel=1e-3)
+        assert (degrees[0], degrees[-1]) == (-180.0, 180.0)
+        assert np.all(np.diff(degrees) > 0.0)
+        page.tell("load", loads={"P": 2e6, "Q": 6e5})
+
+
+def systems() -> int:
+    """Return the number of systems of matrices in this process."""
+    return sum(isinstance(one, System) for one in gc.get_objects())
+
+
+def test_gestures_that_can_be_undone_hold_no_matrices() -> None:
+    page = Page(contact(nodes=41))
+    before = systems()
+    for k in range(15):
+        page.tell("change", changes={"friction": 0.2 + 0.01 * k}, gesture=k)
+        page.tell("load", loads={"Q": 1e5}, gesture=k)
+    assert page.latest["undos"] == 15
+    assert systems() - before <= contact_module.MOST_LEFT + 1
+    page.tell("undo")
+    page.tell("load", loads={"Q": 2e5}, gesture=99)
+    session = page.live.session
+    again = fastpin.solve(session.problem, session.history, grid=session.grid)[-1]
+    assert np.array_equal(session.state.shear, again.shear)
+
+
+def test_states_for_undo_have_few_nodes_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    page = Page(contact())
+    monkeypatch.setattr(contact_module, "MOST_UNDONE_NODES", 10 * page.live.session.grid.size)
+    for k in range(20):
+        page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
+    assert page.latest["undos"] == 10

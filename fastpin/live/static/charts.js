@@ -153,15 +153,15 @@ export class RoundCharts {
     const element = document.getElementById("hoop-chart").parentElement;
     element.style.display = known.length ? "" : "none";
     if (!known.length) return;
-    const high = Math.max(0, ...known.map((one) => Math.max(...one.hoop))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop)));
+    const high = Math.max(0, ...known.map((one) => Math.max(...one.hoop.stress))), low = Math.min(0, ...known.map((one) => Math.min(...one.hoop.stress)));
     this.peaks.high = peak(this.peaks.high, high);
     this.peaks.low = peak(this.peaks.low, -low);
     const scale = scaled(Math.max(this.peaks.high, this.peaks.low), unit);
     const most = scale.factor * Math.max(this.peaks.high, this.peaks.low) || 1;
     // The axis shows zero, and a little beyond it.
     this.ranges.hoop = [-Math.max(scale.factor * this.peaks.low, 0.05 * most), Math.max(scale.factor * this.peaks.high, 0.05 * most)];
-    const count = known[0].hoop.length, x = Array.from({ length: count }, (_, k) => -180 + (360 * k) / (count - 1));
-    const along = (one) => (one?.hoop ? Array.from(one.hoop, (value) => scale.factor * value) : x.map(() => null));
+    const x = [...new Set(known.flatMap((one) => [...one.hoop.degrees]))].sort((a, b) => a - b);
+    const along = (one) => (one?.hoop ? interpolated(one.hoop, x, scale.factor) : x.map(() => null));
     this.charts.hoop.setData([x, along(reference), along(shown)]);
     this.label("hoop", scale.unit);
   }
@@ -174,6 +174,16 @@ export class RoundCharts {
     const value = idx === null || idx === undefined ? null : plot.data.at(-1)[idx];
     place.textContent = value === null || value === undefined ? unit : `${unit}  ${digits(value)} at ${digits(plot.data[0][idx], 3)}°`;
   }
+}
+
+// The hoop stress at the angles `x`, which have those of the curve among them; both ascend.
+function interpolated({ degrees, stress }, x, factor) {
+  let k = 0;
+  return x.map((angle) => {
+    while (k < degrees.length - 2 && degrees[k + 1] <= angle) k++;
+    const part = (angle - degrees[k]) / (degrees[k + 1] - degrees[k]);
+    return factor * (stress[k] + part * (stress[k + 1] - stress[k]));
+  });
 }
 
 // The values of a picture with other nodes, at the nodes of `base`: those of the nearest node.

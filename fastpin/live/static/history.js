@@ -15,7 +15,6 @@ export class History {
     this.undos = 0;
     this.redos = 0;
     this.place = -1;
-    this.loads = []; // of all steps since the page was opened, for a file when the server is gone
   }
 
   // Take the news of the server. Returns whether the problem is another one.
@@ -43,7 +42,7 @@ export class History {
       found.status = found.status.map((status) => (status === OPEN ? OPEN : SLIDES));
       found.slip = picture.slip.map(([start, stop]) => [start, stop, SLIDES]);
     }
-    found.hoop = picture.hoop === null ? null : floats(picture.hoop);
+    found.hoop = picture.hoop && { degrees: floats(picture.hoop.degrees), stress: floats(picture.hoop.stress) };
     found.column = column(found);
     return found;
   }

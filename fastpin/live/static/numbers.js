@@ -44,10 +44,15 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
     ["pin moves up", unit("displacement", picture.dy)],
     ["pin turns", unit("rotation", picture.rotation)],
     ["dissipated", unit("energy", picture.dissipation)],
-    ...(picture.hoop ? [["largest hoop stress", unit("traction", Math.max(...picture.hoop))]] : []),
+    ...(picture.hoop ? hoopCells(picture.hoop, unit) : []),
     ["nodes closed", `${picture.status.filter((one) => one !== OPEN).length} of ${picture.status.length}`],
     ["residual", digits(picture.residual, 1)],
   ];
+}
+
+function hoopCells({ degrees: angles, stress }, unit) {
+  const most = Math.max(...stress);
+  return [["largest hoop stress", unit("traction", most)], ["at", degrees(angles[stress.indexOf(most)])]];
 }
 
 function total(intervals) {
