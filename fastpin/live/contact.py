@@ -23,6 +23,7 @@ from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, MOST_UNDONE_NODES, Message, refusal
 from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
+from fastpin.model.compliance import Compliance
 from fastpin.model.doubts import doubts
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -360,6 +361,12 @@ class LiveContact:
         history, grid = self.session.history, self.session.grid
         if history is None or grid is None:
             raise InputError("case", "no load was followed yet")
+        if isinstance(self.session.problem.plate_body, Compliance):
+            raise InputError(
+                "case",
+                "a plate from a compliance file can't be saved here; "
+                "save the loads (CSV), and name them in a copy of your own case file",
+            )
         arc = ALL_ROUND if grid.closed else (float(grid.theta[0]), float(grid.theta[-1]))
         options = replace(SolveOptions(), nodes=grid.size, arc=arc)
         return case_text(Case(self.session.problem, history, options, self._case.title))

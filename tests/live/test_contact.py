@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,8 +14,10 @@ import fastpin
 from fastpin import casefile
 from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
+from fastpin.live.contact import LiveContact
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.state import State
+from fastpin.verification.body_cases import ring_compliance
 from tests.support.live_pages import FREE, NODES, Page, contact, floats
 
 P, Q = 2.42e6, 7.26e5
@@ -338,6 +341,15 @@ def test_the_saved_case_has_the_same_states() -> None:
     page.tell("reset")
     with pytest.raises(fastpin.InputError, match="no load was followed yet"):
         page.live.case_text()
+
+
+def test_a_plate_from_a_compliance_file_is_not_saved_but_its_loads_are_pointed_to() -> None:
+    case = casefile.parse_case(FREE)
+    ring = replace(case.problem, plate_body=Ring(0.02))
+    live = LiveContact(replace(case, problem=replace(ring, plate_body=ring_compliance(ring, 8))), NODES)
+    assert live.session.state is not None
+    with pytest.raises(fastpin.InputError, match=r"^case: a plate from a compliance file .* save the loads \(CSV\)"):
+        live.case_text()
 
 
 def test_a_long_history_can_be_stopped() -> None:

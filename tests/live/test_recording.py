@@ -87,3 +87,13 @@ def test_run_show_and_a_lost_run_write_recordings(tmp_path: Path, capsys: pytest
     capsys.readouterr()
     assert main(["run", "--record", "page.pdf"]) == 2
     assert "--record: the page's name must end in .html, not 'page.pdf'" in capsys.readouterr().err
+
+
+def test_the_recording_of_the_docs_has_the_present_page() -> None:
+    """docs/live.md has the line that makes it anew."""
+    file = Path(__file__).parents[2] / "docs" / "live-recording.html"
+    text = file.read_text(encoding="utf-8")
+    found = content(text)
+    assert len(found["add"]) == 84
+    assert recorded_page(found) == text
+    assert file.stat().st_size < 1_000_000

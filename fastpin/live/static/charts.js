@@ -1,6 +1,6 @@
 // Curves round the hole: pressure, shear with its bounds, hoop stress. Stick and slip are shaded.
 
-import { INK, PRESSURE, REFERENCE, SOFT, ofStatus } from "live/colours";
+import { INK, REFERENCE, SOFT, ofStatus } from "live/colours";
 import { peak } from "live/drawing";
 import { digits, scaled } from "live/units";
 
@@ -44,7 +44,7 @@ export function chart(element, options, data) {
 
 const CURVES = {
   pressure: [["reference", REFERENCE, 2], ["pressure", INK, 2]],
-  shear: [["reference", REFERENCE, 2], ["upper", PRESSURE, 1], ["lower", PRESSURE, 1], ["shear", INK, 2]],
+  shear: [["reference", REFERENCE, 2], ["upper", SOFT, 1, [5, 3]], ["lower", SOFT, 1, [5, 3]], ["shear", INK, 2]],
   hoop: [["reference", REFERENCE, 2], ["hoop", INK, 2]],
 };
 
@@ -64,7 +64,7 @@ export class RoundCharts {
       scales: { x: { time: false, range: () => this.window }, y: { range: () => this.ranges[name] ?? [0, 1] } },
       axes: [angleAxis(), valueAxis()],
       cursor: { sync: { key: "round" }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => this.zoom(WHOLE) }, points: { show: false } },
-      series: [{}, ...series.map(([label, stroke, width]) => ({ label, stroke, width, points: { show: false } }))],
+      series: [{}, ...series.map(([label, stroke, width, dash]) => ({ label, stroke, width, dash, points: { show: false } }))],
       hooks: { drawClear: [(plot) => this.shade(plot, name === "hoop")], setCursor: [(plot) => this.read(plot, name)], setSelect: [(plot) => this.select(plot)] },
     }, [[-180, 180], ...series.map(() => [null, null])]);
   }
@@ -92,7 +92,7 @@ export class RoundCharts {
     plot.ctx.beginPath();
     plot.ctx.rect(left, top, width, height);
     plot.ctx.clip();
-    plot.ctx.globalAlpha = faint ? 0.1 : 0.17;
+    plot.ctx.globalAlpha = faint ? 0.15 : 0.25;
     for (const [start, stop, sign] of zones) {
       plot.ctx.fillStyle = ofStatus(sign);
       for (const turn of [-360, 0, 360]) {

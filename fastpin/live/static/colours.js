@@ -3,7 +3,7 @@
 export const STICK = "#0072b2";
 export const POSITIVE = "#e69f00";
 export const NEGATIVE = "#cc79a7";
-export const REFERENCE = "#a9b0b6";
+export const REFERENCE = "#8d959c";
 export const INK = "#1d2730";
 export const SOFT = "#5b6670";
 export const WARNING = "#d55e00";

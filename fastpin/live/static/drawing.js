@@ -8,6 +8,7 @@ const REACH = 0.62; // length of the arrow of a load of usual size, in hole radi
 const HIGH = 0.42; // height of the largest pressure, in hole radii
 const GAP = 0.05; // width in which a usual clearance is drawn, in hole radii
 const ARROWS = 8; // degrees between two arrows of the shear
+const LABEL = 0.7; // place of the angles, in hole radii from the centre
 const LONG = 0.17; // length of the largest arrow of the shear, in hole radii
 
 export class Drawing {
@@ -73,6 +74,7 @@ export class Drawing {
       this.shear(pen, frame, picture);
       this.remote(pen, frame, picture);
     }
+    this.angles(pen, frame);
     this.trail(pen, frame);
     this.loads(pen, frame, picture);
   }
@@ -233,6 +235,17 @@ export class Drawing {
           arrow(pen, line, top + side * 8, line - side * long(sxy), top + side * 8, SOFT, 5);
         }
       }
+    }
+  }
+
+  // The angles of the charts at four places round the hole.
+  angles(pen, { x, y, radius }) {
+    pen.fillStyle = SOFT;
+    pen.font = "11px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    for (const [words, right, down] of [["0°", 0, 1], ["90°", 1, 0], ["180°", 0, -1], ["−90°", -1, 0]]) {
+      pen.fillText(words, x + LABEL * radius * right, y + LABEL * radius * down);
     }
   }
 

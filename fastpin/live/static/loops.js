@@ -5,7 +5,8 @@ import { INK, REFERENCE, WARNING } from "live/colours";
 import { scaled } from "live/units";
 
 const KINDS = { P: "force", Q: "force", M: "moment" };
-const MOVES = { P: "way", Q: "way", M: "rotation" };
+const MOVES = { P: "displacement", Q: "displacement", M: "rotation" };
+const LEAST = 1e-4; // least width of the axis, in parts of a usual displacement: below is rounding
 
 export class LoopChart {
   constructor(history) {
@@ -55,6 +56,12 @@ export class LoopChart {
     this.select.value = chosen;
   }
 
+  // The least width of the axis of displacements or rotations, in SI units.
+  least(name, { yielded, radius, dimensionless }) {
+    if (!KINDS[name]) return 0;
+    return LEAST * (name === "M" && !dimensionless ? yielded / radius : yielded);
+  }
+
   show() {
     const { pictures, place, shown, reference, case: given } = this.history;
     if (!shown) {
@@ -70,11 +77,12 @@ export class LoopChart {
     const way = points.map(bent);
     const most = (values) => values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
     const unit = { load: given.units[KINDS[name] ?? "traction"], way: KINDS[name] ? (name === "M" ? given.units.rotation : given.units.displacement) : "" };
-    const x = scaled(most(way), unit.way), y = scaled(most(load), unit.load);
+    const least = this.least(name, given);
+    const x = scaled(Math.max(most(way), least), unit.way), y = scaled(most(load), unit.load);
     const scale = (values, by) => values.map((value) => value * by.factor);
     const data = [scale(way, x), scale(load, y)], before = reference?.loops[name];
     const mark = before ? [[bent(before) * x.factor], [before[0] * y.factor]] : [[], []];
-    this.limits = { x: around([...data[0], ...mark[0]]), y: around([...data[1], ...mark[1]]) };
+    this.limits = { x: around([...data[0], ...mark[0]], least * x.factor), y: around([...data[1], ...mark[1]]) };
     this.chart.setData([null, data, [data[0].slice(-1), data[1].slice(-1)], mark]);
     const other = KINDS[name] ? `${MOVES[name]} [${x.unit}]` : "its displacement";
     this.unit.textContent = `[${y.unit}] over ${other}`;
@@ -89,8 +97,9 @@ function slopeOf(points) {
   return both / points.reduce((sum, pair) => sum + (pair[0] - load) ** 2, 0) || 0;
 }
 
-function around(values) {
+// The ends of an axis: around the values and 0, and not narrower than `least`.
+function around(values, least = 0) {
   const low = values.reduce((a, b) => Math.min(a, b), 0), high = values.reduce((a, b) => Math.max(a, b), 0);
-  const room = 0.07 * (high - low) || 1;
+  const room = 0.07 * Math.max(high - low, least) || 1;
   return [low - room, high + room];
 }

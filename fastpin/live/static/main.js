@@ -94,7 +94,7 @@ function say(sentence, kind = "") {
   at("message").hidden = !sentence;
   at("message").className = kind;
   at("sentence").textContent = sentence;
-  at("csv").hidden = kind !== "gone";
+  at("csv").hidden = kind !== "gone" && kind !== "unsaved"; // then the loads are what can be saved
 }
 
 function news(answer) {
@@ -172,7 +172,7 @@ async function save(file) {
   try {
     const answer = await fetch(`save/${link.session}/${file}`);
     if (answer.ok) download(file, await answer.blob());
-    else say(await answer.text());
+    else say((await answer.text()).trim(), history.pictures.length ? "unsaved" : "");
   } catch {
     say("The file can't be saved: the server does not answer.", "gone");
   }
@@ -198,7 +198,7 @@ function keys(event) {
 }
 
 function legend() {
-  const entries = [["pressure", "pressure (outwards)"], ["shear", "shear on the pin"], ["stick", "sticks"],
+  const entries = [["load", "load on the pin"], ["pressure", "pressure (outwards)"], ["shear", "shear on the pin"], ["stick", "sticks"],
     ["positive", "slips counter-clockwise"], ["negative", "slips clockwise"], ["reference", "reference"]];
   for (const [name, words] of entries) {
     const item = document.createElement("li");
