@@ -184,8 +184,8 @@ function replay() {
 }
 
 function keys(event) {
-  if (event.target.matches("input, select, textarea")) return;
   const letter = event.key.toLowerCase(), control = event.ctrlKey || event.metaKey;
+  if (event.target.matches(control ? "input[type=number]" : "input, select")) return; // the browser's own keys
   if (control && letter === "z" && !recorded) at(event.shiftKey ? "redo" : "undo").click();
   else if (control && letter === "y" && !recorded) at("redo").click();
   else if (event.key === " " && !event.target.matches("button")) replay();
