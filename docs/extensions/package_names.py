@@ -20,6 +20,9 @@ from sphinx.domains.python import PyObject
 LITERAL = re.compile(r"(``.*?``|:\w+:`.*?`)")
 """Parts of a docstring that are markup on purpose."""
 
+OTHERS = ("dask", "distributed", "matplotlib", "numpy", "pandas", "pylife", "scipy", "xarray")
+"""Packages of others, some of them optional. Links to their sites would need a network."""
+
 LARGE = 1e6
 """Numbers from here on are shown with a power of ten."""
 
@@ -58,7 +61,7 @@ def resolve(app: Any, env: Any, node: Any, contnode: Any) -> Any:
             return nodes.inline("", "", contnode, nodes.Text(f" ({value})"))
         return contnode
     # Words of the types in "Parameters", such as "optional": Sphinx looks each of them up.
-    return contnode if node.get("refspecific") else None
+    return contnode if node.get("refspecific") or target.partition(".")[0] in OTHERS else None
 
 
 def nearest(target: str, objects: dict[str, Any], page: str) -> str | None:

@@ -2,8 +2,8 @@
 A ring lug
 ==========
 
-The plate is a ring round the hole. A thin ring bends under the force of the pin. Its largest hoop stress is far above
-the stress of a thick ring.
+The plate is a ring round the hole. A thin ring bends under the force of the pin. Its largest hoop stress is above
+that of a thick ring.
 """
 
 import matplotlib.pyplot as plt

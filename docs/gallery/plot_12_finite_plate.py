@@ -30,7 +30,7 @@ found = plate_compliance(lug)
 print(f"estimated error of the compliance: {found.error:.1e}")
 
 # %%
-# The strip is more compliant than an infinite plate, and its hoop stress is larger.
+# The largest hoop stress of the strip is above that of an infinite plate.
 
 pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.Material(69e9, 0.33), plane="stress")
 strip = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.3, plate_body=found.compliance)

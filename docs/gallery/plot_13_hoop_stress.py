@@ -2,8 +2,8 @@
 Hoop stress round the hole
 ==========================
 
-Cracks begin where the hoop stress of the hole is largest, often near an edge of the contact. Friction moves this place
-and raises the stress.
+Cracks begin where the hoop stress of the hole is largest, often near an edge of the contact. The dots
+mark these places.
 """
 
 import numpy as np

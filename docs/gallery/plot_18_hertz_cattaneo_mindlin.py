@@ -2,8 +2,8 @@
 Comparison with Hertz, Cattaneo and Mindlin
 ===========================================
 
-A thin pin in a large hole is close to a cylinder on a half-plane. Its pressure is then that of Hertz, and its shear
-under a tangential force that of Cattaneo and Mindlin.
+With much clearance or a small force the contact is narrow, as between a cylinder and a flat body. The pressure is then
+that of Hertz. The shear under a tangential force is that of Cattaneo and Mindlin.
 """
 
 import matplotlib.pyplot as plt
