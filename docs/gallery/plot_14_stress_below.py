@@ -12,7 +12,7 @@ import fastpin
 from fastpin.figures import plot_stress_field
 
 pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
-problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=500e-6, friction=0.0)
+problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=500e-6, friction=0.0, pin_load="body")
 state = fastpin.solve(problem, [{"P": 1.0e6}], nodes=201)[-1]
 
 # %%
