@@ -32,11 +32,6 @@ def section(arguments: str) -> str:
     return str(found)
 
 
-def pages(names: str) -> str:
-    """The pages of a list that exist, a line each."""
-    return "\n".join(name for name in names.split() if (ROOT / "docs" / f"{name}.md").exists())
-
-
 def folder(name: str) -> str:
     """A hidden list of contents: the pages of a folder of docs/, in the order of the links of its index."""
     index = (ROOT / "docs" / name / "index.md").read_text(encoding="utf-8")
@@ -46,7 +41,6 @@ def folder(name: str) -> str:
 PARTS: dict[str, Callable[..., str]] = {
     "file": file_text,
     "section": section,
-    "pages": pages,
     "folder": folder,
     "case_keys": case_keys,
     "command_line": command_line,
@@ -89,15 +83,7 @@ def insert(app: Any, page: str, source: list[str]) -> None:
         target = os.path.normpath(folder / link[1])
         return seen_from_page(target) if target in PAGES else link[0]
 
-    text = LINK.sub(mapped, MARK.sub(inserted, source[0]))
-    source[0] = polished(text + neighbours(page, text))
-
-
-def neighbours(page: str, text: str) -> str:
-    """The table of contents that a page named "index" of a folder lacks: all other pages of the folder."""
-    if not page.endswith("/index") or "{toctree}" in text:
-        return ""
-    return "\n\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
+    source[0] = polished(LINK.sub(mapped, MARK.sub(inserted, source[0])))
 
 
 def polished(text: str) -> str:
