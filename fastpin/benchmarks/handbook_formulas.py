@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from fastpin.benchmarks.formulas import half_angle, peak_pressure
+from fastpin.benchmarks.formulas import half_angle, load_term, peak_pressure
 from fastpin.benchmarks.rows import Outcome, Row
 from fastpin.figures.style import COLOURS, Line, line, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
@@ -88,7 +88,7 @@ def compute(progress: Report | None = None) -> Outcome:
         columns = {"L_p": places, "half_angle_deg": np.degrees(angle), "peak_over_F_DL": peak}
         formulas = {
             "hertz": hertz(places), "cosine": COSINE, "projected": 1.0, "envelope": envelope(places),
-            "fit": peak_pressure(places, friction),
+            "fit": peak_pressure(places, friction, load_term(PAIRS[words].pin)),
         }  # fmt: skip
         columns |= {f"error_{name}": values / peak - 1.0 for name, values in formulas.items()}
         curves.append(Curve({"pair": words, "friction": friction}, columns))

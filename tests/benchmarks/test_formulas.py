@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.benchmarks import half_angle, peak_pressure
+from fastpin.benchmarks import half_angle, load_term, peak_pressure
+from fastpin.benchmarks.formulas import SPREAD
 from fastpin.errors import InputError
-from fastpin.model.materials import MATERIALS, MaterialPair
+from fastpin.model.joint import PinLoad
+from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -21,10 +23,9 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "handbook-formulas.md").r
 STEEL = MATERIALS["steel"]
 
 
-def pushed(load_parameter: float, friction: float, pin_load: str, plane: str = "strain") -> State:
-    pair = MaterialPair(STEEL, STEEL, plane)  # type: ignore[arg-type]
-    problem = Problem.from_load_parameter(pair, load_parameter, friction, pin_load)  # type: ignore[arg-type]
-    return solve(problem, [{"P": 1.0}], nodes=201)[-1]
+def pushed(load_parameter: float, friction: float, material: Material, plane: Plane, pin_load: PinLoad) -> State:
+    problem = Problem.from_load_parameter(MaterialPair(material, material, plane), load_parameter, friction, pin_load)
+    return solve(problem, [{"P": 1.0}], nodes=151)[-1]
 
 
 def test_without_friction_both_formulas_agree_with_the_closed_form() -> None:
@@ -44,51 +45,49 @@ def test_an_interference_fit_that_opens_is_in_reach() -> None:
 
 
 @pytest.mark.parametrize("pin_load", ["body", "centre"])
-def test_fresh_solves_with_friction(pin_load: str) -> None:
-    """The places are random, so none of them was used in fitting. The largest error measured is 0.7 %."""
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_fresh_solves_with_friction(pin_load: PinLoad, plane: Plane) -> None:
+    """The places are random, so none of them was used in fitting. The largest error of the fit is 0.73 %."""
     random = np.random.default_rng(20)
-    for load_parameter, friction in zip(
-        10.0 ** random.uniform(-3.0, 1.5, 12), random.uniform(0.0, 0.9, 12), strict=True
-    ):
-        fitted = peak_pressure(load_parameter, friction, pin_load)  # type: ignore[arg-type]
-        assert fitted == pytest.approx(2.0 * pushed(load_parameter, friction, pin_load).peak_pressure, rel=0.0075)
+    for _ in range(10):
+        place, friction, nu = 10.0 ** random.uniform(-3.0, 1.5), random.uniform(0.0, 0.9), random.uniform(0.0, 0.45)
+        material = Material(1.0, nu)
+        fitted = peak_pressure(place, friction, load_term(material, plane, pin_load))
+        solved = 2.0 * pushed(place, friction, material, plane, pin_load).peak_pressure
+        assert fitted == pytest.approx(solved, rel=0.008)
 
 
-@pytest.mark.parametrize(("pin_load", "most"), [("body", 0.015), ("centre", 0.03)])
-def test_the_error_in_plane_stress_is_stated(pin_load: str, most: float) -> None:
-    """The term of the load of the pin is smaller than in plane strain. The worst places have small L_p."""
-    errors = [
-        float(peak_pressure(place, 0.85, pin_load)) / (2.0 * pushed(place, 0.85, pin_load, "stress").peak_pressure)
-        - 1.0  # type: ignore[arg-type]
-        for place in (0.002, 0.01)
-    ]
-    assert 0.005 < max(errors) < most
+def test_the_term_of_the_load() -> None:
+    material = Material(1.0, 0.3)
+    assert load_term(material) == pytest.approx(SPREAD, rel=1e-12)
+    assert load_term(material, "strain", "centre") == pytest.approx(1.0 / (4.0 * 0.7), rel=1e-12)
+    assert load_term(material, "stress", "centre") == pytest.approx(1.3 / 4.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("arguments", [(-0.061,), (-0.01, 0.1), (0.1, 0.91), (0.1, -0.1), (0.1, 0.1, "top")])
+@pytest.mark.parametrize("arguments", [(-0.061,), (-0.01, 0.1), (0.1, 0.91), (0.1, -0.1), (0.1, 0.1, 0.6)])
 def test_arguments_out_of_range_are_refused(arguments: tuple[float, ...]) -> None:
     with pytest.raises(InputError):
-        peak_pressure(*arguments)  # type: ignore[arg-type]
+        peak_pressure(*arguments)
 
 
 def test_the_lines_for_a_spreadsheet_are_the_formulas() -> None:
     """Each line is evaluated as Python, with the names of its cells."""
     lines = dict(re.findall(r"^(\w+) +=(.*)$", PAGE, re.MULTILINE))
-    cells: dict[str, float] = {"F": 30e3, "L": 15e-3, "D": 20e-3, "c": 20e-6, "mu": 0.3}
+    cells: dict[str, float] = {"F": 30e3, "L": 15e-3, "D": 20e-3, "clr": 20e-6, "mu": 0.3, "q": 0.5 / (4.0 * 0.7)}
     elastic = (1.0 - STEEL.nu**2) / STEEL.E
     cells["Es"] = 1.0 / (2.0 * elastic)
     names = {"SQRT": math.sqrt, "PI": lambda: math.pi, "DEGREES": math.degrees}
-    for name in ("Lp", "x", "p0", "p", "half"):
+    for name in ("Lp", "x", "pfree", "p", "half"):
         cells[name] = eval(lines[name].replace("^", "**"), names, cells)
     nominal = cells["F"] / (cells["D"] * cells["L"])
-    assert cells["p0"] == pytest.approx(nominal * float(peak_pressure(cells["Lp"])), rel=1e-12)
+    assert cells["pfree"] == pytest.approx(nominal * float(peak_pressure(cells["Lp"])), rel=1e-12)
     assert cells["p"] == pytest.approx(nominal * float(peak_pressure(cells["Lp"], 0.3)), rel=1e-12)
     assert cells["half"] == pytest.approx(math.degrees(float(half_angle(cells["Lp"]))), rel=1e-12)
     pair = MaterialPair(STEEL, STEEL)
-    assert cells["Lp"] == pytest.approx(Problem(pair, 10e-3, cells["c"], 0.3).load_parameter(2e6), rel=1e-12)
+    assert cells["Lp"] == pytest.approx(Problem(pair, 10e-3, cells["clr"], 0.3).load_parameter(2e6), rel=1e-12)
     printed = [
         f"{cells['Lp']:.4f}",
-        f"{cells['p0'] / 1e6:.1f} MPa",
+        f"{cells['pfree'] / 1e6:.1f} MPa",
         f"{cells['p'] / 1e6:.1f} MPa",
         f"{cells['half']:.1f}",
     ]
