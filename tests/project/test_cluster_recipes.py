@@ -138,6 +138,22 @@ def test_an_unfinished_case_is_resumed_and_a_finished_one_skipped(tmp_path: Path
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(shutil.which("snakemake") is None, reason="snakemake is not installed")
+def test_snakemake_plans_all_parts_and_cases(tmp_path: Path) -> None:
+    """Slow: Snakemake takes seconds to start."""
+    (tmp_path / "cases").mkdir()
+    for name in ("plan.toml", "cases/a.toml", "cases/b.toml"):
+        (tmp_path / name).touch()
+    planned = subprocess.run(
+        ["snakemake", "-n", "--quiet", "rules", "-s", str(RECIPES / "Snakefile"), "-d", str(tmp_path)],
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert planned.returncode == 0, planned.stderr
+    counts = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout + planned.stderr, re.MULTILINE))
+    assert counts == {"all": "1", "case": "2", "part": "4", "sweep": "1", "total": "8"}
+
+
+@pytest.mark.slow
 @needs_bash
 def test_the_parts_of_a_sweep_are_solved_and_joined(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Slow: each task starts two processes."""
