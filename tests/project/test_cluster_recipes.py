@@ -107,7 +107,7 @@ def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: 
     (tmp_path / "cases.txt").write_text("a.toml\nb.toml\n")
     arguments = ["plan.toml", "8"] if name == "sweep.sbatch" else ["cases.txt"]
     fake = NOTE.replace("notes", "calls")
-    (tmp_path / "b.running.h5").touch()
+    (tmp_path / "b.running.h5").write_text("some states")
     programs = {"fastpin": fake, "scontrol": NOTE.replace("EXIT_CODE:-", "NONE:-")}
     done = job(tmp_path, name, arguments, 2, programs, EXIT_CODE=str(code))
     assert done.returncode == code, done.stderr
@@ -119,6 +119,16 @@ def test_a_task_that_was_stopped_goes_back_into_the_queue(tmp_path: Path, name: 
         "cases.sbatch": "resume b.running.h5\n",
     }
     assert (tmp_path / "calls").read_text() == expected[name]
+
+
+@needs_bash
+def test_a_case_whose_file_is_empty_is_begun_again(tmp_path: Path) -> None:
+    (tmp_path / "cases.txt").write_text("a.toml\n")
+    (tmp_path / "a.running.h5").touch()
+    done = job(tmp_path, "cases.sbatch", ["cases.txt"], 1, {"fastpin": NOTE.replace("notes", "calls")})
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "calls").read_text() == "run a.toml -o a.running.h5 --overwrite\n"
+    assert (tmp_path / "a.h5").exists()
 
 
 @needs_bash
