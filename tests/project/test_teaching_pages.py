@@ -15,6 +15,29 @@ from scripts import tutorial
 from scripts.inline import Inline
 from tests.support.documents import DOCS, blocks, run_page
 
+HOW_TO = [
+    "tutorial",
+    "riveted-joint",
+    "case-files",
+    "histories",
+    "sessions",
+    "figures",
+    "live",
+    "report",
+    "reading-results",
+    "sweeps",
+    "cluster",
+    "bodies",
+    "interference",
+    "compliance",
+    "superposition",
+    "fatigue",
+    "convergence",
+    "coming-from",
+    "glossary",
+]
+"""The tutorials and the how-to pages."""
+
 
 @pytest.fixture(autouse=True)
 def _inside_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -73,6 +96,14 @@ def test_every_case_of_bodies_is_read() -> None:
     assert isinstance(ring, Ring)
     assert isinstance(bush, Bushing)
     assert isinstance(bush.inside, Ring)
+
+
+@pytest.mark.parametrize("page", HOW_TO)
+def test_a_page_begins_with_its_purpose(page: str) -> None:
+    """Below its title."""
+    title, _, first, *_ = page_text(f"{page}.md").splitlines()
+    assert title.startswith("# ")
+    assert first.startswith("This page ")
 
 
 def test_the_glossaries_share_no_word() -> None:
