@@ -49,7 +49,7 @@ class Tableau(NamedTuple):
 class Contact(NamedTuple):
     """The contact that evolves along a step. Arrays have shape (n,), except ``motion`` (3,), ``slip_tally`` (4, n).
 
-    ``touched`` says whether a node was ever closed. ``tie`` is defined in :mod:`fastpin.kernels.exchange`. ``slip_tally``
+    ``touched`` says whether a node was ever closed. :mod:`fastpin.kernels.exchange` defines ``tie``. ``slip_tally``
     has slip distance, friction energy, lowest and highest slip of each node while closed. The extremes count from
     ``rest_slip``. It is empty if they are not counted.
     """
