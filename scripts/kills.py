@@ -115,7 +115,7 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
         journal = path.with_name(path.name + ".journal")
         found["transaction"] += journal.exists() and journal.stat().st_size > 0
         acknowledged = int(re.findall(r"(\d+) states in the file\n", log.read_text())[-1])
-        stored = store.state_count(path)
+        stored = store.load_points(path).size
         found["lost"] += max(acknowledged - stored, 0)
         found["acknowledged"] = stored
         if not store.is_unfinished(path):
@@ -124,7 +124,7 @@ def kill_until_done(folder: Path, kills: int, longest: float, rounds: int, seed:
         work(path, rounds)
     undisturbed = folder / "undisturbed.h5"
     work(undisturbed, rounds)
-    found["states"] = store.state_count(path)
+    found["states"] = store.load_points(path).size
     found["different"] = len(differences(path, undisturbed))
     return found
 

@@ -472,7 +472,7 @@ def _try_result(path: Path, seen: Examination, may_change: tuple[str, ...]) -> N
     seen.python("load after", lambda: store.load(path, after=2), may_change)
     seen.python("stored_case", lambda: recording.stored_case(path), may_change)
     seen.python("stored_error", lambda: recording.stored_error(path), may_change)
-    seen.python("state_count", lambda: store.state_count(path), may_change)
+    seen.python("load_points", lambda: store.load_points(path).size, may_change)
     seen.python("to_xarray", lambda: export.to_xarray(path), may_change)
     if result is not None:
         seen.python("repr", lambda: repr(result), may_change)

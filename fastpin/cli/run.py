@@ -109,7 +109,7 @@ def _note_unfinished(case: Case, path: Path) -> None:
         return
     reached = f"{last[0].step + 1:,}" if len(last) else "0"
     reason = storage.stored_error(path)
-    why = f" ({reason})" if reason else ""
+    why = f": {reason}" if reason else ""
     more = f"; {how}" if (how := way_on(path, reason)) else ""
     print(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
 

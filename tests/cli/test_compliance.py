@@ -83,7 +83,10 @@ def test_a_doubtful_result_has_a_note(
     [
         ([], "fastpin: lug: the lug file is missing; start with: fastpin compliance --example > lug.toml"),
         (["LUG", "-o", "other.toml"], "fastpin: --output: won't overwrite the case file other.toml"),
-        (["LUG", "--plot", "lug.doc"], "fastpin: --plot: the figure's name must end in .png, .pdf, .svg"),
+        (
+            ["LUG", "--plot", "lug.doc"],
+            "fastpin: --plot: must be the name of a figure, which ends in .png, .pdf or .svg",
+        ),
         (["LUG", "-o", "no/where.json"], "fastpin: no/where.json"),
         (["no.toml"], "no.toml: can't be read"),
     ],

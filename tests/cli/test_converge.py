@@ -102,7 +102,7 @@ def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFi
         (["--increment-nodes", "101"], "--increment-nodes: is for the increment solver"),
         (["--corner", "9"], "--corner: must be one of the history, 1 to 4, not 9"),
         (["--outcomes", "case.json"], "case.json: must end in .py or .toml to be a file of outcomes"),
-        (["--plot", "a.docx"], "--plot: the figure's name must end in"),
+        (["--plot", "a.docx"], "--plot: must be the name of a figure, which ends in"),
         (["--csv", "a.csv", "--json", "a.csv"], "writes the same file as"),
         (["--csv", "no/such/place.csv"], "does not exist"),
         (["--csv", "a.toml"], "won't overwrite the case file"),

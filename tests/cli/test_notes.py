@@ -48,7 +48,7 @@ def test_show_says_that_a_run_is_unfinished(case, tmp_path, capsys):
     with pytest.raises(Interrupted):
         record(parts.problem, parts.history, path, nodes=61, arc=(-3.0, -0.2), progress=stop)
     assert main(["show", str(path)]) == 0
-    expected = f"note: unfinished, at corner 1 of 3 (interrupted); continue with: fastpin resume {path}"
+    expected = f"note: unfinished, at corner 1 of 3: interrupted; continue with: fastpin resume {path}"
     assert capsys.readouterr().out.splitlines()[-1] == expected
     assert main(["report", str(path), "-o", str(tmp_path / "a.html")]) == 0
     assert f"The reason: interrupted. Continue with: fastpin resume {path}." in (tmp_path / "a.html").read_text()
@@ -83,7 +83,7 @@ def test_a_run_that_no_equilibrium_ended_is_not_to_be_resumed(case, tmp_path, ca
     capsys.readouterr()
     assert main(["show", str(path)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last.startswith("note: unfinished, at corner 3 of 4 (step 4, at ")
+    assert last.startswith("note: unfinished, at corner 3 of 4: step 4, at ")
     assert "resume" not in last
     assert main(["report", str(path), "-o", str(tmp_path / "a.html")]) == 0
     text = (tmp_path / "a.html").read_text()

@@ -127,15 +127,15 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--shard", "3/2"], "--shard: must be I/N with I from 1 to N, such as 1/8, not '3/2'"),
+        (["--shard", "3/2"], '--shard: must be I/N with I from 1 to N, such as 1/8, not "3/2"'),
         (["--shard", "1"], "--shard: must be I/N"),
         (["--workers", "0"], "--workers: must be a whole number of at least 1, not 0"),
         (["--workers", "2", "--dask", "x"], "--workers: is for processes of this machine"),
         (["--outcomes", "moment.txt"], "moment.txt: must end in .py or .toml to be a file of outcomes"),
-        (["--outcomes", "none.py"], "none.py: can't be read: No such file or directory"),
+        (["--outcomes", "none.py"], "none.py: there is no such file"),
         (["--outcomes", "moment.toml"], "moment.toml: the section [outcomes] is missing"),
         (["--x", "load.2.M"], "--x: says what a figure shows; --plot FILE is missing"),
-        (["--plot", "a.xyz"], "--plot: the figure's name must end in .png, .pdf, .svg, not 'a.xyz'"),
+        (["--plot", "a.xyz"], '--plot: must be the name of a figure, which ends in .png, .pdf or .svg, not "a.xyz"'),
         (["--plot", "a.png", "--value", "peak"], "--value: there is no outcome or key figure 'peak'"),
         (["--plot", "a.png", "--x", "contact.frict"], "--x: the plan does not vary 'contact.frict', did you mean"),
         (["--plot", "a.png", "--x", "contact.pin_load"], "--x: the values of contact.pin_load are not all numbers"),

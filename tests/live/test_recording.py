@@ -86,7 +86,7 @@ def test_run_show_and_a_lost_run_write_recordings(tmp_path: Path, capsys: pytest
     assert "the pin spins" in found["sentence"] or "nothing holds the pin" in found["sentence"]
     capsys.readouterr()
     assert main(["run", "--record", "page.pdf"]) == 2
-    assert "--record: the page's name must end in .html, not 'page.pdf'" in capsys.readouterr().err
+    assert '--record: must be the name of a page, which ends in .html, not "page.pdf"' in capsys.readouterr().err
 
 
 def test_the_recording_of_the_docs_has_the_present_page() -> None:

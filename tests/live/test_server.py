@@ -446,7 +446,7 @@ def test_a_port_in_use_is_refused_with_one_sentence(server: Server, capsys: pyte
     [
         (["--port", "70000"], "--port: must be a whole number from 0 to 65535, not 70000"),
         (["--nodes", "many"], '--nodes: must be a whole number from 5 to 1601, not "many"'),
-        (["nothing.toml"], "nothing.toml: can't be read: No such file or directory"),
+        (["nothing.toml"], "nothing.toml: there is no such file"),
     ],
 )
 def test_wrong_arguments(arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:

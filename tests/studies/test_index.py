@@ -217,7 +217,7 @@ def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
     [
         ("UPDATE sweep SET value = '{' WHERE name = 'fields'", "is damaged"),
         ("UPDATE sweep SET value = '5' WHERE name = 'fields'", "JSON: must be a table, not 5"),
-        ("UPDATE runs SET status = 'fine'", 'status: must be "waiting" or "done" or "failed"'),
+        ("UPDATE runs SET status = 'fine'", 'status: must be "waiting", "done" or "failed"'),
         ("UPDATE runs SET peak_pressure = 'high'", 'peak_pressure: must be a number, not "high"'),
         ("UPDATE runs SET input = '{'", "is damaged"),
         ('ALTER TABLE runs RENAME COLUMN "contact.friction" TO "other"', "is damaged"),

@@ -252,7 +252,7 @@ take = "most"
         (1, 'unknown key "titel"'),
         (3, "contact.friction: must be a list of values"),
         (5, 'a: quantity: must be "peak_pressure" or '),
-        (6, 'b: take: must be "last" or "largest" or "smallest" or "largest magnitude" or "range", not "biggest"'),
+        (6, 'b: take: must be "last", "largest", "smallest", "largest magnitude" or "range", not "biggest"'),
         (6, 'b: over: must be "history" or "cycle", not "cycles"'),
         (7, 'c: cycle: must be "dissipation" or '),
         (8, 'd: unknown key "tak", did you mean "take"?'),
@@ -267,7 +267,7 @@ take = "most"
         (17, "l: over: the last state is that of the history, too"),
         (18, 'm: function: must be FILE.py:NAME, such as "my.py:wear", not "mine.py"'),
         (19, 'n: there is no function "largest_presure" in mine.py, did you mean "largest_pressure"?'),
-        (20, "o: none.py: can't be read: No such file or directory"),
+        (20, "o: none.py: there is no such file"),
         (21, "p: bad.py, line 2: is not Python: "),
         (
             22,
