@@ -88,7 +88,7 @@ def test_a_doubtful_result_has_a_note(
             "fastpin: --plot: must be the name of a figure, which ends in .png, .pdf or .svg",
         ),
         (["LUG", "-o", "no/where.json"], "fastpin: no/where.json"),
-        (["no.toml"], "no.toml: can't be read"),
+        (["no.toml"], "no.toml: there is no such file"),
     ],
 )
 def test_wrong_arguments(arguments: list[str], message: str, lug: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -251,10 +251,10 @@ take = "most"
     expected = [
         (1, 'unknown key "titel"'),
         (3, "contact.friction: must be a list of values"),
-        (5, 'a: quantity: must be "peak_pressure" or '),
+        (5, 'a: quantity: must be "peak_pressure", '),
         (6, 'b: take: must be "last", "largest", "smallest", "largest magnitude" or "range", not "biggest"'),
         (6, 'b: over: must be "history" or "cycle", not "cycles"'),
-        (7, 'c: cycle: must be "dissipation" or '),
+        (7, 'c: cycle: must be "dissipation", '),
         (8, 'd: unknown key "tak", did you mean "take"?'),
         (8, 'd: unknown key "of"; beside quantity there may be take and over'),
         (9, 'e: unknown key "over"; beside cycle there is no other key'),
@@ -344,7 +344,7 @@ def test_faults_of_files(name: str, text: str, words: str, tmp_path: Path) -> No
 
 
 def test_a_file_that_is_missing_is_named(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"none.py: can't be read"):
+    with pytest.raises(InputError, match=r"none.py: there is no such file"):
         read_outcomes(tmp_path / "none.py")
 
 
