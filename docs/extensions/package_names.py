@@ -16,6 +16,7 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.domains.python import PyObject
+from sphinx.ext import autosummary
 
 LITERAL = re.compile(r"(``.*?``|:\w+:`.*?`)")
 """Parts of a docstring that are markup on purpose."""
@@ -140,6 +141,8 @@ def setup(app: Any) -> dict[str, Any]:
     app.connect("autodoc-process-docstring", part_remarks, priority=300)
     app.connect("autodoc-process-docstring", escape_symbols, priority=400)
     app.connect("autodoc-process-docstring", join_sentence, priority=600)
+    # A summary does not end at these.
+    autosummary.WELL_KNOWN_ABBREVIATIONS += ("Appl.", "Exp.", "J.", "Mech.", "Phys.")
     for field in PyObject.doc_field_types:
         if field.name == "variable":
             field.label = "Attributes"
