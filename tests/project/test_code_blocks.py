@@ -49,6 +49,7 @@ ELSEWHERE = {
     "tutorial.md": "test_teaching_pages.py",
     "cluster.md": "test_cluster_recipes.py",
     "coming-from.md": "test_teaching_pages.py",
+    "interference.md": "test_teaching_pages.py",
     "reading-results.md": "test_teaching_pages.py",
     "superposition.md": "test_teaching_pages.py",
 }
