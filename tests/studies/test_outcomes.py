@@ -276,7 +276,7 @@ take = "most"
         (23, 'r: function: must be FILE.py:NAME, such as "my.py:wear", not 3'),
         (24, "t: ../mine.py: must lie beside the plan, or in a folder below"),
         (25, "u: /mine.py: must lie beside the plan, or in a folder below"),
-        (28, 's: take: must be "last" or'),
+        (28, 's: take: must be "last", "largest",'),
     ]
     found = faults(text, tmp_path)
     assert [line.split(":")[0] for line in found] == [f"plan, line {number}" for number, _ in expected]
