@@ -320,13 +320,7 @@ class Session:
         self._run = None
 
     def copy(self, matrices: bool = True) -> Session:
-        """Another session at the same place. Both go on by themselves.
-
-        Parameters
-        ----------
-        matrices : bool
-            Whether both share the matrices. A copy without them is small, and makes them anew with its next load.
-        """
+        """Another session at the same place, with the same matrices or, to be small, without `matrices`."""
         other = Session.__new__(Session)
         other.__setstate__(self.__getstate__())
         if matrices:
