@@ -2,9 +2,9 @@ from .export import to_dataframe as to_dataframe
 from .export import to_xarray as to_xarray
 from .journal import is_being_written as is_being_written
 from .layout import versions as versions
-from .provenance import largest_pressure as largest_pressure
-from .provenance import largest_residuals as largest_residuals
-from .provenance import provenance as provenance
+from .origin import largest_pressure as largest_pressure
+from .origin import largest_residuals as largest_residuals
+from .origin import provenance as provenance
 from .recording import record as record
 from .recording import resume as resume
 from .recording import stored_case as stored_case

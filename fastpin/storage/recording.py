@@ -24,7 +24,7 @@ from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_history, read_options, read_problem
-from fastpin.storage.provenance import largest_pressure
+from fastpin.storage.origin import largest_pressure
 from fastpin.storage.store import open_result
 from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
 

@@ -120,6 +120,17 @@ def test_public_names_exist_and_are_documented(folder):
             assert inspect.getdoc(value), name
 
 
+@pytest.mark.parametrize("folder", layout.RANKS)
+def test_no_public_name_is_also_the_name_of_a_file(folder):
+    """The import of the file would put the module in the place of the function."""
+    stub = ROOT / "fastpin" / folder / "__init__.pyi"
+    tree = ast.parse(stub.read_text(encoding="utf-8")) if stub.exists() else ast.Module([], [])
+    # "from . import FILE" makes the file itself public, and has no module.
+    taken = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module]
+    names = [alias.name for node in taken for alias in node.names]
+    assert [name for name in names if (stub.parent / f"{name}.py").exists()] == []
+
+
 def test_completion_shows_the_same_before_and_after_a_solve():
     code = (
         "import fastpin\n"
