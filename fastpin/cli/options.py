@@ -55,7 +55,8 @@ class Parser(argparse.ArgumentParser):
         found = re.fullmatch(r"argument (.+): invalid choice: '(.*)' \(choose from (.*)\)", message)
         if found:
             words = re.findall(r"[\w.-]+", found[3])
-            message = f'{found[1]}: must be {", ".join(words)}, not "{found[2]}"{closest(found[2], words)}'
+            allowed = f"{', '.join(words[:-1])} or {words[-1]}"
+            message = f'{found[1]}: must be {allowed}, not "{found[2]}"{closest(found[2], words)}'
         super().error(message)
 
 

@@ -58,4 +58,4 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch, capsys: pyt
 def test_an_unknown_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["completion", "fish"])
-    assert "argument shell: invalid choice: 'fish'" in capsys.readouterr().err
+    assert 'shell: must be bash, zsh or tcsh, not "fish"' in capsys.readouterr().err

@@ -194,7 +194,7 @@ def test_a_corner_is_studied_on_the_arc_of_the_whole_history(problem: Problem) -
 def test_grids_that_hardly_differ_are_refused(problem: Problem) -> None:
     with pytest.raises(InputError, match="nodes: must grow by a tenth at least to show an order, but 105 follows 101"):
         converge(problem, CORNERS, (101, 105, 201))
-    with pytest.raises(InputError, match="increments: must be at least 3 numbers, not 20"):
+    with pytest.raises(InputError, match="increments: must be at least 3 numbers, from which an order follows, not 20"):
         converge(problem, CORNERS, GRIDS, increments=20)  # type: ignore[arg-type]
 
 

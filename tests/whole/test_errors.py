@@ -13,7 +13,7 @@ from concurrent.futures import ProcessPoolExecutor
 import pytest
 
 import fastpin
-from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning
+from fastpin.errors import CaseFileError, FastpinError, FieldMessage, InputError
 from fastpin.solver.errors import Interrupted, NoEquilibriumError, SolveError
 from fastpin.solver.path import StepLostError
 from fastpin.studies.convergence import StudyInterrupted, StudyLostError
@@ -47,7 +47,7 @@ def example(kind: type[BaseException]) -> BaseException:
     """An error of a class with all its attributes."""
     if issubclass(kind, CaseFileError):
         return kind("case.toml", [(3, "one"), (1, "two")])
-    if issubclass(kind, (InputError, InputWarning)):
+    if issubclass(kind, FieldMessage):
         return kind("nodes", "must be more")
     if issubclass(kind, SolveError):
         error = kind("lost", 2, 0.5, {"P": 1.0}, sample_result(complete=False))
