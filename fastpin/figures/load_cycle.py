@@ -31,9 +31,9 @@ from fastpin.figures.words import (
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.units import printed_scale, printed_unit, scaled, units
+from fastpin.report.cycle import natural_sizes
 from fastpin.solver.result import Result
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
-from fastpin.states.quantities import sizes
 
 SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
 """Shades of the nodes that do not stick all the time, and their names."""
@@ -106,7 +106,7 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     frame = Frame(cycle.states)
     angle, order = frame.angle, frame.order
     upper, lower = axes[:, 0]
-    sizes = _sizes(cycle)
+    sizes = natural_sizes(cycle)
     named = {"slip range": cycle.slip_range, **({"slip distance": cycle.slip_distance} if known else {})}
     curves = {name: without_rounding(np.asarray(each), sizes["displacement"]) for name, each in named.items()}
     slips = any(each.any() for each in curves.values())
@@ -137,13 +137,6 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     sheet.legend([*handles, *shades], len(handles) + len(shades))
     _head(sheet, cycle, look.title)
     return sheet
-
-
-def _sizes(cycle: LoadCycle) -> dict[str, float]:
-    """Natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
-    found = [sizes(state) for state in cycle.states]
-    largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
-    return largest | {"energy density": largest["displacement"] * largest["traction"]}
 
 
 def _head(sheet: Sheet, cycle: LoadCycle, title: str, lift: float = 5.0) -> None:

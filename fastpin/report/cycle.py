@@ -17,7 +17,7 @@ from fastpin.report.case import ROUNDING, hole_body
 from fastpin.report.curves import Curve
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
-from fastpin.states.quantities import load_point
+from fastpin.states.quantities import load_point, sizes
 from fastpin.states.state import State
 from fastpin.storage.files import replacing
 
@@ -29,14 +29,16 @@ WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in No
 
 
 def cycle_line(cycle: LoadCycle) -> str:
-    """Return a line of text: the largest slip range, slip distance and friction energy of a node, with their places."""
-    unit = units(cycle.states[0].problem)
-    parts = [_in_words(cycle, "slip range", unit["displacement"])]
+    """Return a line of text: the largest slip range, slip distance and friction energy of a node, with their places.
+
+    Values that are rounding beside the sizes of :func:`natural_sizes` are 0.
+    """
+    parts = [_in_words(cycle, "slip range", "displacement")]
     if not cycle.has_exact_slip_range:
         parts[0] += " at the kept states"
     if cycle.friction_energy is not None:
-        parts.append(_in_words(cycle, "slip distance", unit["displacement"]))
-        parts.append(_in_words(cycle, "friction energy", unit["energy density"]))
+        parts.append(_in_words(cycle, "slip distance", "displacement"))
+        parts.append(_in_words(cycle, "friction energy", "energy density"))
     return f"from corner {cycle.first:,} to {cycle.last:,}: {', '.join(parts)}"
 
 
@@ -77,11 +79,22 @@ def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
     return f"{name}: {', '.join(parts)}"
 
 
-def _in_words(cycle: LoadCycle, label: str, unit: str) -> str:
-    """Return the largest value of a quantity with its place. `label` is its name in words."""
+def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
+    """Return natural sizes of slip, traction and friction energy in a cycle. Much smaller values are rounding."""
+    found = [sizes(state) for state in cycle.states]
+    largest = {kind: max(each[kind] for each in found) for kind in ("displacement", "traction")}
+    return largest | {"energy density": largest["displacement"] * largest["traction"]}
+
+
+def _in_words(cycle: LoadCycle, label: str, kind: str) -> str:
+    """Return the largest value of a quantity with its place; 0 if it is rounding.
+
+    `label` is the name of the quantity in words, `kind` the kind of its unit.
+    """
     largest, angle = _largest(cycle, label.replace(" ", "_"))
-    place = "" if angle is None else f" at {angle:z.2f} deg"
-    return f"{label} up to {with_unit(largest or 0.0, unit, 4)}{place}"
+    if largest is None or angle is None or largest <= ROUNDING * natural_sizes(cycle)[kind]:
+        return f"{label} 0"
+    return f"{label} up to {with_unit(largest, units(cycle.states[0].problem)[kind], 4)} at {angle:z.2f} deg"
 
 
 def document(cycle: LoadCycle) -> dict[str, Any]:

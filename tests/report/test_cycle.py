@@ -47,6 +47,14 @@ def test_a_cycle_without_slip_sums_says_what_it_knows() -> None:
     assert "at the kept states" in cycle_line(bare)
 
 
+def test_slip_that_is_rounding_is_printed_as_zero() -> None:
+    problem = Problem(PAIR, 0.01, 2e-5, 0.9, "body")
+    history = LoadHistory([{"P": 2e6}]) + LoadHistory([{"P": 1.99e6}, {"P": 2e6}]).repeated(3)
+    still = solve(problem, history, nodes=61, slip_sums=True).cycle()
+    assert 0.0 <= still.slip_range.max() < 1e-9
+    assert "slip range 0, slip distance 0, friction energy 0" in cycle_line(still)
+
+
 def test_the_table_names_units(cycle: LoadCycle, tmp_path) -> None:
     write_csv(cycle, tmp_path / "c.csv")
     lines = (tmp_path / "c.csv").read_text().splitlines()
