@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 
 from fastpin.errors import InputError
-from fastpin.storage.files import check_writable, replacing
+from fastpin.storage.files import check_writable, no_figure, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
@@ -27,7 +27,7 @@ def flag(name: str) -> str:
 def check_figure(option: str, path: Path) -> None:
     """Raise :class:`InputError` with the option as its field if a file's name does not end as a figure's."""
     if path.suffix.lower() not in FIGURE_FORMATS:
-        raise InputError(option, f'must be the name of a figure, which ends in .png, .pdf or .svg, not "{path.name}"')
+        raise no_figure(option, path)
 
 
 def check_outputs(

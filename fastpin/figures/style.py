@@ -20,9 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from fastpin.errors import InputError
 from fastpin.model.checks import file_path, number, string
-from fastpin.storage.files import check_writable, replacing
+from fastpin.storage.files import check_writable, no_figure, replacing
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#882255", "#777777")
 """Colours that are distinct for all kinds of colour vision.
@@ -195,11 +194,9 @@ def add_heading(figure: Figure, *lines: str) -> None:
 
 
 def check_format(path: Path) -> None:
-    """Raise :class:`InputError` if a figure can't be written to a file of this name."""
-    formats = FigureCanvasAgg.get_supported_filetypes()
-    if path.suffix[1:].lower() not in formats:
-        known = ", ".join(sorted(formats))
-        raise InputError("path", f"a figure's name must end in one of {known}, not {path.name!r}")
+    """Raise :class:`InputError` if a figure can't be written to a file of this name, in a format of Matplotlib."""
+    if path.suffix[1:].lower() not in FigureCanvasAgg.get_supported_filetypes():
+        raise no_figure("path", path)
     check_writable(path)
 
 

@@ -27,6 +27,11 @@ def check_writable(path: str | Path) -> None:
         raise InputError(str(path), f"the directory {folder} is not writable")
 
 
+def no_figure(field: str, path: Path) -> InputError:
+    """Return the error of a figure's file whose name ends in no format of figures."""
+    return InputError(field, f'must be the name of a figure, which ends in .png, .pdf or .svg, not "{path.name}"')
+
+
 def check_exists(path: Path) -> None:
     """Raise :class:`InputError` if `path` is not a regular file."""
     if not path.is_file():

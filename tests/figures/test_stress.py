@@ -173,7 +173,7 @@ def test_fatigue_along_the_edge(result):
         (lambda r: figures.plot_loops(solve(r.problem, [{"P": 1e5}], nodes=61)), "cycle: the history has no cycle"),
         (lambda r: figures.plot_stress_field(r[0], component="x"), "component: must be"),
         (lambda r: figures.plot_stress_field(r[0], extent=1.0), "extent: must be above 1"),
-        (lambda r: figures.plot_hoop_stress(r, "hoop.txt"), "path: a figure's name must end in"),
+        (lambda r: figures.plot_hoop_stress(r, "hoop.txt"), "path: must be the name of a figure"),
     ],
 )
 def test_bad_input(result, draw, message):

@@ -273,7 +273,7 @@ def test_no_global_state_is_touched() -> None:
 def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no state"):
         plot_tractions([])
-    with pytest.raises(InputError, match="must end in"):
+    with pytest.raises(InputError, match="must be the name of a figure"):
         plot_tractions(sample_result(), tmp_path / "a.docx")
     assert list(tmp_path.iterdir()) == []
 
