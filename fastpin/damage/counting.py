@@ -96,4 +96,4 @@ def stress_life(
 
 
 def _missing() -> InputError:
-    return InputError("pylife", "is not installed: pip install fastpin[fatigue]")
+    return InputError("pylife", "is not installed: pip install 'fastpin[fatigue]'")

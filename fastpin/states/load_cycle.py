@@ -288,7 +288,7 @@ class LoadCycle:
         try:
             import pandas
         except ImportError:
-            raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
+            raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
         columns = self.columns()
         frame = pandas.DataFrame({name: values for name, (values, _) in columns.items()})
         frame.attrs["units"] = {name: unit for name, (_, unit) in columns.items()}

@@ -68,7 +68,7 @@ def to_xarray(source: Result | str | Path) -> xarray.Dataset:
     try:
         import xarray
     except ImportError:
-        raise InputError("xarray", "is not installed: pip install fastpin[xarray]") from None
+        raise InputError("xarray", "is not installed: pip install 'fastpin[xarray]'") from None
     variables, attributes = _of_result(source) if isinstance(source, Result) else _of_file(file_path("source", source))
     dataset = xarray.Dataset(variables, attrs=attributes)
     return dataset.set_coords([name for name in variables if name in COORDINATES])
@@ -136,7 +136,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
     try:
         import pandas
     except ImportError:
-        raise InputError("pandas", "is not installed: pip install fastpin[pandas]") from None
+        raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
     instance("result", result, Result, "a Result")
     unit = {**units(result.problem), "angle": "rad", "width": "rad"}
     named = dict(zip(LOADS, load_units(result.problem), strict=True))

@@ -67,7 +67,7 @@ def test_without_pylife_a_sentence_says_what_to_install(monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", refuse)
     for call in (lambda: damage.rainflow(ASTM), lambda: damage.stress_life(1.0, 1.0, 1.0, 1.0)):
-        with pytest.raises(InputError, match=r"^pylife: is not installed: pip install fastpin\[fatigue\]$"):
+        with pytest.raises(InputError, match=r"^pylife: is not installed: pip install 'fastpin\[fatigue\]'$"):
             call()
 
 

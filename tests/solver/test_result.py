@@ -102,7 +102,7 @@ def test_a_data_frame_has_a_row_a_state(result):
 def test_a_missing_library_is_named(result, monkeypatch, library):
     monkeypatch.setitem(sys.modules, library, None)
     export = result.to_xarray if library == "xarray" else result.to_dataframe
-    with pytest.raises(fastpin.InputError, match=rf"is not installed: pip install fastpin\[{library}\]"):
+    with pytest.raises(fastpin.InputError, match=rf"is not installed: pip install 'fastpin\[{library}\]'"):
         export()
 
 
