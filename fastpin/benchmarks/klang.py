@@ -31,7 +31,8 @@ from fastpin.verification.rows import NODES, half_width
 TITLE = "Klang's problem (Code_Aster SSNV127): pin with clearance and friction"
 STATEMENT = (
     "Steel pin in a steel plate, plane stress: E 210 GPa, nu 0.3, R 60 mm, clearance 0.01 mm, friction 0.4, P 1.875e6 "
-    "N/m. The test loads the axis of the pin, in one increment, and clamps the plate at a radius of 1 m."
+    "N/m. The test loads the axis of the pin, in one increment, and clamps the plate at a radius of 1 m. The printed "
+    "pressures are three digits of N R/P: one unit is 0.3125 bar."
 )
 SOURCES = (
     "M. Klang, analytical solution, as quoted in Code_Aster, V6.04.127, and in the test ssnv127a.comm",

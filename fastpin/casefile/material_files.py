@@ -63,7 +63,15 @@ def known_materials(source: CaseText, folder: Path) -> Mapping[str, Material]:
     except CaseFileError as error:
         for line, text in error.problems:
             source.report(f"materials: {name}{f', line {line}' if line else ''}: {text}", "materials")
-        return MATERIALS
+        return MATERIALS | dict.fromkeys(_names(folder / name), MATERIALS["steel"])  # the rest is checked
+
+
+def _names(path: Path) -> list[str]:
+    """Return the names of the materials of a file with faults; none if it can't be read."""
+    try:
+        return [*CaseText(read_text(path)).root.table]
+    except CaseFileError:
+        return []
 
 
 def _read(path: Path) -> dict[str, Material]:

@@ -353,7 +353,10 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
         and force != 1.0
     ):
         factor, unit = printed_unit(problem, "force")
-        hint = "forces are per thickness, in N/m: divide a force in N by the thickness in m, or give the thickness"
+        hint = (
+            "forces are per thickness, in N/m: 1 N/mm is 1e3; divide a force in N by the thickness in m, or give the "
+            "thickness"
+        )
         yield InputWarning(
             name,
             f"{_short(factor * largest[name])} {unit} is a bearing stress of {_mega(force / (2.0 * radius))} only; "

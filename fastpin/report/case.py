@@ -167,8 +167,12 @@ def _hub(problem: Problem) -> str:
         factor, per_angle = printed_unit(problem, "stiffness")
         spring = f" of stiffness {with_unit(factor * problem.hub_stiffness, per_angle)}"
     if problem.hub_radius is None:
-        datum = "the paper's datum" if isinstance(problem.pin_body, Disk) else "the bore"
-        return f"{spring} at {datum}"
+        if not isinstance(problem.pin_body, Disk):
+            return f"{spring} at the bore"
+        if problem.surfaces.pin.is_rigid:
+            return spring
+        datum = problem.hole_radius / math.sqrt(problem.surfaces.pin_kolosov + 1.0)
+        return f"{spring} at radius {datum:.4g} {unit['length']}, the paper's datum"
     return f"{spring} at radius {problem.hub_radius:g} {unit['length']}"
 
 

@@ -281,9 +281,10 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     state = max(distinct.values(), key=lambda state: state.peak_hoop_stress().value)
     peak = state.peak_hoop_stress()
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
+    factor, unit = printed_scale(problem, "traction", [peak.value])
     text = (
         f"largest hoop stress of the {hole_body(problem)} in these states: "
-        f"{with_unit(peak.value, units(problem)['traction'], 4)}"
+        f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop')} {unit}"
         f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     )
     ratios = {"bearing": peak.kt_bearing, "remote": peak.kt_gross}

@@ -47,6 +47,12 @@ def test_without_remote_stress_there_is_one_concentration(states: list[State]) -
     assert line.endswith(f"load point 1; Kt {states[0].peak_hoop_stress().kt_bearing:.4g} on the bearing stress")
 
 
+def test_the_error_bar_of_the_hoop_stress_is_told() -> None:
+    (state,) = solve(Problem(PAIR, 0.01, 2e-5, 0.4), [{"P": 2e6}], nodes=101, error_bars=True)
+    bar = state.error_bars["peak_hoop"]
+    assert f"{state.peak_hoop_stress().value / 1e6:.4g} +-{bar / 1e6:.2g} MPa" in hoop_line(state.problem, [state])
+
+
 def test_a_peak_that_the_nodes_do_not_resolve_is_marked() -> None:
     states = solve(Problem(PAIR, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"P": 5e5}], nodes=61)
     marked = [" (not resolved by the nodes) at " in hoop_line(state.problem, [state]) for state in states]

@@ -287,8 +287,8 @@ DOUBTFUL: list[tuple[str, str, str]] = [
     (
         ONLY_P,
         "P = 12.1e3",
-        "P: 12100 N/m is a bearing stress of 0.605 MPa only; forces are per thickness, in N/m: divide a force in N by "
-        "the thickness in m, or give the thickness",
+        "P: 12100 N/m is a bearing stress of 0.605 MPa only; forces are per thickness, in N/m: 1 N/mm is 1e3; divide "
+        "a force in N by the thickness in m, or give the thickness",
     ),
     (
         "P = 2.42e6",
