@@ -29,7 +29,7 @@ class Row:
     ours : float
         fastpin's number, in `unit`.
     why : str
-        What is said if the numbers differ. It begins with one of :data:`WORDS`.
+        The verdict if the numbers differ. It begins with one of :data:`WORDS`.
     last_digit : float, optional
         A unit of the last digit of the published number, where it is not a decimal one.
     """

@@ -161,7 +161,7 @@ def _places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
 
 
 def _identity(state: State) -> tuple[Hashable, ...]:
-    """All of a state that its row shows, but for its number, its sum of energy and its residuals."""
+    """Return the parts of a state that its row shows. Its number, its sum of energy and its residuals are left out."""
     marks = () if state.marks is None else tuple(part.tobytes() for part in state.marks.arrays(state.grid.size))
     arrays = [part.tobytes() for part in (state.pressure, state.shear, state.status)]
     return (*arrays, *marks, state.rotation, *state.load.values(), *(state.error_bars or {}).values())

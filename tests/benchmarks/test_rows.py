@@ -1,4 +1,4 @@
-"""Rows of benchmarks: what agrees, and what is said of it."""
+"""Rows of benchmarks: their verdicts, and the words for them."""
 
 from __future__ import annotations
 
