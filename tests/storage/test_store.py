@@ -218,7 +218,7 @@ def test_xarray_reads_the_states_with_and_without_us(tmp_path: Path) -> None:
 def test_without_xarray_there_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     save(sample_result(), tmp_path / "a.h5")
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(InputError, match=r"pip install fastpin\[xarray\]"):
+    with pytest.raises(InputError, match=r"pip install 'fastpin\[xarray\]'"):
         to_xarray(tmp_path / "a.h5")
 
 
