@@ -33,12 +33,13 @@ def cycle_line(cycle: LoadCycle) -> str:
 
     Values that are rounding beside the sizes of :func:`natural_sizes` are 0.
     """
-    parts = [_in_words(cycle, "slip range", "displacement")]
+    natural = natural_sizes(cycle)
+    parts = [_in_words(cycle, "slip range", "displacement", natural)]
     if not cycle.has_exact_slip_range:
         parts[0] += " at the kept states"
     if cycle.friction_energy is not None:
-        parts.append(_in_words(cycle, "slip distance", "displacement"))
-        parts.append(_in_words(cycle, "friction energy", "energy density"))
+        parts.append(_in_words(cycle, "slip distance", "displacement", natural))
+        parts.append(_in_words(cycle, "friction energy", "energy density", natural))
     return f"from corner {cycle.first:,} to {cycle.last:,}: {', '.join(parts)}"
 
 
@@ -86,13 +87,13 @@ def natural_sizes(cycle: LoadCycle) -> dict[str, float]:
     return largest | {"energy density": largest["displacement"] * largest["traction"]}
 
 
-def _in_words(cycle: LoadCycle, label: str, kind: str) -> str:
+def _in_words(cycle: LoadCycle, label: str, kind: str, natural: dict[str, float]) -> str:
     """Return the largest value of a quantity with its place; 0 if it is rounding.
 
-    `label` is the name of the quantity in words, `kind` the kind of its unit.
+    `label` is the name of the quantity in words, `kind` the kind of its unit. `natural` has the natural sizes.
     """
     largest, angle = _largest(cycle, label.replace(" ", "_"))
-    if largest is None or angle is None or largest <= ROUNDING * natural_sizes(cycle)[kind]:
+    if largest is None or angle is None or largest <= ROUNDING * natural[kind]:
         return f"{label} 0"
     return f"{label} up to {with_unit(largest, units(cycle.states[0].problem)[kind], 4)} at {angle:z.2f} deg"
 
