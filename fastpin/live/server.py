@@ -68,6 +68,11 @@ HEADERS = {
 
 log = logging.getLogger("fastpin.live")
 
+requests_log = logging.getLogger("fastpin.live.requests")
+"""Where aiohttp writes about requests that it can't read. It goes nowhere: anyone can send such a request without the
+token, and the request may hold the token. Errors of our own handlers go to :data:`log`."""
+requests_log.disabled = True
+
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
@@ -222,7 +227,7 @@ class Server:
         application.router.add_get("/{token}/socket", self._talk)
         application.router.add_get("/{token}/save/{session}/{file}", self._save)
         application.router.add_get("/{token}/{file:.*}", self._send_file)
-        runner = web.AppRunner(application, access_log=None, shutdown_timeout=LAST_WAIT)
+        runner = web.AppRunner(application, access_log=None, logger=requests_log, shutdown_timeout=LAST_WAIT)
         listening = bound_socket(port)
         try:
             await runner.setup()
@@ -255,6 +260,11 @@ class Server:
                 response = await handler(request)
             except web.HTTPException as error:
                 response = _refused(error.status, error.reason)
+            except ConnectionError:  # the page has gone
+                raise
+            except Exception as error:
+                log.error("a request failed", exc_info=error)
+                raise
         if not response.prepared:
             response.headers.update(HEADERS)
         return response
@@ -327,11 +337,12 @@ class Server:
         working = asyncio.create_task(self._work(page, mailbox))
         try:
             async for received in page:
-                if received.type != WSMsgType.TEXT:
-                    await _send(page, refusal(None, InputError("message", "must be text")))
-                elif limit.allows():
+                if not limit.allows():
+                    continue  # Messages of any kind that come faster get no answer: answers would be a flood too.
+                if received.type == WSMsgType.TEXT:
                     await self._receive(page, mailbox, received.data)
-                # What comes faster is dropped without an answer: answers would be a flood of their own.
+                else:
+                    await _send(page, refusal(None, InputError("message", "must be text")))
         finally:
             working.cancel()
             with contextlib.suppress(asyncio.CancelledError, ConnectionError):

@@ -300,6 +300,59 @@ def test_a_thousand_messages_a_second_neither_pile_up_nor_stop_another_page(serv
     ask(work)
 
 
+def test_binary_messages_count_against_the_limit(server: Server) -> None:
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, server)
+        await talk.hello()
+        began = time.monotonic()
+        for _ in range(3_000):
+            await talk.page.send_bytes(b"\xff")
+        spent = time.monotonic() - began
+        await asyncio.sleep(1.1)  # the next second has begun
+        number, answers = await talk.send("undo"), 0
+        while json.loads((await talk.page.receive()).data)["id"] != number:
+            answers += 1
+        assert 0 < answers <= MOST_A_SECOND * (spent + 1.0) + 1
+
+    ask(work)
+
+
+MALFORMED = [
+    b"\x00\x01\x02\r\n\r\n",
+    b"GET\r\n\r\n",
+    b"GET /{token}/ HTTP/9.9\r\nHost: x\r\n\r\n",
+    b"GET /{token}/ HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
+    b"GET /{token}/ HTTP/1.1\r\nHost: x\r\nno colon\r\n\r\n",
+    b"POST /{token}/ HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n",
+    b"GET /{token}/" + b"x" * 20_000 + b" HTTP/1.1\r\n\r\n",
+    b"GET //[ HTTP/1.1\r\nHost: x\r\n\r\n",
+    b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+]
+"""Requests that are no HTTP, or not quite."""
+
+
+def test_malformed_requests_write_nothing_to_the_terminal(caplog: pytest.LogCaptureFixture) -> None:
+    with served() as running:
+        host, port = host_of(running).split(":")
+        for request in MALFORMED:
+            with socket.create_connection((host, int(port)), WAIT) as raw:
+                raw.sendall(request.replace(b"{token}", running.token.encode()))
+                raw.shutdown(socket.SHUT_WR)
+                with contextlib.suppress(ConnectionError):
+                    answer = b"".join(iter(lambda raw=raw: raw.recv(65_536), b""))  # type: ignore[misc]
+            assert b"Traceback" not in answer
+        assert get(running.address)[0] == 200
+    assert caplog.text == ""
+
+
+def test_an_error_of_a_handler_is_logged(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(server_module, "POLICY", "{no_such_part}")
+    with served() as running:
+        assert get(running.address)[0] == 500
+        assert running.token not in caplog.text
+    assert "a request failed" in caplog.text
+
+
 def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
     async def work(client: aiohttp.ClientSession) -> None:
         talk = await connect(client, running)
