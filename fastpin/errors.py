@@ -10,9 +10,19 @@ class FastpinError(Exception):
     """Base class of all errors raised by fastpin."""
 
 
+SPACES = frozenset(map(chr, (0xA0, 0x1680, *range(0x2000, 0x200B), 0x202F, 0x205F, 0x3000)))
+"""The spaces of Unicode besides the usual one. They can be printed, although Python does not count them so."""
+
+
 def printable(text: str) -> str:
-    """Text on one line: line ends and other characters that can't be printed become escapes, as in Python."""
-    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
+    """Text on one line: line ends and other characters that can't be printed become escapes, as in Python.
+
+    Control characters, marks that turn the direction of writing, lone surrogates and unassigned characters can't be
+    printed.
+    """
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() or letter in SPACES else ascii(letter)[1:-1] for letter in text)
 
 
 class FieldMessage(Exception):  # noqa: N818 - the base of errors and warnings

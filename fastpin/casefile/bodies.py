@@ -28,7 +28,7 @@ from fastpin.model.bodies import (
     check_pin_body,
     check_plate_body,
 )
-from fastpin.model.checks import choice, not_negative, positive, string
+from fastpin.model.checks import any_text, choice, not_negative, positive
 from fastpin.model.compliance import Compliance
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import check_bush
@@ -189,7 +189,7 @@ def _bush_material(source: CaseText, section: Section, materials: Mapping[str, M
 
 def _compliance(section: Section, folder: Path) -> PlateBody:
     section.require("file")
-    name = section.checked("file", string)
+    name = section.checked("file", any_text)
     if name is None:
         return Plate()
     try:

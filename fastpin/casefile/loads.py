@@ -8,7 +8,7 @@ import numpy as np
 
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import as_toml, number, string, whole_number
+from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_loads
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
@@ -194,12 +194,12 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
 
 
 def _from_csv(section: Section, folder: Path) -> LoadHistory | None:
-    name = section.checked("csv", string)
+    name = section.checked("csv", any_text)
     if name is None:
         return None
     try:
         return LoadHistory.from_csv(folder / name)
     except CaseFileError as error:
-        for line, text in error.problems:
-            section.report(f"csv: {name}{f', line {line}' if line else ''}: {text}", "csv")
+        for line, sentence in error.problems:
+            section.report(f"csv: {name}{f', line {line}' if line else ''}: {sentence}", "csv")
         return None

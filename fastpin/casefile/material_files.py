@@ -9,8 +9,8 @@ from pathlib import Path
 
 from fastpin.casefile.materials import read_material
 from fastpin.casefile.toml_text import CaseText, Section, parse_text, read_text, written
-from fastpin.errors import CaseFileError
-from fastpin.model.checks import as_toml, file_path, string
+from fastpin.errors import CaseFileError, printable
+from fastpin.model.checks import any_text, as_toml, file_path, string
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.synonyms import closest
 
@@ -55,14 +55,14 @@ def known_materials(source: CaseText, folder: Path) -> Mapping[str, Material]:
 
     A relative path starts in `folder`. Faults of the file are reported on the line of the key.
     """
-    name = source.root.checked("materials", string)
+    name = source.root.checked("materials", any_text)
     if name is None:
         return MATERIALS
     try:
         return MATERIALS | _read(folder / name)
     except CaseFileError as error:
-        for line, text in error.problems:
-            source.report(f"materials: {name}{f', line {line}' if line else ''}: {text}", "materials")
+        for line, sentence in error.problems:
+            source.report(f"materials: {name}{f', line {line}' if line else ''}: {sentence}", "materials")
         return MATERIALS | dict.fromkeys(_names(folder / name), MATERIALS["steel"])  # the rest is checked
 
 
@@ -101,6 +101,9 @@ def _materials(source: CaseText) -> dict[str, Material]:
         if name in MATERIALS:
             source.report(f"[{name}]: is a material of fastpin; choose another name", name)
         section = Section(source, (name,), table)
+        if printable(name) != name:
+            section.report(f"[{name}]: the name of a material must be one line of printable characters")
+            continue
         for key in table:
             if key not in FILE_KEYS:
                 hint = closest(key, FILE_KEYS) or f"; the keys are {', '.join(FILE_KEYS)}"

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import HDF5_SIGNATURE, as_toml, choice, number, string, why_unreadable
+from fastpin.model.checks import HDF5_SIGNATURE, as_toml, choice, instance, number, why_unreadable
 from fastpin.model.synonyms import meant
 
 MOST_BYTES = 100_000_000
@@ -72,7 +72,7 @@ def parse_text(text: str, name: str, kind: str, read: Callable[[CaseText], T | N
     InputError
         If an argument is of the wrong kind.
     """
-    source, title = CaseText(text), string("name", name)
+    source, title = CaseText(text), instance("name", name, str, "text in quotes")
     other = _other_kind(source.root.table, kind)
     if other and source.readable:
         raise CaseFileError(title, [(0, f"is a {other}, not a {kind}; see fastpin {KINDS[other][1]}")])

@@ -10,7 +10,7 @@ from typing import Any
 from fastpin import report
 from fastpin.benchmarks import catalog, text
 from fastpin.cli.progress import Bar
-from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, write_files, write_text
+from fastpin.cli.terminal import EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say, write_files, write_text
 from fastpin.errors import InputError
 from fastpin.version import __version__
 
@@ -19,7 +19,7 @@ def run(options: argparse.Namespace) -> int:
     """Solve the benchmarks, print their tables, and write their files."""
     if options.list:
         width = max(map(len, catalog.NAMES))
-        print("\n".join(f"{name:<{width}}  {title}" for name, title in catalog.titles()))
+        say(*(f"{name:<{width}}  {title}" for name, title in catalog.titles()))
         return EXIT_OK
     names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.NAMES))
     formats = list(dict.fromkeys(options.format or ("png",)))
@@ -45,11 +45,11 @@ def run(options: argparse.Namespace) -> int:
                 documents[name] = text.document(outcome.rows)
                 if options.json != "-":
                     shown = text.table(chosen.TITLE, chosen.STATEMENT, chosen.SOURCES, outcome.rows)
-                    progress_bar.write(f"{name}: {shown}\n", file=sys.stdout)
+                    progress_bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
                 if options.output is not None:
                     files = catalog.write(name, outcome, options.output, formats)
                     to = sys.stderr if options.json == "-" else sys.stdout
-                    progress_bar.write(f"{name}: {', '.join(map(str, files))}\n", file=to)
+                    progress_bar.write(f"{name}: {', '.join(map(str, files))}", "", file=to)
     except KeyboardInterrupt:
         finished = f"benchmarks that are finished: {', '.join(documents)}" if documents else "no benchmark was finished"
         return fail(f"interrupted; {finished}", EXIT_INTERRUPTED)

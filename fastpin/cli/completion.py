@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from fastpin.cli.options import parser
@@ -20,7 +21,7 @@ def run(options: argparse.Namespace) -> int:
     for action in _all_actions(root):
         if action.type is Path:
             action.complete = shtab.FILE  # type: ignore[attr-defined]
-    print(shtab.complete(root, options.shell))
+    sys.stdout.write(f"{shtab.complete(root, options.shell)}\n")
     return EXIT_OK
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from fastpin import casefile, elasticity, figures
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_OK, check_outputs, write_files, write_text
-from fastpin.errors import CaseFileError, InputError
+from fastpin.cli.terminal import EXIT_OK, check_outputs, say, write_files, write_text
+from fastpin.errors import CaseFileError, InputError, printable
 from fastpin.version import __version__
 
 DOUBTFUL = 1e-5
@@ -19,7 +19,7 @@ DOUBTFUL = 1e-5
 def run(options: argparse.Namespace) -> int:
     """Make a compliance file, and print how good it is; or print a commented lug file."""
     if options.example:
-        print(casefile.LUG_EXAMPLE, end="")
+        sys.stdout.write(casefile.LUG_EXAMPLE)
         return EXIT_OK
     if options.lug is None:
         raise InputError("lug", "the lug file is missing; start with: fastpin compliance --example > lug.toml")
@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     check_outputs({"--output": output, "--plot": options.plot}, options.lug)
     found = casefile.read_lug(options.lug)
     drawn = write_files([(options.plot, lambda path: figures.plot_lug(found.lug, path, found.title))])
-    made_by = f"fastpin {__version__}, {found.title or options.lug.name}"
+    made_by = f"fastpin {__version__}, {found.title or printable(options.lug.name)}"
     with Bar(1, "compliance") as progress_bar:
         try:
             result = elasticity.plate_compliance(found.lug, found.harmonics, progress_to(progress_bar), made_by)
@@ -42,12 +42,12 @@ def run(options: argparse.Namespace) -> int:
 
 def _print_report(result: elasticity.PlateResult, output: Path, drawing: Path | None) -> None:
     compliance = result.compliance
-    print(f"harmonics        {compliance.order}")
-    print(f"last harmonic    {result.last:.1e} of the largest")
-    print(f"symmetry error   {result.asymmetry:.1e}")
-    print(f"estimated error  {result.error:.1e}, from a coarser discretisation")
-    print(f"nodes            {result.nodes:,} on all edges")
-    print(f"loads            {', '.join(compliance.columns) or 'none of its own'}")
-    print(f"wrote {output}" + ("" if drawing is None else f" and {drawing}"))
+    say(f"harmonics        {compliance.order}")
+    say(f"last harmonic    {result.last:.1e} of the largest")
+    say(f"symmetry error   {result.asymmetry:.1e}")
+    say(f"estimated error  {result.error:.1e}, from a coarser discretisation")
+    say(f"nodes            {result.nodes:,} on all edges")
+    say(f"loads            {', '.join(compliance.columns) or 'none of its own'}")
+    say(f"wrote {output}" + ("" if drawing is None else f" and {drawing}"))
     if result.error > DOUBTFUL:
-        print(f"note: the estimated error is above {DOUBTFUL:g}; edges may be too near one another", file=sys.stderr)
+        say(f"note: the estimated error is above {DOUBTFUL:g}; edges may be too near one another", file=sys.stderr)

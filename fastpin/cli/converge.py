@@ -16,6 +16,7 @@ from fastpin.cli.terminal import (
     EXIT_OK,
     check_outputs,
     fail,
+    say,
     write_files,
     write_text,
 )
@@ -104,5 +105,5 @@ def _write_study(study: studies.convergence.Convergence, options: argparse.Names
     if options.json == "-":
         sys.stdout.write(document)
     else:
-        print("\n".join([title, ""] if title else []) + report.convergence.text(study))
+        say(*([title] if title else []), *report.convergence.text(study).split("\n"))
     return code

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from fastpin import casefile, live
 from fastpin.cli.options import literal
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, say
 from fastpin.errors import InputError
 from fastpin.live.contact import NODES, LiveContact
 from fastpin.live.protocol import MOST_LIVE_NODES
@@ -32,9 +32,10 @@ def run(options: argparse.Namespace) -> int:
         return fail("the live page needs the package aiohttp: pip install 'fastpin[live]'", EXIT_FAILED)
 
     def ready(address: str) -> None:
-        print(f"live page: {address}\nCtrl-C ends it", flush=True)
+        say(f"live page: {address}", "Ctrl-C ends it")
+        sys.stdout.flush()
         if options.browser and not webbrowser.open(address):
-            print("note: no browser was found; open the address above in one", file=sys.stderr)
+            say("note: no browser was found; open the address above in one", file=sys.stderr)
 
     try:
         with doubts_given():  # the page shows them, for each problem that is tried

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import importlib
+import io
 import logging
 import os
 import signal
@@ -18,8 +19,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from fastpin.cli.options import read_options
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail
-from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail, say
+from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, printable
 
 COLLECT_AFTER = 50_000
 """New objects after which garbage is looked for. Imports make no garbage, and Python's 700 objects cost them 30 ms."""
@@ -36,6 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         130: interrupted. 141: the reader of the output has closed it.
     """
     gc.set_threshold(COLLECT_AFTER)
+    _escape_what_a_stream_cannot_carry()
     try:
         options = read_options(sys.argv[1:] if arguments is None else list(arguments))
         _log(getattr(options, "verbose", 0))
@@ -47,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return code
     except CaseFileError as error:
-        print(error, file=sys.stderr)  # a line for each fault, with the file's name
+        say(*str(error).split("\n"), file=sys.stderr)  # a line for each fault, with the file's name
         return EXIT_INPUT
     except InputError as error:
         return fail(str(error), EXIT_INPUT)
@@ -64,6 +66,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return fail(str(error), EXIT_FAILED)
 
 
+def _escape_what_a_stream_cannot_carry() -> None:
+    """Let characters that the encoding of a terminal or pipe lacks become escapes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
 @contextlib.contextmanager
 def _printed_warnings() -> Iterator[None]:
     """Print warnings of doubtful input as messages, each of them once."""
@@ -74,7 +83,7 @@ def _printed_warnings() -> Iterator[None]:
             others(message, category, *place, **more)
         elif str(message) not in printed:
             printed.add(str(message))
-            print(f"fastpin: warning: {message}", file=sys.stderr)
+            say(f"fastpin: warning: {message}", file=sys.stderr)
 
     with warnings.catch_warnings():
         others = warnings.showwarning
@@ -83,10 +92,17 @@ def _printed_warnings() -> Iterator[None]:
         yield
 
 
+class _PrintableMessages(logging.Formatter):
+    """Messages of the package's log, which may name files."""
+
+    def formatMessage(self, record: logging.LogRecord) -> str:
+        return printable(super().formatMessage(record))
+
+
 def _log(verbose: int) -> None:
     """Send the package's messages to standard error. `verbose` 0: warnings, 1: each step, 2: everything."""
     handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("fastpin: %(message)s"))
+    handler.setFormatter(_PrintableMessages("fastpin: %(message)s"))
     logger = logging.getLogger("fastpin")
     logger.handlers = [handler]
     logger.setLevel((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbose, 2)])

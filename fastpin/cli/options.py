@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
+from fastpin.errors import printable
 from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
 
@@ -57,7 +58,7 @@ class Parser(argparse.ArgumentParser):
             words = re.findall(r"[\w.-]+", found[3])
             allowed = f"{', '.join(words[:-1])} or {words[-1]}"
             message = f'{found[1]}: must be {allowed}, not "{found[2]}"{closest(found[2], words)}'
-        super().error(message)
+        super().error(printable(message))  # it may repeat the name of a file
 
 
 def parser() -> argparse.ArgumentParser:

@@ -12,7 +12,7 @@ import numpy as np
 from fastpin import casefile, damage, figures, report, solver, storage
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import check_outputs, write_files
+from fastpin.cli.terminal import check_outputs, say, write_files
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
 from fastpin.report.curves import Curve, write_csv
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(option if error.field in PLOT_OPTIONS[options.kind] else error.field, error.reason) from None
     code = write_files([(figure, draw), (options.csv, write)])
     if code == 0:
-        print(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
+        say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
     return code
 
 
@@ -85,7 +85,7 @@ def _states(options: argparse.Namespace, usual: str | None = None, most: int = 0
     else:
         states = figures.stored_states(options.result, chosen)
     if states.note:
-        print(f"the figure shows {states.note}")
+        say(f"the figure shows {states.note}")
     return states
 
 

@@ -9,6 +9,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TextIO
 
+from fastpin.cli.terminal import say
+
 LOAD_POINTS = "{whole} of {total:,} load points"
 """Text of the progress bar of a run."""
 
@@ -22,7 +24,7 @@ LONG = 60.0
 def note_duration(seconds: float, hint: str = "") -> None:
     """Print a note before work that will take more than a minute. `hint` says how to save time."""
     if seconds > LONG:
-        print(f"fastpin: note: this will take about {_words(seconds)}{hint}", file=sys.stderr)
+        say(f"fastpin: note: this will take about {_words(seconds)}{hint}", file=sys.stderr)
 
 
 def _words(seconds: float) -> str:
@@ -80,12 +82,13 @@ class Bar:
         if self._shown is not None:
             self._shown.set_description_str(what, refresh=False)
 
-    def write(self, line: str, file: TextIO) -> None:
-        """Print a line above the bar."""
+    def write(self, *lines: str, file: TextIO) -> None:
+        """Print lines above the bar."""
         if self._shown is None:
-            print(line, file=file)
+            say(*lines, file=file)
         else:
-            self._shown.write(line, file=file)
+            with self._shown.external_write_mode(file=file):
+                say(*lines, file=file)
 
     def _show(self) -> None:
         from tqdm import tqdm

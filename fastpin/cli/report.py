@@ -10,7 +10,7 @@ from pathlib import Path
 from fastpin import casefile, pages, solver, studies
 from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
 from fastpin.cli.run import note_run
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag, say
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.pages.html import check_page
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     except InputError as error:
         named = error.field in ("title", "case", "plan", "error_bars")
         raise InputError(flag(error.field), error.reason) if named else error from None
-    print(f"wrote {page}")
+    say(f"wrote {page}")
     return code
 
 

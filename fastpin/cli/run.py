@@ -23,6 +23,7 @@ from fastpin.cli.terminal import (
     check_outputs,
     fail,
     flag,
+    say,
     write_files,
     write_text,
 )
@@ -52,9 +53,8 @@ def run(options: argparse.Namespace) -> int:
     _check_combination(case, options)
     start = _start(options)
     if start is not None and start.grid.size != case.options.nodes:
-        print(
-            f"note: the {start.grid.size} nodes of {options.start} are used, not {case.options.nodes}", file=sys.stderr
-        )
+        nodes = f"the {start.grid.size} nodes of {options.start} are used, not {case.options.nodes}"
+        say(f"note: {nodes}", file=sys.stderr)
     saved = _corners(len(case.history), options.save_after)
     keywords: dict[str, Any] = {**case.options.keywords(), "start": start}
     if start is not None:
@@ -111,7 +111,7 @@ def _note_unfinished(case: Case, path: Path) -> None:
     reason = storage.stored_error(path)
     why = f": {reason}" if reason else ""
     more = f"; {how}" if (how := way_on(path, reason)) else ""
-    print(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
+    say(f"note: unfinished, at corner {reached} of {len(case.history):,}{why}{more}")
 
 
 def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupted | None:
@@ -312,7 +312,7 @@ def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: 
         raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
     figures.plot_tractions(drawn, path, title=case.title)
     if drawn.note:
-        print(f"{path} shows {drawn.note}", file=sys.stderr if options.json == "-" else sys.stdout)
+        say(f"{path} shows {drawn.note}", file=sys.stderr if options.json == "-" else sys.stdout)
 
 
 def _report_end(
@@ -373,9 +373,9 @@ def _reached(result: solver.Result) -> int:
 
 def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, part: Part | None) -> None:
     if case.title:
-        print(case.title)
+        say(case.title)
     if result is None or not len(result):
-        print("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
+        say("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
         return
     if part is None:
         rows = table_rows(case.problem, result.states)
@@ -383,17 +383,17 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     else:
         rows, found = part.rows, dict(zip(part.places, result.states, strict=True))
         shown = [found[place] for place in rows.printed]
-    print(state_table(case.problem, shown, rows))
+    say(*state_table(case.problem, shown, rows).split("\n"))
     for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
         if line:
-            print(line)
+            say(line)
     for line in cycle_lines(case.problem, result.cycles):
-        print(line)
+        say(line)
     if cycle is not None:
-        print(report.cycle.cycle_line(cycle))
+        say(report.cycle.cycle_line(cycle))
     states = result.states if cycle is None else cycle.states
     if result.cycles and (line := report.cycle.fatigue_line(states, result.cycles[-1])):
-        print(line)
+        say(line)
     for note in note_lines(case, result):
-        print(f"note: {note}")
-    print(solver_line(result))
+        say(f"note: {note}")
+    say(solver_line(result))

@@ -14,7 +14,7 @@ from typing import Any
 from fastpin import figures, report, solver, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
 from fastpin.cli.progress import Bar, note_duration, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail, say
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
 from fastpin.storage.files import check_writable
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     rows = _written(options, plan, directory)
     _print_summary(plan, directory, summary, options.status, options.retry)
     if options.table == "-":
-        print(report.sweep.text(plan, rows))
+        say(*report.sweep.text(plan, rows).split("\n"))
     return EXIT_FAILED if (summary.failed or summary.unread) and not options.status else EXIT_OK
 
 
@@ -147,26 +147,26 @@ def _print_summary(
     plan: studies.plan.Plan, directory: Path, summary: studies.sweep.Summary, only_status: bool, retried: bool
 ) -> None:
     if plan.title:
-        print(plan.title)
+        say(plan.title)
     counts = f"{summary.done} done, {len(summary.failed)} failed, {summary.waiting} waiting"
     time = "" if only_status else f"; {summary.ended} in {summary.seconds:.1f} s"
-    print(f"{summary.total} runs in {directory}: {counts}{time}")
+    say(f"{summary.total} runs in {directory}: {counts}{time}")
     same = len(plan.points) - len(plan.runs)
     if same:
-        print(f"{same} points of the plan have the same input as another and share its run")
+        say(f"{same} points of the plan have the same input as another and share its run")
     for point, reason in summary.failed[:MOST_REASONS]:
-        print(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
+        say(f"failed: {point.id}  {studies.plan.describe_values(point.values)}: {reason}")
     if len(summary.failed) > MOST_REASONS:
-        print(f"... {len(summary.failed) - MOST_REASONS} more failed")
+        say(f"... {len(summary.failed) - MOST_REASONS} more failed")
     if summary.read:
-        print(f"outcomes of {summary.read} finished runs were read from their results")
+        say(f"outcomes of {summary.read} finished runs were read from their results")
     for name in plan.outcomes:
         unread = [(point, reason) for point, unread_name, reason in summary.unread if unread_name == name]
         if unread:
             point, reason = unread[0]
-            print(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
+            say(f"outcome {name} can't be read in {len(unread)} runs, first {point.id}: {reason}")
     if summary.failed and not retried:
-        print("--retry runs what failed again")
+        say("--retry runs what failed again")
 
 
 def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Path) -> list[dict[str, Any]]:
@@ -180,12 +180,12 @@ def _written(options: argparse.Namespace, plan: studies.plan.Plan, directory: Pa
         chart = report.sweep.chart(plan, rows, _value(options, plan), options.x, options.y)
         figures.plot_sweep(chart, options.plot)
         if chart.missing:
-            print(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
+            say(f"note: {chart.missing} of {len(rows)} points have no value in the figure", file=sys.stderr)
     return rows
 
 
 def merge(options: argparse.Namespace) -> int:
     """Join the directories of the parts of a sweep."""
     count = studies.sweep.merge(options.parts, options.output)
-    print(f"{count} runs in {options.output}")
+    say(f"{count} runs in {options.output}")
     return EXIT_OK

@@ -5,17 +5,28 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
+from typing import TextIO
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, printable
 from fastpin.storage.files import check_writable, no_figure, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
 FIGURE_FORMATS = (".png", ".pdf", ".svg")
 
 
+def say(*lines: str, file: TextIO | None = None) -> None:
+    """Print lines on a stream: standard output, unless another one is given.
+
+    Texts of files and names of files may be anybody's, and some characters steer a terminal. Line ends inside a line
+    and other characters that can't be printed become escapes.
+    """
+    for line in lines:
+        print(printable(line), file=file)
+
+
 def fail(message: str, code: int) -> int:
     """Print an error message, and return the exit code."""
-    print(f"fastpin: {message}", file=sys.stderr)
+    say(f"fastpin: {message}", file=sys.stderr)
     return code
 
 

@@ -10,7 +10,7 @@ import time
 
 from fastpin import report, storage, verification
 from fastpin.cli.progress import Bar, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, write_files, write_text
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_files, write_text
 from fastpin.kernels.threads import cores
 from fastpin.version import __version__
 
@@ -26,8 +26,8 @@ def run(options: argparse.Namespace) -> int:
     code = EXIT_OK if count == len(checks) else EXIT_FAILED
     if options.json != "-":
         libraries = ", ".join(f"{name} {version}" for name, version in storage.versions().items())
-        print(report.checks.table(checks))
-        print(f"\n{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
+        say(*report.checks.table(checks).split("\n"), "")
+        say(f"{count} of {len(checks)} within tolerance, {seconds:.0f} s; {libraries}; {cores()} cores")
     if options.json is not None:
         document = {
             "fastpin": __version__,

@@ -109,12 +109,20 @@ def true_or_false(field: str, value: object) -> bool:
 
 
 def string(field: str, value: object) -> str:
-    """Check a string that can be stored in any file: without NUL and lone surrogates."""
-    if not isinstance(value, str):
-        raise InputError(field, f"must be text in quotes, not {as_toml(value)}")
-    if "\0" in value or not _is_unicode(value):
-        raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(value)}")
-    return value
+    """Check a text on one line that can be printed anywhere, such as a name or a title: see :func:`printable`."""
+    found = instance(field, value, str, "text in quotes")
+    if printable(found) != found:
+        first = next(letter for letter in found if printable(letter) != letter)
+        raise InputError(field, f"must be one line of printable characters, without {ascii(first)[1:-1]}")
+    return found
+
+
+def any_text(field: str, value: object) -> str:
+    """Check a text of any lines that can be stored in any file: without NUL and lone surrogates."""
+    found = instance(field, value, str, "text in quotes")
+    if "\0" in found or not _is_unicode(found):
+        raise InputError(field, f"must be text of Unicode characters without NUL, not {as_toml(found)}")
+    return found
 
 
 def file_path(field: str, value: object) -> Path:

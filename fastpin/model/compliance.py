@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, printable
 from fastpin.model.checks import as_toml, choice, file_path, number, numbers, positive, string, why_unreadable
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import PLANES, Plane
@@ -196,7 +196,10 @@ class Compliance:
         if missing:
             raise InputError(missing[0], "is missing")
         known = ("nu", "plane", "hole_radius", "matrix", "columns", "made_by")
-        return cls(**{name: content[name] for name in known if name in content})
+        given = {name: content[name] for name in known if name in content}
+        if isinstance(given.get("made_by"), str):
+            given["made_by"] = printable(given["made_by"])  # the file may be anybody's, or of an earlier version
+        return cls(**given)
 
     def document(self) -> dict[str, Any]:
         """Return the content of a file, JSON-ready."""

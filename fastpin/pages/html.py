@@ -6,7 +6,7 @@ from pathlib import Path
 
 import jinja2
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, printable
 from fastpin.model.checks import as_toml, file_path
 from fastpin.pages.content import Page
 from fastpin.storage.files import check_writable, replacing
@@ -35,12 +35,20 @@ def check_page(field: str, path: str | Path) -> Path:
     return found
 
 
+def _shown(value: object) -> object:
+    """Return a text of a page with escapes for the characters that can't be printed. Lines and tabs stay."""
+    if not isinstance(value, str) or hasattr(value, "__html__"):
+        return value
+    return "\n".join("\t".join(map(printable, line.split("\t"))) for line in value.split("\n"))
+
+
 def html_of(page: Page) -> str:
     """Return a page as HTML. All text is escaped; only the markup of pictures is written as it is."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
+        finalize=_shown,
         trim_blocks=True,
         lstrip_blocks=True,
     )

@@ -18,7 +18,7 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.storage.damage import as_python, dataset_of
+from fastpin.storage.damage import as_python, dataset_of, text_of
 
 _COMPLIANCE_FIELDS = ("nu", "plane", "hole_radius", "made_by")
 
@@ -40,7 +40,7 @@ def read_material(group: h5py.Group) -> Material:
         stored = group["fatigue"].attrs.items()
         fatigue = FatigueConstants(**{str(constant): as_python(value) for constant, value in stored})
     strength = float(attributes["yield_strength"]) if "yield_strength" in attributes else None
-    return Material(float(attributes["E"]), float(attributes["nu"]), str(attributes["name"]), fatigue, strength)
+    return Material(float(attributes["E"]), float(attributes["nu"]), text_of(attributes["name"]), fatigue, strength)
 
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:

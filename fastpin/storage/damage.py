@@ -10,7 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from fastpin.errors import FastpinError, InputError
+from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.checks import number
 from fastpin.storage.packed import Array
 
@@ -62,14 +62,20 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     return dataset
 
 
+def text_of(value: Any) -> str:
+    """Return a text of a file on one line that can be printed: the file may be anybody's, or of an earlier version."""
+    return printable(str(value))
+
+
 def as_python(value: Any) -> Any:
-    """Return a NumPy scalar as a Python number. Any other value of an attribute stays as it is."""
-    return value.item() if isinstance(value, np.generic) else value
+    """Return a NumPy scalar as a Python number, and a text as :func:`text_of`. Any other value stays as it is."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    return text_of(plain) if isinstance(plain, str) else plain
 
 
 def numbers_of(group: h5py.Group) -> dict[str, float]:
     """Return the attributes of a group. :class:`InputError` is raised if one of them is no number."""
-    values = {str(name): as_python(value) for name, value in group.attrs.items()}
+    values = {text_of(name): as_python(value) for name, value in group.attrs.items()}
     for name, value in values.items():
         number(name, value)
     return values
@@ -94,5 +100,4 @@ def check_extremes(label: str, lowest: np.ndarray, highest: np.ndarray, absent: 
 
 
 def _first_line(error: BaseException) -> str:
-    text = (str(error).strip("\"'").splitlines() or [type(error).__name__])[0]
-    return "".join(letter for letter in text[:300] if letter.isprintable())
+    return text_of((str(error).strip("\"'").splitlines() or [type(error).__name__])[0][:300])

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fastpin.model.checks import file_path
+from fastpin.storage.damage import text_of
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import open_result
 
@@ -29,7 +30,7 @@ def provenance(path: str | Path) -> dict[str, str]:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        attributes = {str(name): str(value) for name, value in file.attrs.items()}
+        attributes = {text_of(name): text_of(value) for name, value in file.attrs.items()}
     versions = {name: value for name, value in attributes.items() if name.startswith("version_")}
     found = {name.removeprefix("version_"): value for name, value in versions.items()}
     return found | {name: attributes[name] for name in SOURCES if name in attributes}

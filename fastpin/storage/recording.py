@@ -22,6 +22,7 @@ from fastpin.solver.errors import ArcError, ConvergenceError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
+from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_history, read_options, read_problem
 from fastpin.storage.origin import largest_pressure
@@ -150,7 +151,7 @@ def stored_error(path: str | Path) -> str | None:
     """
     with open_result(file_path("path", path)) as file:
         error = file.attrs.get("error")
-        return None if error is None else str(error)
+        return None if error is None else text_of(error)
 
 
 def stored_case(path: str | Path) -> Case:
@@ -162,7 +163,7 @@ def stored_case(path: str | Path) -> Case:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        title = str(file["solver"].attrs.get("title", ""))
+        title = text_of(file["solver"].attrs.get("title", ""))
         return Case(read_problem(file), read_history(file), read_options(file), title)
 
 

@@ -23,7 +23,7 @@ from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
 from fastpin.storage import packed
-from fastpin.storage.damage import reading
+from fastpin.storage.damage import reading, text_of
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import check_free, consistent_view, open_h5
 from fastpin.storage.layout import (
@@ -197,7 +197,7 @@ def _read(
         problem=problem,
         history=history,
         grid=grid,
-        method=str(file["solver"].attrs["method"]),
+        method=text_of(file["solver"].attrs["method"]),
         statistics=read_statistics(file),
         complete=complete,
         restart=restart,

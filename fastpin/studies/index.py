@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, get_args
 
-from fastpin.errors import InputError
-from fastpin.model.checks import choice, instance, number, string, whole_number
+from fastpin.errors import InputError, printable
+from fastpin.model.checks import any_text, choice, instance, number, whole_number
 from fastpin.storage.packed import BUSY_SECONDS, INDEX, TABLE
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Spacing
@@ -180,7 +180,7 @@ class Index:
         """Read a note on the whole sweep: "version", "plan" (its digest), "title", "text" or "fields"."""
         value = self._one("SELECT value FROM sweep WHERE name = ?", name)
         with self._as_input_error():
-            return _text(name, value)
+            return None if value is None else any_text(name, value)
 
     def holds_plan(self) -> bool:
         """Whether a plan or a part has been written to the index. A process may be killed before its first one."""
@@ -347,10 +347,10 @@ def lock_directory(directory: Path) -> Iterator[None]:
 
 
 def _check_row(row: dict[str, Any]) -> None:
-    """Check the kinds of values in a row."""
+    """Check the kinds of values in a row. Its texts can be printed then."""
     _status(row["status"])
     for name in ("id", "reason", "started", "host"):
-        _text(name, row[name])
+        row[name] = _text(name, row[name])
     whole_number("dimensionless", row["dimensionless"], 0, 1)
     for name in (*KEY_FIGURES, "seconds"):
         if row[name] is not None:
@@ -362,7 +362,8 @@ def _status(value: Any) -> str:
 
 
 def _text(name: str, value: Any) -> str | None:
-    return None if value is None else string(name, value)
+    """Return a text on one line that can be printed: the index may be anybody's, or of an earlier version."""
+    return None if value is None else printable(any_text(name, value))
 
 
 def _table(text: Any) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import CaseText, Place, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, choice, file_path, instance, number, string, whole_number
+from fastpin.model.checks import any_text, as_toml, choice, file_path, instance, number, string, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
@@ -265,7 +265,7 @@ def _varied(section: str, key: str) -> str:
 
 def _base(source: CaseText, folder: Path) -> BaseCase | None:
     """Read the base case, and report its faults on the line of the plan's ``case``."""
-    name = source.root.checked("case", string)
+    name = source.root.checked("case", any_text)
     try:
         if name is None:
             return BaseCase(EXAMPLE, "built-in case", folder)

@@ -46,6 +46,7 @@ BREAKS = {
     "argparse elsewhere": ("one_home", "report/case.py", "import argparse\n"),
     "jinja2 elsewhere": ("one_home", "report/table.py", "import jinja2\n"),
     "print elsewhere": ("one_home", "report/case.py", "print(1)\n"),
+    "print in a command": ("one_home", "cli/run.py", "print(1)\n"),
     "a private name of another file": (
         "nothing_private",
         "states/peaks.py",
