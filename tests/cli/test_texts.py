@@ -10,11 +10,26 @@ from pathlib import Path
 
 import pytest
 
-from fastpin import casefile
 from fastpin.cli.main import main
 from fastpin.errors import printable
 
-CASE = casefile.EXAMPLE.replace("[solve]\n", "[solve]\nnodes = 41\n", 1)
+CASE = """
+[pin]
+material = "steel"
+[plate]
+material = "steel"
+[contact]
+hole_radius = 0.01
+clearance = 1e-5
+friction = 0.3
+[[load]]
+P = 1e6
+[[load]]
+Q = [1e5, -1e5]
+repeat = 2
+[solve]
+nodes = 41
+"""
 
 HOSTILE = "a\x1b[31m\x07\u202e\nb"
 """A file's name with an escape sequence, a mark that turns the direction of writing, and a line end."""
@@ -27,7 +42,7 @@ def is_shown(text: str) -> bool:
 
 def test_texts_become_escapes_where_the_terminal_has_ascii_only(tmp_path: Path) -> None:
     case = tmp_path / "case.toml"
-    case.write_text('title = "Größe €"\n' + CASE.partition("\n")[2], encoding="utf-8")
+    case.write_text(f'title = "Größe €"{CASE}', encoding="utf-8")
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "FASTPIN_HYPOTHESIS": ""}
 
     def output(*arguments: str) -> tuple[int, str, str]:
@@ -108,8 +123,7 @@ def test_names_of_files_that_are_no_text_are_shown(
     command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     name = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.toml")
-    with open(name, "w", encoding="utf-8") as file:
-        file.write(CASE)
+    Path(name).write_text(CASE, encoding="utf-8")
     code = main([command, name])
     out, err = capsys.readouterr()
     assert code == (0 if command == "check" else 2), err
