@@ -2,8 +2,8 @@
 
 HDF5 changes its indices in place. A process killed during such a change leaves an unreadable file, and every earlier
 state in it is lost. Therefore the old bytes go to a journal beside the file before a part of the file is overwritten.
-The next process that opens the file puts the old bytes back. A transaction ends when the journal is emptied. That
-happens at once or not at all.
+The next process that writes to the file puts the old bytes back. A reader only takes them in place of the new ones: it
+writes nothing. A transaction ends when the journal is emptied. That happens at once or not at all.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import stat
 import struct
 import zlib
 from collections.abc import Iterator
@@ -32,6 +33,17 @@ except ImportError:  # This system has no such locks: no second process may writ
 
 # Head of a journal record: place in the file, length of the old bytes, checksums of the old and of the new bytes.
 _RECORD = struct.Struct("<QIII")
+
+MOST_BYTES = 1 << 30
+"""Most bytes of a journal. A transaction overwrites at most a restart: some 90 MB with 20,000 nodes."""
+
+MOST_NOTES = 1_000_000
+"""Most records of a journal that are undone. A transaction writes a few thousand times."""
+
+_PAGE = 4096
+
+# A link is not followed, and a pipe not waited for, where the system knows these flags.
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
 
 
 def journal_of(path: Path) -> Path:
@@ -69,19 +81,28 @@ class JournaledFile:
             os.close(self._file)
             raise InputError(str(path), "another run is writing to it")
         try:
-            self._journal = os.open(journal_of(path), os.O_RDWR | os.O_CREAT, 0o666)
-        except OSError as error:
+            self._journal = _open_journal(path, os.O_RDWR | os.O_CREAT)
+        except InputError:
             os.close(self._file)
-            raise InputError(str(journal_of(path)), f"can't be written: {error.strerror}") from None
+            raise
         _wait_for(self._journal, exclusive=True)
+        try:
+            self._begin(new)
+        except InputError:
+            os.close(self._journal)
+            os.close(self._file)
+            raise
+        _wait_for(self._journal, exclusive=None)
+        self._size = os.fstat(self._file).st_size
+        self._written = 0  # bytes of the journal
+
+    def _begin(self, new: bool) -> None:
+        """Empty the file if it is `new`, else undo an unfinished transaction."""
         if new:
             os.ftruncate(self._journal, 0)
             os.ftruncate(self._file, 0)
         else:
-            _roll_back(self._file, self._journal)
-        _wait_for(self._journal, exclusive=None)
-        self._size = os.fstat(self._file).st_size
-        self._written = 0  # bytes of the journal
+            _roll_back(self._file, self._journal, journal_of(self._path))
 
     def begin(self) -> None:
         """Begin a transaction. Readers wait until it ends."""
@@ -113,8 +134,8 @@ class JournaledFile:
     def abandon(self) -> None:
         """Undo the transaction, and ignore all later writes."""
         self._abandoned = True
-        with contextlib.suppress(OSError):  # After an error the next process that opens the file does it.
-            _roll_back(self._file, self._journal)
+        with contextlib.suppress(OSError, InputError):  # After an error the next process that opens the file does it.
+            _roll_back(self._file, self._journal, journal_of(self._path))
 
     def release(self) -> None:
         """Close the file and give up its locks. Remove the journal if it is empty: nothing must be undone."""
@@ -187,44 +208,53 @@ class JournaledFile:
 
 
 @contextmanager
-def consistent_view(path: Path) -> Iterator[None]:
-    """Keep a file as its last transaction left it during the block, for a reader.
+def open_h5(path: Path) -> Iterator[h5py.File]:
+    """Open an HDF5 file for reading, as its last transaction left it. Nothing is written.
 
-    A run that is writing to the file waits until the block ends. An unfinished transaction of a killed process is
-    undone first.
-
-    Raises
-    ------
-    InputError
-        If a process was killed during a transaction, and the transaction can't be undone because the file can't be
-        written.
-    """
-    journal = journal_of(path)
-    if not journal.is_file():
-        yield
-        return
-    with journal.open("rb") as locked:
-        _wait_for(locked.fileno(), exclusive=False)
-        if os.fstat(locked.fileno()).st_size:  # No process is writing, and one was killed during a transaction.
-            _wait_for(locked.fileno(), exclusive=True)
-            try:
-                with path.open("r+b") as file, journal.open("r+b") as writable:
-                    _roll_back(file.fileno(), writable.fileno())
-            except OSError as error:
-                message = f"was being written when its run was killed, and can't be put right: {error.strerror}"
-                raise InputError(str(path), message) from None
-            _wait_for(locked.fileno(), exclusive=False)
-        yield
-
-
-def open_h5(path: Path) -> h5py.File:
-    """Open an HDF5 file for reading, also while a run is writing to it; see :func:`consistent_view`.
+    A run that is writing to the file waits until the block ends. The unfinished transaction of a killed process is
+    undone in memory. The next writer undoes it in the file.
 
     Raises
     ------
     InputError
-        If it is no whole HDF5 file.
+        If it is no whole HDF5 file, or its journal is no ordinary file.
     """
+    with contextlib.ExitStack() as stack:
+        restored = _restored(path, stack)
+        with _opened(path, restored) as file:
+            yield file
+
+
+def _restored(path: Path, stack: contextlib.ExitStack) -> RestoredFile | None:
+    """Lock the journal of a file, if there is one. Return the file without its unfinished transaction, if it has one.
+
+    `stack` gives back the lock, and closes the files.
+    """
+    try:
+        journal = _open_journal(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return None
+    stack.callback(os.close, journal)
+    _wait_for(journal, exclusive=False)
+    if not os.fstat(journal).st_size:
+        return None
+    try:
+        file = os.open(path, os.O_RDONLY)
+    except OSError as error:
+        raise InputError(str(path), f"can't be read: {error.strerror}") from None
+    stack.callback(os.close, file)
+    undone = _undone(file, _notes(journal, journal_of(path)))
+    return None if undone is None else RestoredFile(undone)
+
+
+def _opened(path: Path, restored: RestoredFile | None) -> h5py.File:
+    """Open an HDF5 file for reading, or the file `restored` in its place."""
+    if restored is not None:
+        try:
+            return h5py.File(restored, "r")
+        except OSError:
+            restored.seek(0)
+            raise _not_readable(path, restored.read(len(HDF5_SIGNATURE))) from None
     try:
         return h5py.File(path, "r", locking=False)
     except OSError:
@@ -237,16 +267,22 @@ def open_h5(path: Path) -> h5py.File:
 
 def not_readable(path: Path) -> InputError:
     """Return the error of a file that can't be opened as an HDF5 file."""
-    with contextlib.suppress(OSError), path.open("rb") as file:
-        start = file.read(len(HDF5_SIGNATURE))
-        if not start:
-            return InputError(str(path), "is empty, and no result")
-        if start == HDF5_SIGNATURE:
-            return InputError(str(path), "is damaged or cut short")
-        if path.suffix == ".toml":
-            return InputError(str(path), f"is no result; of a case file, fastpin run {path} -o FILE makes one")
-        return InputError(str(path), "is no HDF5 file, and no result")
-    return InputError(str(path), "can't be read")
+    try:
+        with path.open("rb") as file:
+            return _not_readable(path, file.read(len(HDF5_SIGNATURE)))
+    except OSError:
+        return InputError(str(path), "can't be read")
+
+
+def _not_readable(path: Path, start: bytes) -> InputError:
+    """Return the error of a file with these first bytes that can't be opened as an HDF5 file."""
+    if not start:
+        return InputError(str(path), "is empty, and no result")
+    if start == HDF5_SIGNATURE:
+        return InputError(str(path), "is damaged or cut short")
+    if path.suffix == ".toml":
+        return InputError(str(path), f"is no result; of a case file, fastpin run {path} -o FILE makes one")
+    return InputError(str(path), "is no HDF5 file, and no result")
 
 
 def check_free(path: Path) -> None:
@@ -271,50 +307,191 @@ def _wait_for(journal: int, exclusive: bool | None) -> None:
             fcntl.flock(journal, kind)
 
 
-def _roll_back(file: int, journal: int) -> None:
-    """Put back the bytes that an unfinished transaction has overwritten, the latest first.
+def _open_journal(path: Path, flags: int) -> int:
+    """Open the journal of the file `path`, with the flags of :func:`os.open`.
 
-    The journal may come from an older file of the same name. Then a part of the file has neither the old nor the new
-    bytes of its record, and the file stays unchanged. Either way the journal is emptied.
+    A journal may come with the file of a stranger. Therefore no link is followed, and a journal that is written must
+    have no other name.
+
+    Raises
+    ------
+    InputError
+        If the journal is no ordinary file, or can't be opened.
+    FileNotFoundError
+        If there is no journal, and the flags don't make one.
     """
-    records = list(_records(os.pread(journal, os.fstat(journal).st_size, 0)))
-    restored: list[tuple[int, bytes]] = []
-    ours = bool(records) and os.fstat(file).st_size >= records[0][0]
-    for number, (place, old, new) in reversed(list(enumerate(records[1:], start=1))):
-        now = _as_restored(os.pread(file, len(old), place), place, restored)
-        latest = number == len(records) - 1  # Its new bytes may have been written in part.
-        ours &= latest or now == old or zlib.crc32(now) == new
-        restored.append((place, old))
-    if ours:
-        for place, old in restored:
+    journal = journal_of(path)
+    kind = "read" if flags == os.O_RDONLY else "written"
+    try:
+        check_beside(journal)
+        file = os.open(journal, flags | _NO_LINK, 0o666)
+    except OSError as error:
+        if isinstance(error, FileNotFoundError) and kind == "read":
+            raise
+        raise InputError(str(journal), f"can't be {kind}: {error.strerror}") from None
+    found = os.fstat(file)
+    if stat.S_ISREG(found.st_mode) and (kind == "read" or found.st_nlink <= 1):
+        return file
+    os.close(file)
+    raise InputError(str(journal), "must be an ordinary file with one name")
+
+
+def check_beside(path: Path) -> None:
+    """Raise :class:`InputError` if a file that a run keeps beside its result exists, and is a link or a special file.
+
+    A directory fails when it is opened.
+    """
+    try:
+        mode = path.lstat().st_mode
+    except FileNotFoundError:
+        return
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise InputError(str(path), "must be an ordinary file; please remove it")
+
+
+class _Overlay:
+    """A file with other bytes at some places, in memory.
+
+    Attributes
+    ----------
+    size : int
+        Size of the whole, in bytes.
+    """
+
+    def __init__(self, file: int) -> None:
+        self._file = file
+        self._pages: dict[int, bytearray] = {}
+        self.size = os.fstat(file).st_size
+
+    def read(self, size: int, place: int) -> bytes:
+        """Return `size` bytes from `place` on, or the bytes up to the end."""
+        size = max(min(size, self.size - place), 0)
+        data = bytearray(os.pread(self._file, size, place))
+        data.extend(bytes(size - len(data)))
+        for number in self._pages.keys() & set(_pages(place, size)):
+            _copy(self._pages[number], number * _PAGE, data, place)
+        return bytes(data)
+
+    def put(self, data: bytes, place: int) -> None:
+        """Put other bytes at `place`."""
+        for number in _pages(place, len(data)):
+            if number not in self._pages:
+                page = os.pread(self._file, _PAGE, number * _PAGE)
+                self._pages[number] = bytearray(page.ljust(_PAGE, b"\0"))
+            _copy(data, place, self._pages[number], number * _PAGE)
+
+
+def _pages(place: int, size: int) -> range:
+    """The numbers of the pages that hold `size` bytes from `place` on."""
+    return range(place // _PAGE, -(-(place + size) // _PAGE)) if size else range(0)
+
+
+def _copy(source: bytes | bytearray, begin: int, target: bytearray, place: int) -> None:
+    """Copy the bytes of `source`, which begins at `begin`, into the part of `target`, at `place`, that they share."""
+    first, last = max(begin, place), min(begin + len(source), place + len(target))
+    if first < last:
+        target[first - place : last - place] = source[first - begin : last - begin]
+
+
+class RestoredFile:
+    """A file without its unfinished transaction, for h5py. It can only be read."""
+
+    def __init__(self, content: _Overlay) -> None:
+        self._content = content
+        self._place = 0
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move the place of the next read, and return it, in bytes."""
+        base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: self._content.size}[whence]
+        self._place = base + offset
+        return self._place
+
+    def tell(self) -> int:
+        """Return the place of the next read, in bytes."""
+        return self._place
+
+    def readinto(self, buffer: memoryview) -> int:
+        """Read into a buffer, and return the number of bytes."""
+        data = self.read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def read(self, size: int = -1) -> bytes:
+        """Read `size` bytes, or the rest of the file if `size` is negative."""
+        data = self._content.read(size if size >= 0 else self._content.size - self._place, self._place)
+        self._place += len(data)
+        return data
+
+    def flush(self) -> None:
+        """Do nothing: the file has no buffer."""
+
+
+Note = tuple[int, bytes, int]
+"""Place, old bytes, and checksum of the new bytes of a record of a journal."""
+
+
+def _roll_back(file: int, journal: int, path: Path) -> None:
+    """Put back the bytes that an unfinished transaction has overwritten, the latest first. Empty the journal.
+
+    `path` is the path of the journal.
+    """
+    notes = _notes(journal, path)
+    if _undone(file, notes) is not None:
+        for place, old, _ in reversed(notes[1:]):
             _write_all(file, old, place)
-        os.ftruncate(file, records[0][0])
+        os.ftruncate(file, notes[0][0])
     os.ftruncate(journal, 0)
 
 
-def _as_restored(now: bytes, place: int, restored: list[tuple[int, bytes]]) -> bytes:
-    """Return the bytes `now` of a part of a file, as they are after other parts were restored in order."""
-    part = bytearray(now)
-    for begin, old in restored:
-        first, last = max(begin, place), min(begin + len(old), place + len(now))
-        if first < last:
-            part[first - place : last - place] = old[first - begin : last - begin]
-    return bytes(part)
+def _undone(file: int, notes: list[Note]) -> _Overlay | None:
+    """Return the content of a file without the transaction of its journal. None if the journal is not the file's own.
 
-
-def _records(data: bytes) -> Iterator[tuple[int, bytes, int]]:
-    """Yield place, old bytes and checksum of the new bytes of each whole record of a journal.
-
-    The last record may be cut short. Then its part of the file was not overwritten yet.
+    The journal may come from an older file of the same name. Then a part of the file has neither the old nor the new
+    bytes of its record.
     """
+    content = _Overlay(file)
+    if not notes or content.size < notes[0][0]:
+        return None
+    for number, (place, old, new) in reversed(list(enumerate(notes[1:], start=1))):
+        now = content.read(len(old), place)
+        latest = number == len(notes) - 1  # Its new bytes may have been written in part.
+        if not (latest or now == old or zlib.crc32(now) == new):
+            return None
+        content.put(old, place)
+    content.size = notes[0][0]
+    return content
+
+
+def _notes(journal: int, path: Path) -> list[Note]:
+    """Return all whole records of a journal. The first one holds the size of the file.
+
+    The last record may be cut short. Then its part of the file was not overwritten yet. `path` is the path of the
+    journal.
+
+    Raises
+    ------
+    InputError
+        If the journal is larger than that of any transaction.
+    """
+    size = os.fstat(journal).st_size
+    if size > MOST_BYTES:
+        raise InputError(
+            str(path), f"has {size} bytes, and no transaction needs more than {MOST_BYTES}; please remove it"
+        )
+    data = os.pread(journal, size, 0)
+    notes: list[Note] = []
     at = 0
     while at + _RECORD.size <= len(data):
         place, length, checksum, new = _RECORD.unpack_from(data, at)
         old = data[at + _RECORD.size : at + _RECORD.size + length]
-        if len(old) < length or _checksum(old, place) != checksum:
-            return
-        yield place, old, new
+        within = bool(length) and place + length <= notes[0][0] if notes else not length
+        if not within or len(old) < length or _checksum(old, place) != checksum:
+            break
+        if len(notes) > MOST_NOTES:
+            raise InputError(str(path), f"has more than {MOST_NOTES} records, as no transaction has; please remove it")
+        notes.append((place, old, new))
         at += _RECORD.size + length
+    return notes
 
 
 def _checksum(old: bytes, place: int) -> int:

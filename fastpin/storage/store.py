@@ -25,7 +25,7 @@ from fastpin.states.state import State
 from fastpin.storage import packed
 from fastpin.storage.damage import reading, text_of
 from fastpin.storage.files import check_exists, check_writable, replacing
-from fastpin.storage.journal import check_free, consistent_view, open_h5
+from fastpin.storage.journal import check_free, open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
     append,
@@ -263,7 +263,7 @@ def open_result(path: Path) -> Iterator[Any]:
             yield file
         return
     check_exists(path)
-    with consistent_view(path), open_h5(path) as file, reading(path):
+    with open_h5(path) as file, reading(path):
         check_format(file, str(path))
         yield file
 

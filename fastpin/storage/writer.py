@@ -26,7 +26,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage.damage import reading
 from fastpin.storage.files import replacing
-from fastpin.storage.journal import JournaledFile, not_readable
+from fastpin.storage.journal import JournaledFile, check_beside, not_readable
 from fastpin.storage.layout import (
     Rows,
     append,
@@ -170,6 +170,7 @@ class FileRecorder:
         if self._file is None:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
         self.abort()
+        check_beside(checkpoint_of(self.path))
         self._name = uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
         self._h5 = h5py.File(self._file, "w")
@@ -350,6 +351,7 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
     InputError
         If the file is no result of a run, holds a finished run, or another process is writing to it.
     """
+    check_beside(checkpoint_of(path))
     file = JournaledFile(path, new=False)
     try:
         if path.stat().st_size == 0:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+import struct
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import h5py
@@ -139,7 +141,10 @@ def test_what_a_dead_process_has_half_noted_counts_for_nothing(tmp_path: Path, c
     path.write_bytes(changed)
     journal_of(path).write_bytes(kept + b"more" * 3)
     assert rows_in(path) == 3
+    assert path.read_bytes() == changed  # a reader writes nothing
+    JournaledFile(path, new=False).release()
     assert path.read_bytes() == before
+    assert rows_in(path) == 3
 
 
 def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -230,19 +235,20 @@ def test_the_journal_of_another_file_does_no_harm(torn: tuple[Path, bytes, bytes
     path.write_bytes(content)
     assert rows_in(path) == rows
     assert path.read_bytes() == content
-    assert not journal_of(path).stat().st_size
-    journal_of(path).write_bytes(kept)
+    assert journal_of(path).read_bytes() == kept
     JournaledFile(path, new=False).release()
     assert path.read_bytes() == content
 
 
 def test_links_lead_to_the_journal_of_the_file(torn: tuple[Path, bytes, bytes, bytes], tmp_path: Path) -> None:
-    path, before, _, _ = torn
+    path, before, changed, _ = torn
     (tmp_path / "below").mkdir()
     link = tmp_path / "below" / "link.h5"
     link.symlink_to(path)
     assert journal_of(link) == journal_of(path)
     assert rows_in(link) == 5
+    assert path.read_bytes() == changed
+    JournaledFile(link, new=False).release()
     assert path.read_bytes() == before
 
 
@@ -274,3 +280,85 @@ def test_missing_and_unwritable_files(tmp_path: Path) -> None:
         JournaledFile(tmp_path / "a.h5", new=False)
     with pytest.raises(InputError, match="can't be written"):
         JournaledFile(tmp_path, new=True)
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe", "device", "second name"])
+def test_a_journal_that_is_no_ordinary_file_is_refused(torn: tuple[Path, bytes, bytes, bytes], kind: str) -> None:
+    """A stranger's folder may hold a link to a file of the user beside a result."""
+    path, _, changed, kept = torn
+    precious = path.with_name("precious.txt")
+    precious.write_bytes(kept)
+    beside = journal_of(path)
+    beside.unlink()
+    if kind == "pipe":
+        os.mkfifo(beside)
+    elif kind == "second name":
+        os.link(precious, beside)
+    else:
+        beside.symlink_to(precious if kind == "link" else "/dev/zero")
+    if kind != "second name":  # reading such a file does no harm
+        with pytest.raises(InputError, match=r"a\.h5\.journal: must be an ordinary file"):
+            rows_in(path)
+    for new in (False, True):
+        with pytest.raises(InputError, match=r"a\.h5\.journal: must be an ordinary file"):
+            JournaledFile(path, new)
+    assert precious.read_bytes() == kept
+    assert path.read_bytes() == changed
+
+
+def test_a_reader_needs_no_right_to_write(torn: tuple[Path, bytes, bytes, bytes], monkeypatch) -> None:
+    path, _, changed, kept = torn
+
+    def forbidden(*_: object) -> None:
+        raise AssertionError("a reader wrote")
+
+    with monkeypatch.context() as patch:
+        for name in ("pwrite", "ftruncate", "unlink"):
+            patch.setattr(journal.os, name, forbidden)
+        assert rows_in(path) == 5
+    assert (path.read_bytes(), journal_of(path).read_bytes()) == (changed, kept)
+
+
+def test_a_file_without_a_transaction_is_empty_again(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    file = JournaledFile(path, new=True)
+    file.begin()
+    kept = journal_of(path).read_bytes()
+    file.abandon()
+    file.release()
+    path.write_bytes(b"begun")
+    journal_of(path).write_bytes(kept)
+    with pytest.raises(InputError, match="is empty, and no result"):
+        rows_in(path)
+
+
+@pytest.mark.parametrize(
+    "records", [[(2**40, b"")], [(0, b"x" * 50)], [(50, b""), (2**62, b"x")], [(50, b""), *[(0, b"")] * 9]]
+)
+def test_records_beyond_the_file_are_not_undone(tmp_path: Path, records: list[tuple[int, bytes]]) -> None:
+    path = tmp_path / "a.h5"
+    written(path, 3)
+    before = path.read_bytes()
+    content = b""
+    for place, old in records:
+        content += struct.pack("<QIII", place, len(old), zlib.crc32(old, place & 0xFFFFFFFF), 0) + old
+    journal_of(path).write_bytes(content)
+    size = records[0][0]
+    if len(records) == 1 or size > len(before):
+        assert rows_in(path) == 3
+    else:
+        with pytest.raises(InputError, match="is damaged or cut short"):
+            rows_in(path)  # the journal says that the file had 50 bytes
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(("limit", "reason"), [("MOST_BYTES", "has .* bytes"), ("MOST_NOTES", "has more than 2 rec")])
+def test_a_journal_larger_than_any_is_refused(torn, monkeypatch: pytest.MonkeyPatch, limit: str, reason: str) -> None:
+    path, _, changed, kept = torn
+    monkeypatch.setattr(journal, limit, 2)
+    for read in (rows_in, lambda path: JournaledFile(path, new=False)):
+        with pytest.raises(InputError, match=rf"a\.h5\.journal: {reason}"):
+            read(path)
+    assert (path.read_bytes(), journal_of(path).read_bytes()) == (changed, kept)
+    monkeypatch.undo()
+    assert rows_in(path) == 5

@@ -528,3 +528,18 @@ def test_bad_input_leaves_no_file(problem, path):
         follow(problem, [{"P": 1e-5}, {"P": 1.0}], path, nodes=31, arc=(-3.0, -0.1))
     assert not store.load(path).complete
     assert len(list(path.parent.iterdir())) == 1
+
+
+@pytest.mark.parametrize("again", ["resume", "replace"])
+def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, again, problem):
+    """A stranger's folder may hold a link to a file of the user beside a result."""
+    precious = path.with_name("precious.txt")
+    precious.write_text("keep")
+    checkpoint_of(path).unlink()
+    checkpoint_of(path).symlink_to(precious)
+    with pytest.raises(InputError, match="must be an ordinary file; please remove it"):
+        if again == "resume":
+            fastpin.resume(path)
+        else:
+            fastpin.record(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
+    assert precious.read_text() == "keep"

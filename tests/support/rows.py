@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fastpin.storage.journal import consistent_view, open_h5
+from fastpin.storage.journal import open_h5
 
 SIZE, ARRAYS = 50, 3
 ROWS = np.random.default_rng(0).random((200, SIZE))
@@ -14,7 +14,7 @@ ROWS = np.random.default_rng(0).random((200, SIZE))
 
 def rows_in(path: Path) -> int:
     """Number of rows of a file, all of which must be right."""
-    with consistent_view(path), open_h5(path) as h5:
+    with open_h5(path) as h5:
         count = int(h5.attrs["rows"])
         for k in range(ARRAYS):
             assert np.array_equal(h5[f"array{k}"][()], ROWS[:count])
