@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.model.checks import choice, numbers
+from fastpin.model.checks import choice, instance, number, numbers
 from fastpin.model.joint import PinLoad
 from fastpin.model.materials import Material, Plane
 
@@ -32,8 +32,9 @@ def load_term(pin: Material, plane: Plane = "strain", pin_load: PinLoad = "body"
     Raises
     ------
     InputError
-        If the load or the plane is unknown.
+        If the load or the plane is unknown, or `pin` is no Material.
     """
+    instance("pin", pin, Material, "a Material")
     choice("pin_load", pin_load, ("body", "centre"))
     choice("plane", plane, ("strain", "stress"))
     return (0.5 if pin_load == "body" else 1.0) / (pin.kolosov(plane) + 1.0)
@@ -59,9 +60,9 @@ def peak_pressure(load_parameter: ArrayLike, friction: float = 0.0, term: float 
     InputError
         If an argument is out of range.
     """
-    mu = float(numbers("friction", friction, 0.0, MOST_FRICTION))
+    mu = number("friction", friction, 0.0, MOST_FRICTION)
     value = numbers("load_parameter", load_parameter, 0.0 if mu else LEAST)
-    q = float(numbers("term", term, 0.125, 0.5))
+    q = number("term", term, 0.125, 0.5)
     x = mu * (1.88 + 5.88 * q) * (1.0 + 3.17 * value)
     lost = (0.803 - 1.18 * q + 0.369 / (1.0 + 5.95 * value)) * x / np.sqrt(1.0 + x * x)
     square = 1.438 + 16.0 / math.pi * value - 1.657 * value / (1.0 + 10.64 * value) - lost

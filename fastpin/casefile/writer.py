@@ -16,6 +16,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
 from fastpin.model.case import Case
+from fastpin.model.checks import instance
 from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
@@ -35,8 +36,9 @@ def case_text(case: Case) -> str:
     Raises
     ------
     InputError
-        If the plate is a compliance, which has a file of its own.
+        If `case` is no Case, or the plate is a compliance, which has a file of its own.
     """
+    instance("case", case, Case, "a Case")
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
         ["[pin]", *_material(case.problem.pair.pin)],

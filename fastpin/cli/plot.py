@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
         if path is not None and path.resolve() == options.result.resolve():
             raise InputError(option, f"won't overwrite the result {path}")
     if film:
-        figures.check_animation("--output", figure)
+        figures.animation.check_animation("--output", figure)
     check_outputs(outputs, None, figures=() if film else ("--output",))
     title = "" if _is_case_file(options) else storage.stored_case(options.result).title
     try:
@@ -74,16 +74,16 @@ def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(options, name)) is not None}
 
 
-def _states(options: argparse.Namespace, usual: str | None = None, most: int = 0) -> figures.DrawnStates:
+def _states(options: argparse.Namespace, usual: str | None = None, most: int = 0) -> figures.states.DrawnStates:
     """The states of ``--states``, or the `usual` ones. Only these are read from the file.
 
     With `most` a figure draws up to so many states, in a row.
     """
     chosen = usual if options.states is None else options.states
     if most:
-        states = figures.stored_states(options.result, chosen, most, in_a_row=True)
+        states = figures.states.stored_states(options.result, chosen, most, in_a_row=True)
     else:
-        states = figures.stored_states(options.result, chosen)
+        states = figures.states.stored_states(options.result, chosen)
     if states.note:
         say(f"the figure shows {states.note}")
     return states
@@ -93,11 +93,13 @@ def _curves(curves: Sequence[Curve]) -> Callable[[Path], object]:
     return lambda path: write_csv(curves, path)
 
 
-def _drawn(draw: Callable[[figures.Look], figures.Sheet], title: str, **options: Any) -> Callable[[Path], object]:
+def _drawn(
+    draw: Callable[[figures.sheet.Look], figures.sheet.Sheet], title: str, **options: Any
+) -> Callable[[Path], object]:
     """A function that writes the figure of a sheet. The curves of the sheet are computed once, for figure and CSV."""
 
     def write(path: Path) -> None:
-        look = figures.Look(path, title, **options)
+        look = figures.sheet.Look(path, title, **options)
         look.drawn(lambda: draw(look))
 
     return write
@@ -105,26 +107,28 @@ def _drawn(draw: Callable[[figures.Look], figures.Sheet], title: str, **options:
 
 def _tractions(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
-    curves = figures.traction_curves(states)
+    curves = figures.tractions.traction_curves(states)
     sketch = options.sketch is not None
-    return _drawn(lambda look: figures.draw_tractions(states, look, sketch), title), _curves(curves)
+    return _drawn(lambda look: figures.tractions.draw_tractions(states, look, sketch), title), _curves(curves)
 
 
 def _polar(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
-    return _drawn(lambda look: figures.draw_polar(states, look), title), _curves(figures.traction_curves(states))
+    return _drawn(lambda look: figures.polar.draw_polar(states, look), title), _curves(
+        figures.tractions.traction_curves(states)
+    )
 
 
 def _stick_slip(options: argparse.Namespace, title: str) -> Made:
-    states = _states(options, most=figures.MOST_COLUMNS)
-    boxes = list(figures.zone_boxes(states))
+    states = _states(options, most=figures.stick_slip.MOST_COLUMNS)
+    boxes = list(figures.stick_slip.zone_boxes(states))
     columns: dict[str, Any] = {
         "load point": np.array([box.point for box in boxes]),
         "start [deg]": np.array([box.start for box in boxes]),
         "stop [deg]": np.array([box.stop for box in boxes]),
         "status": np.array([Status(box.status).name.lower().replace("_", " ") for box in boxes]),
     }
-    return _drawn(lambda look: figures.draw_stick_slip(states, look), title), _curves([Curve({}, columns)])
+    return _drawn(lambda look: figures.stick_slip.draw_stick_slip(states, look), title), _curves([Curve({}, columns)])
 
 
 def _sketch(options: argparse.Namespace, title: str) -> Made:
@@ -141,8 +145,8 @@ def _sketch(options: argparse.Namespace, title: str) -> Made:
 
 def _animation(options: argparse.Namespace, title: str) -> Made:
     usual = "cycle" if storage.load(options.result, states=[]).cycles else None
-    states, given = _states(options, usual, most=figures.MOST_FRAMES), _given(options, "rate")
-    figures.check_motion(states, given.get("rate", figures.RATE))
+    states, given = _states(options, usual, most=figures.animation.MOST_FRAMES), _given(options, "rate")
+    figures.animation.check_motion(states, given.get("rate", figures.animation.RATE))
 
     def write(path: Path) -> None:
         with Bar(len(states), "state {n:.0f} of {total:.0f}") as progress_bar:
@@ -154,19 +158,21 @@ def _animation(options: argparse.Namespace, title: str) -> Made:
 def _hoop(options: argparse.Namespace, title: str) -> Made:
     states, given = _states(options), _given(options, "body")
     curves = report.stress.hoop_curves(states, **given)
-    return _drawn(lambda look: figures.draw_hoop(states, curves, look), title), _curves(curves)
+    return _drawn(lambda look: figures.stress.draw_hoop(states, curves, look), title), _curves(curves)
 
 
 def _profile(options: argparse.Namespace, title: str) -> Made:
     states, given = _states(options), _given(options, "body", "angle", "depth")
     curves = report.stress.depth_curves(states, **given)
-    return _drawn(lambda look: figures.draw_profile(states, curves, look), title), _curves(curves)
+    return _drawn(lambda look: figures.stress.draw_profile(states, curves, look), title), _curves(curves)
 
 
 def _map(options: argparse.Namespace, title: str) -> Made:
     state, given = _states(options, "last")[-1], _given(options, "component", "body", "extent")
     curves, component = report.stress.field_curves(state, **given), given.get("component", "von_mises")
-    draw = _drawn(lambda look: figures.draw_field(state, curves, component, look), title, width=figures.FIELD_WIDTH)
+    draw = _drawn(
+        lambda look: figures.stress.draw_field(state, curves, component, look), title, width=figures.stress.FIELD_WIDTH
+    )
     return draw, _curves(curves)
 
 
@@ -203,7 +209,7 @@ def _slip(options: argparse.Namespace, title: str) -> Made:
 
 def _loops(options: argparse.Namespace, title: str) -> Made:
     cycle = _result(options).cycle()
-    figures.check_loops(cycle)
+    figures.load_cycle.check_loops(cycle)
     return lambda path: figures.plot_loops(cycle, path, title), _curves(report.cycle.loop_curves(cycle))
 
 

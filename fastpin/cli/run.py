@@ -305,9 +305,9 @@ def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: 
     """Draw the tractions. States that were left out of `result` are read from its file."""
     try:
         if part is not None:
-            drawn = figures.stored_states(options.output, options.states)
+            drawn = figures.states.stored_states(options.output, options.states)
         else:
-            drawn = figures.drawn_states(result, options.states)
+            drawn = figures.states.drawn_states(result, options.states)
     except InputError as error:
         raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
     figures.plot_tractions(drawn, path, title=case.title)

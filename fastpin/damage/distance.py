@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.damage.hot_spots import Criterion, Fatigue, checked_depths, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.errors import InputError
 from fastpin.model.checks import choice, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import BODIES, Body, Points
@@ -50,7 +51,11 @@ def critical_distance(threshold_range: float, limit_range: float) -> float:
     InputError
         If a range is not positive and finite.
     """
-    return (positive("threshold_range", threshold_range) / positive("limit_range", limit_range)) ** 2 / math.pi
+    ratio = positive("threshold_range", threshold_range) / positive("limit_range", limit_range)
+    length = ratio * ratio / math.pi
+    if not 0.0 < length < math.inf:
+        raise InputError("threshold_range", f"is {ratio:g} times limit_range: the distance can't be computed")
+    return length
 
 
 def fatigue_at_distance(

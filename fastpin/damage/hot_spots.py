@@ -14,7 +14,7 @@ from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.kernels.threads import in_threads
 from fastpin.model.angles import near_bottom
-from fastpin.model.checks import choice, instance, items, whole_number
+from fastpin.model.checks import choice, instance, instances, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points
@@ -187,11 +187,14 @@ def stress_history(states: Sequence[State], points: Points, body: Body = "plate"
         See :meth:`fastpin.State.stress`.
     """
 
+    every = instances("states", states, State, "a sequence of fastpin.State")
+    instance("points", points, Points, "fastpin.Points")
+
     def components(state: State) -> np.ndarray:
         stress = state.stress(points, body)
         return np.stack([stress.sxx, stress.syy, stress.axial, stress.sxy], axis=-1).reshape(-1, 4)
 
-    return np.array(in_threads(components, states))
+    return np.array(in_threads(components, every))
 
 
 def edge_angles(states: Sequence[State]) -> np.ndarray:
@@ -219,6 +222,7 @@ def cycle_states(states: Sequence[State], cycle: Cycle) -> list[State]:
     InputError
         If the states at some corners of the cycle were not kept, or if the cycle begins without load.
     """
+    states = instances("states", states, State, "a sequence of fastpin.State")
     first, last = span_of(instance("cycle", cycle, Cycle, "a cycle of a result"))
     if first < 1:
         raise InputError("cycle", f"the cycle to corner {last} begins without load: choose a later one")
@@ -236,10 +240,7 @@ def cycle_stops(states: Sequence[State]) -> list[State]:
     InputError
         If they are no states of one problem, or less than two.
     """
-    stops = [
-        instance("states", state, State, "a sequence of fastpin.State")
-        for state in items("states", states, "a sequence of fastpin.State")
-    ]
+    stops = instances("states", states, State, "a sequence of fastpin.State")
     if len(stops) < 2:
         raise InputError("states", f"must be the stops of a cycle, at least two, not {len(stops)}")
     if any(state.problem != stops[0].problem for state in stops):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -40,8 +42,8 @@ def smith_watson_topper_life(
         If a parameter is negative, a coefficient not positive or an exponent not negative.
     """
     strength = positive("fatigue_strength", fatigue_strength)
-    elastic = strength**2 / positive("E", E)
-    plastic = strength * positive("fatigue_ductility", fatigue_ductility)
+    elastic = _coefficient("fatigue_strength", strength / positive("E", E) * strength)
+    plastic = _coefficient("fatigue_ductility", strength * positive("fatigue_ductility", fatigue_ductility))
     b, c = negative("strength_exponent", strength_exponent), negative("ductility_exponent", ductility_exponent)
     return _cycles(parameter, (elastic, plastic), (2.0 * b, b + c))
 
@@ -75,7 +77,7 @@ def fatemi_socie_life(
         As :func:`smith_watson_topper_life`.
     """
     strength = positive("shear_fatigue_strength", shear_fatigue_strength)
-    elastic = strength / positive("shear_modulus", shear_modulus)
+    elastic = _coefficient("shear_fatigue_strength", strength / positive("shear_modulus", shear_modulus))
     plastic = positive("shear_fatigue_ductility", shear_fatigue_ductility)
     b = negative("shear_strength_exponent", shear_strength_exponent)
     return _cycles(parameter, (elastic, plastic), (b, negative("shear_ductility_exponent", shear_ductility_exponent)))
@@ -107,6 +109,13 @@ def miner(counts: ArrayLike, lives: ArrayLike) -> np.ndarray:
     if not np.all(cycles > 0.0):
         raise InputError("lives", "must be above 0")
     return np.tensordot(number_of, 1.0 / cycles, axes=1)
+
+
+def _coefficient(field: str, value: float) -> float:
+    """Check a coefficient of a life that was computed from constants, and return it."""
+    if not 0.0 < value < math.inf:
+        raise InputError(field, f"must give a coefficient that is a positive number, not {value:g}")
+    return value
 
 
 def _cycles(parameter: ArrayLike, coefficients: tuple[float, float], exponents: tuple[float, float]) -> np.ndarray:

@@ -1,3 +1,2 @@
 from .plates import PlateResult as PlateResult
 from .plates import plate_compliance as plate_compliance
-from .system import System as System

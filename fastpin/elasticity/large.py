@@ -12,7 +12,7 @@ from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import Operator, uniform_part
 from fastpin.elasticity.system import System
 from fastpin.kernels import fourier, influence
-from fastpin.model.grid import Grid
+from fastpin.model.grid import Grid, arc_of
 from fastpin.model.problem import Problem
 
 COLUMNS = 64
@@ -68,7 +68,7 @@ class LargeSystem(System):
 
     def window(self, nodes: np.ndarray) -> System:
         """The system of neighbouring `nodes`, shape (k,), in their order round the hole. Its end nodes stay open."""
-        return System.build(self.problem, self.grid.part(nodes), self.scales.force)
+        return System.build(self.problem, arc_of(self.grid, nodes), self.scales.force)
 
     @staticmethod
     def _operator(problem: Problem, grid: Grid, bodies: BodyTerms | None, drive: Drive | None) -> Operator:

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.lug import Part
+from fastpin.model.lug import Part, distances
 
 MOST_NODES = 4000
 """Most nodes of all edges. The two matrices then take one gigabyte."""
@@ -195,7 +195,7 @@ def _cuts(parts: list[Part], part: Part, halvings: tuple[int, int], most_turn: f
             met = (starts and (low == 0.0 or halvings[0] == 0)) or (ends and (high == 1.0 or halvings[1] == 0))
             if too_long or met:
                 continue
-            too_long = (high - low) * part.length > 1.01 * float(other.distance(points).min())
+            too_long = (high - low) * part.length > 1.01 * float(distances(other, points).min())
         if too_long:
             middle = 0.5 * (low + high)
             waiting += [(low, middle, left - 1, 0), (middle, high, 0, right - 1)]

@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from fastpin.elasticity.panels import Edges, Fineness, Loop, matrices
 from fastpin.errors import InputError
-from fastpin.model.checks import whole_number
+from fastpin.model.checks import check_callable, instance, string, whole_number
 from fastpin.model.compliance import LEAST_ORDER, MOST_ORDER, Compliance
 from fastpin.model.lug import Hole, Lug, Part
 from fastpin.version import __version__
@@ -124,8 +124,12 @@ def plate_compliance(
     Raises
     ------
     InputError
-        If `order` is out of range, too few harmonics are kept, or the outline needs too many nodes.
+        If an argument is of another class, `order` is out of range, too few harmonics are kept, or the outline needs
+        too many nodes.
     """
+    instance("lug", lug, Lug, "a Lug")
+    check_callable("progress", progress)
+    string("made_by", made_by)
     if order is not None:
         order = whole_number("harmonics", order, LEAST_ORDER, MOST_ORDER)
 

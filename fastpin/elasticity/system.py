@@ -22,7 +22,7 @@ import numpy as np
 from fastpin.elasticity.bodies import BodyTerms, body_terms
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
 from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
-from fastpin.model.grid import Grid
+from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
@@ -171,7 +171,7 @@ class System:
         assert self.drive is None
         rows = np.r_[nodes, self.grid.size + nodes]
         return replace(
-            self, grid=self.grid.part(nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
+            self, grid=arc_of(self.grid, nodes), operator=DenseOperator(self.operator.entries(rows, rows)),
             motion=self.motion[rows], loads=self.loads[rows], equilibrium=self.equilibrium[:, rows],
             weights=self.weights[nodes],
         )  # fmt: skip

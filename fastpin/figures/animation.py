@@ -23,7 +23,7 @@ from fastpin.figures.stick_slip import LOOKS, zone_look, zone_patch
 from fastpin.figures.style import COLOURS, STYLE, line, new_figure
 from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
 from fastpin.kernels.status import STICK
-from fastpin.model.checks import file_path, number
+from fastpin.model.checks import check_callable, file_path, number
 from fastpin.model.units import acting_loads, scaled, units
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
@@ -85,6 +85,7 @@ def animate(
     """
     check_animation("path", file_path("path", path))
     look = Look(title=title, dpi=dpi)
+    check_callable("progress", progress)
     drawn = drawn_states(result, _usual(result, states), MOST_FRAMES, in_a_row=True)
     check_motion(drawn, rate)
     check_writable(Path(path))

@@ -1,5 +1,3 @@
-from .contact import LiveContact as LiveContact
 from .recording import record_page as record_page
 from .recording import recorded_places as recorded_places
-from .server import Server as Server
 from .server import serve as serve

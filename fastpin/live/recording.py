@@ -11,13 +11,15 @@ from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_PICTURES
 from fastpin.model.case import Case
+from fastpin.model.checks import instance, instances, string, whole_number
+from fastpin.model.history import MAX_CORNERS
 from fastpin.states.state import State
 from fastpin.version import __version__
 
 
 def recorded_places(count: int) -> list[int]:
     """The places of the states that a recording shows, out of `count`: an even choice with the first and the last."""
-    chosen = min(count, MOST_PICTURES)
+    chosen = min(whole_number("count", count, 0, MAX_CORNERS), MOST_PICTURES)
     return [round(k * (count - 1) / max(chosen - 1, 1)) for k in range(chosen)]
 
 
@@ -38,9 +40,12 @@ def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
     Raises
     ------
     InputError
-        If there is no state.
+        If there is no state, or an argument is of another class.
     """
-    if not len(states):
+    instance("case", case, Case, "a Case")
+    string("sentence", sentence)
+    states = instances("states", states, State, "a sequence of fastpin.State")
+    if not states:
         raise InputError("states", "there is no state to record")
     chosen = [states[place] for place in recorded_places(len(states))]
     recording = {

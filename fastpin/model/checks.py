@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from fastpin.errors import InputError, printable
+from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.synonyms import closest
 
 if TYPE_CHECKING:
@@ -48,6 +48,13 @@ def number(field: str, value: object, least: float = -math.inf, most: float = ma
     if not least <= converted <= most:
         raise InputError(field, f"must lie between {least:g} and {most:g}, not {converted:g}")
     return converted
+
+
+def point(field: str, value: object) -> complex:
+    """Check a point of the plane with finite coordinates, and return it as a complex number."""
+    if isinstance(value, (complex, np.complexfloating)):
+        return complex(number(field, float(value.real)), number(field, float(value.imag)))
+    return complex(number(field, value))
 
 
 def positive(field: str, value: object) -> float:
@@ -130,7 +137,7 @@ def file_path(field: str, value: object) -> Path:
     try:
         name = os.fspath(value)  # type: ignore[call-overload]
         encoded = os.fsencode(name)
-    except (TypeError, UnicodeEncodeError):
+    except Exception:  # Any object can be given, and its methods may fail in any way.
         name, encoded = None, b""
     if not isinstance(name, str) or not name or "\0" in name:
         raise InputError(field, f"must be the name of a file, not {as_toml(value)}")
@@ -167,8 +174,23 @@ def items(field: str, values: Iterable[T], name: str) -> list[T]:
     """Check that a value can be iterated, and return its items. `name` says in the message what it must be."""
     try:
         return list(values)
-    except TypeError:
-        raise InputError(field, f"must be {name}, not {as_toml(values)}") from None
+    except FastpinError:
+        raise
+    except Exception as error:  # Any object can be given, and its iteration may fail in any way.
+        raise InputError(field, f"must be {name}, not {as_toml(values)}") from error
+
+
+def instances(field: str, values: Iterable[T], kind: type[T], name: str) -> list[T]:
+    """Check the class of all items of a value, and return them. `name` says in the message what the value must be."""
+    return [instance(field, value, kind, name) for value in items(field, values, name)]
+
+
+def places_of(field: str, value: slice, count: int) -> range:
+    """Check a slice, and return the places that it takes of `count` items."""
+    try:
+        return range(*value.indices(count))
+    except Exception:  # Any object can be given, and its conversion may fail in any way.
+        raise InputError(field, f"must be a slice of whole numbers with a step other than 0, not {value}") from None
 
 
 def numbers(
@@ -194,6 +216,15 @@ def numbers(
         bounds = [f"{below} {low:g}"] * (low > -math.inf) + [f"{beyond} {high:g}"] * (high < math.inf)
         raise InputError(field, f"must be {' and '.join(bounds)}, not {first:g}")
     return array
+
+
+def in_one_shape(field: str, one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Check that the shapes of two arrays fit, and return copies in their common shape."""
+    try:
+        first, second = np.broadcast_arrays(one, other)
+    except ValueError:
+        raise InputError(field, f"has the shape {one.shape}, which does not fit the other's {other.shape}") from None
+    return first.copy(), second.copy()
 
 
 def number_array(field: str, values: ArrayLike) -> np.ndarray:
@@ -234,8 +265,9 @@ def _as_toml(value: object, depth: int) -> str:
 def _as_float(value: Any) -> float | None:
     """A number as a float, infinite if it is too large; None for anything else."""
     no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping, np.ma.MaskedArray)
-    kind = getattr(getattr(value, "dtype", None), "kind", "f")
-    if isinstance(value, no_number) or kind not in _NUMBER_KINDS or bool(getattr(value, "ndim", False)):
+    if isinstance(value, no_number):
+        return None
+    if isinstance(value, (np.ndarray, np.generic)) and (value.dtype.kind not in _NUMBER_KINDS or value.ndim):
         return None
     try:
         return float(value)

@@ -190,6 +190,8 @@ class Compliance:
         InputError
             If an entry is missing or wrong, or the version is unknown.
         """
+        if not isinstance(content, Mapping):
+            raise InputError("content", f"must be a table, not {as_toml(content)}")
         if content.get("version") != VERSION:
             raise InputError("version", f"must be {VERSION}, not {as_toml(content.get('version'))}")
         missing = [name for name in ("nu", "plane", "hole_radius", "matrix") if name not in content]
@@ -220,9 +222,10 @@ class Compliance:
         return json.dumps(self.document(), indent=1) + "\n"
 
     def columns_of(self, name: str) -> np.ndarray:
-        """The column of a load; zeros if the plate has no such load."""
+        """The column of a load; zeros if the plate has no such load. Another name raises :class:`InputError`."""
+        choice("name", name, COLUMNS)
         return self.columns.get(name, np.zeros(len(self.matrix)))
 
     def scaled_to(self, radius: float) -> bool:
         """Whether the file's hole has this radius, m, up to rounding."""
-        return math.isclose(radius, self.hole_radius, rel_tol=1e-9)
+        return math.isclose(positive("radius", radius), self.hole_radius, rel_tol=1e-9)

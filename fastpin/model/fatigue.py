@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import negative, positive, string
+from fastpin.model.checks import choice, items, negative, positive, string
 from fastpin.model.synonyms import explains_keywords
 
 _EXPONENTS = ("strength_exponent", "ductility_exponent", "shear_strength_exponent", "shear_ductility_exponent")
@@ -82,7 +82,9 @@ class FatigueConstants:
     def given(self) -> dict[str, Any]:
         """The constants that are given, by name, and the source unless it is empty."""
         values = ((field.name, getattr(self, field.name)) for field in fields(self))
-        return {name: value for name, value in values if value is not None and value != ""}
+        return {
+            name: value for name, value in values if value is not None and not (isinstance(value, str) and value == "")
+        }
 
     def required(self, names: Sequence[str], purpose: str, body: str) -> tuple[float, ...]:
         """The constants of these names.
@@ -92,6 +94,8 @@ class FatigueConstants:
         InputError
             If some of them are missing. The message names the constants, the `purpose` and the `body`.
         """
+        known = [field.name for field in fields(self)]
+        names = [choice("names", name, known) for name in items("names", names, "a list of constants")]
         missing = [name for name in names if getattr(self, name) is None]
         if missing:
             raise InputError("fatigue", f"{purpose} needs {', '.join(missing)} of the {body}'s material")

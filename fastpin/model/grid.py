@@ -116,6 +116,7 @@ class Grid:
 
     def with_nodes(self, nodes: int) -> Grid:
         """A grid of `nodes` nodes on the same arc or circle. Its spacings are in proportion to the present ones."""
+        nodes = whole_number("nodes", nodes, LEAST_NODES, MAX_NODES)
         if not self.uniform:
             ends = np.r_[self.theta, self.theta[0] + 2.0 * math.pi] if self.closed else self.theta
             places = np.linspace(0.0, ends.size - 1.0, nodes + 1 if self.closed else nodes)
@@ -124,11 +125,6 @@ class Grid:
         if self.closed:
             return Grid.circle(nodes, float(self.theta[0]))
         return Grid.arc(float(self.theta[0]), float(self.theta[-1]), nodes)
-
-    def part(self, nodes: np.ndarray) -> Grid:
-        """The arc of the neighbouring `nodes`, indices of shape (k,), in their order round the hole."""
-        turns = np.r_[0, np.cumsum(np.diff(nodes) < 0)]
-        return Grid(self.theta[nodes] + 2.0 * math.pi * turns)
 
     @property
     def size(self) -> int:
@@ -172,6 +168,12 @@ class Grid:
         return total.real, total.imag
 
 
+def arc_of(grid: Grid, nodes: np.ndarray) -> Grid:
+    """The arc of the neighbouring `nodes` of a grid, indices of shape (k,), in their order round the hole."""
+    turns = np.r_[0, np.cumsum(np.diff(nodes) < 0)]
+    return Grid(grid.theta[nodes] + 2.0 * math.pi * turns)
+
+
 def graded_size(places: Sequence[tuple[float, float]], across: float) -> int:
     """Number of nodes of :meth:`Grid.graded` with `across` nodes on the width of each place."""
     return math.ceil(across * float(_graded_counts(places)[1][-1]))
@@ -179,7 +181,7 @@ def graded_size(places: Sequence[tuple[float, float]], across: float) -> int:
 
 def _graded_counts(places: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
     """Angles round the hole, and the number of nodes below each of them, with one node on the width of each place."""
-    pairs = numbers("places", np.array(places, dtype=float))
+    pairs = numbers("places", places)
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or not pairs.size or pairs[:, 1].min() <= 0.0:
         raise InputError("places", "must be angles with positive widths, rad: (angle, width), ...")
     angles, widths = pairs[:, 0], np.minimum(pairs[:, 1], MOST_WIDTH)

@@ -21,11 +21,12 @@ from fastpin.model.bodies import Ring
 from fastpin.model.checks import (
     as_toml,
     file_path,
-    instance,
+    instances,
     is_whole,
     items,
     number,
     number_array,
+    places_of,
     true_or_false,
     whole_number,
     why_unreadable,
@@ -184,9 +185,8 @@ class LoadHistory:
     @classmethod
     def of_blocks(cls, blocks: Iterable[Block]) -> LoadHistory:
         """A history of given blocks. No corners at all raise :class:`InputError`."""
-        given = items("blocks", blocks, "a sequence of blocks")
         history = cls.__new__(cls)
-        history._set(instance("blocks", block, Block, "a sequence of blocks") for block in given)
+        history._set(instances("blocks", blocks, Block, "a sequence of blocks"))
         return history
 
     @classmethod
@@ -377,9 +377,10 @@ class LoadHistory:
             raise InputError(
                 "history", "parts are slices, such as history[2:5]; values() has the loads at every corner"
             )
-        start, stop, step = item.indices(len(self))
-        if step != 1:
+        places = places_of("history", item, len(self))
+        if places.step != 1:
             raise InputError("history", "parts are slices without a step")
+        start, stop = places.start, places.stop
         parts = []
         for block, begin in zip(self._blocks, self._begins, strict=False):
             first, last = max(start - begin, 0), min(stop - begin, block.corners)
@@ -405,67 +406,13 @@ class LoadHistory:
         """
         if not is_whole(index) or not 0 <= index < len(self):
             whole_number("index", index, 0, len(self) - 1)
-        block_index, place = self._locate(index)
+        block_index, place = _locate(self, index)
         block = self._blocks[block_index]
         row = place % len(block.given)
         cycles = [(block_index, inner)] if (inner := int(block.ends[row])) else []
         if block.cycle and row == len(block.given) - 1:
             cycles.append((block_index, 0))
         return block.given[row], cycles
-
-    def cycle_length(self, cycle: CycleKey) -> int:
-        """Number of corners of a cycle."""
-        block = self._blocks[cycle[0]]
-        return block.lengths[cycle[1] - 1] if cycle[1] else block.size or len(block.given)
-
-    def cycles_after(self, index: int) -> list[CycleKey]:
-        """The cycles that begin with the step after corner `index`; -1 stands for the first step."""
-        if index + 1 >= len(self):
-            return []
-        block_index, place = self._locate(index + 1)
-        block = self._blocks[block_index]
-        row = place % len(block.given)
-        cycles = [(block_index, 0)] if block.cycle and row == 0 and block.size in (0, len(block.given)) else []
-        for inner, length in enumerate(block.lengths, start=1):
-            if row + length <= len(block.given) and block.ends[row + length - 1] == inner:
-                cycles.append((block_index, inner))
-        return cycles
-
-    def same_ahead(self, index: int, period: int) -> int:
-        """Number of corners from `index` on that repeat the corners `period` before them.
-
-        The given loads must be equal, and the same cycles must begin and end. The number is a lower bound: only
-        corners of one block are compared. Unless `period` is a multiple of the block's table, only corners of the same
-        time through are compared.
-        """
-        if index >= len(self):
-            return 0
-        block_index, place = self._locate(index)
-        block = self._blocks[block_index]
-        size = len(block.given)
-        if place < period:
-            return 0
-        if period % size == 0:
-            return block.corners - place
-        row = place % size
-        stop = size - 1 if block.cycle else size  # there a cycle ends that did not end one period before
-        length = 64
-        while period <= row < stop:
-            last = min(row + length, stop)
-            given, before = block.given[row:last], block.given[row - period : last - period]
-            same = np.all((given == before) | (np.isnan(given) & np.isnan(before)), axis=1)
-            for marks in (block.ends, block.begins):
-                same &= marks[row:last] == marks[row - period : last - period]
-            if not same.all():
-                row += int(np.argmin(same))
-                break
-            row, length = last, 8 * length
-        return row - place % size
-
-    def _locate(self, index: int) -> tuple[int, int]:
-        """The block in which a corner lies, and the corner's place in it, both counted from 0."""
-        block_index = bisect.bisect_right(self._begins, index) - 1
-        return block_index, index - self._begins[block_index]
 
     def values(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
         """All loads at all corners, shape (corners, loads), in the order of :data:`fastpin.model.LOADS`.
@@ -478,6 +425,65 @@ class LoadHistory:
     def distinct(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
         """All loads that ever act, shape (corners, loads): as :meth:`values`, with every block at most twice."""
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
+
+
+def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:
+    """Number of corners of a cycle."""
+    block = history.blocks[cycle[0]]
+    return block.lengths[cycle[1] - 1] if cycle[1] else block.size or len(block.given)
+
+
+def cycles_after(history: LoadHistory, index: int) -> list[CycleKey]:
+    """The cycles that begin with the step after corner `index`; -1 stands for the first step."""
+    if index + 1 >= len(history):
+        return []
+    block_index, place = _locate(history, index + 1)
+    block = history.blocks[block_index]
+    row = place % len(block.given)
+    cycles = [(block_index, 0)] if block.cycle and row == 0 and block.size in (0, len(block.given)) else []
+    for inner, length in enumerate(block.lengths, start=1):
+        if row + length <= len(block.given) and block.ends[row + length - 1] == inner:
+            cycles.append((block_index, inner))
+    return cycles
+
+
+def same_ahead(history: LoadHistory, index: int, period: int) -> int:
+    """Number of corners from `index` on that repeat the corners `period` before them.
+
+    The given loads must be equal, and the same cycles must begin and end. The number is a lower bound: only
+    corners of one block are compared. Unless `period` is a multiple of the block's table, only corners of the same
+    time through are compared.
+    """
+    if index >= len(history):
+        return 0
+    block_index, place = _locate(history, index)
+    block = history.blocks[block_index]
+    size = len(block.given)
+    if place < period:
+        return 0
+    if period % size == 0:
+        return block.corners - place
+    row = place % size
+    stop = size - 1 if block.cycle else size  # there a cycle ends that did not end one period before
+    length = 64
+    while period <= row < stop:
+        last = min(row + length, stop)
+        given, before = block.given[row:last], block.given[row - period : last - period]
+        same = np.all((given == before) | (np.isnan(given) & np.isnan(before)), axis=1)
+        for marks in (block.ends, block.begins):
+            same &= marks[row:last] == marks[row - period : last - period]
+        if not same.all():
+            row += int(np.argmin(same))
+            break
+        row, length = last, 8 * length
+    return row - place % size
+
+
+def _locate(history: LoadHistory, index: int) -> tuple[int, int]:
+    """The block in which a corner lies, and the corner's place in it, both counted from 0."""
+    begins = history._begins
+    block_index = bisect.bisect_right(begins, index) - 1
+    return block_index, index - begins[block_index]
 
 
 def check_loads(problem: Problem, history: LoadHistory) -> None:

@@ -14,7 +14,17 @@ from functools import cached_property
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, choice, number, positive, string
+from fastpin.model.checks import (
+    as_toml,
+    choice,
+    instances,
+    items,
+    number,
+    numbers,
+    point,
+    positive,
+    string,
+)
 from fastpin.model.compliance import COLUMNS
 from fastpin.model.materials import PLANES, Material, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
@@ -55,12 +65,22 @@ class Part:
         Ends, m.
     through : complex, optional
         A third point of a circular part, between the ends. Without it the part is straight.
+
+    Raises
+    ------
+    InputError
+        If `name` is no text, or a coordinate no finite number.
     """
 
     name: str
     start: complex
     end: complex
     through: complex | None = None
+
+    def __post_init__(self) -> None:
+        string("name", self.name)
+        for name in ("start", "end") if self.through is None else ("start", "end", "through"):
+            object.__setattr__(self, name, point(name, getattr(self, name)))
 
     @cached_property
     def circle(self) -> tuple[complex, float, float, float] | None:
@@ -90,32 +110,24 @@ class Part:
         return self.circle[1] * abs(self.circle[3])
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Points at shares (0 to 1) of the length, complex, m."""
+        """Points at shares (0 to 1) of the length, complex, m. Other shares raise :class:`InputError`."""
+        share = numbers("share", share, 0.0, 1.0)
         if self.circle is None:
             return self.start + (self.end - self.start) * share
         centre, radius, first, sweep = self.circle
         return centre + radius * np.exp(1j * (first + sweep * share))
 
     def direction(self, share: np.ndarray) -> np.ndarray:
-        """Unit tangents at shares of the length, from start to end."""
+        """Unit tangents at shares (0 to 1) of the length, from start to end. Other shares raise :class:`InputError`."""
+        share = numbers("share", share, 0.0, 1.0)
         if self.circle is None:
             return np.full(np.shape(share), (self.end - self.start) / abs(self.end - self.start))
         _, _, first, sweep = self.circle
         return 1j * math.copysign(1.0, sweep) * np.exp(1j * (first + sweep * share))
 
-    def distance(self, points: np.ndarray) -> np.ndarray:
-        """Distances of points from this part, m."""
-        ends = np.minimum(np.abs(points - self.start), np.abs(points - self.end))
-        if self.circle is None:
-            along = (self.end - self.start) / abs(self.end - self.start)
-            place = np.conj(along) * (points - self.start)
-            return np.where((place.real > 0.0) & (place.real < self.length), np.abs(place.imag), ends)
-        centre, radius, first, sweep = self.circle
-        turned = np.angle((points - centre) * np.exp(-1j * (first + 0.5 * sweep)))
-        return np.where(np.abs(turned) < 0.5 * abs(sweep), np.abs(np.abs(points - centre) - radius), ends)
-
     def scaled(self, factor: float) -> Part:
-        """The same part with all lengths times `factor`."""
+        """The same part with all lengths times `factor`. One that is not positive raises :class:`InputError`."""
+        factor = positive("factor", factor)
         through = None if self.through is None else self.through * factor
         return Part(self.name, self.start * factor, self.end * factor, through)
 
@@ -126,11 +138,20 @@ class Part:
 
 @dataclass(frozen=True)
 class Hole:
-    """A further hole: name, centre (complex, m) and radius (m)."""
+    """A further hole: name, centre (complex, m) and radius (m).
+
+    A name that is no text, a coordinate that is no finite number, or a radius that is not positive raise
+    :class:`InputError`.
+    """
 
     name: str
     centre: complex
     radius: float
+
+    def __post_init__(self) -> None:
+        string("name", self.name)
+        object.__setattr__(self, "centre", point("centre", self.centre))
+        object.__setattr__(self, "radius", positive("radius", self.radius))
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -151,6 +172,11 @@ class PartLoad:
         Names of the parts.
     x, y, normal : float
         Components of the traction along x, y and the outward normal, Pa per Pa of the load.
+
+    Raises
+    ------
+    InputError
+        If the load is unknown, a name is no text, or a component no finite number.
     """
 
     name: str
@@ -158,6 +184,13 @@ class PartLoad:
     x: float = 0.0
     y: float = 0.0
     normal: float = 0.0
+
+    def __post_init__(self) -> None:
+        choice("load", self.name, COLUMNS)
+        names = tuple(string("parts", name) for name in items("parts", self.parts, "a list of names"))
+        object.__setattr__(self, "parts", names)
+        for direction in ("x", "y", "normal"):
+            object.__setattr__(self, direction, number(direction, getattr(self, direction)))
 
 
 @dataclass(frozen=True)
@@ -198,6 +231,11 @@ class Lug:
         object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
         choice("plane", self.plane, PLANES)
         object.__setattr__(self, "hole_radius", number("hole_radius", self.hole_radius, LEAST_RADIUS, MOST_RADIUS))
+        object.__setattr__(self, "outline", tuple(instances("outline", self.outline, Part, "a list of parts")))
+        object.__setattr__(self, "loads", tuple(instances("loads", self.loads, PartLoad, "a list of loads")))
+        object.__setattr__(self, "holes", tuple(instances("holes", self.holes, Hole, "a list of holes")))
+        if not isinstance(self.supports, Mapping):
+            raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
         _check_outline(self.outline, self.hole_radius)
         if _area(self.outline) < 0.0:
             object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))
@@ -213,12 +251,9 @@ class Lug:
             check_name("support", name, names)
             choice("hold", hold, HOLD)
         for load in self.loads:
-            choice("load", load.name, COLUMNS)
             for name in load.parts:
                 check_name("load", name, names)
             check_not_held(load, self.supports)
-            for direction in ("x", "y", "normal"):
-                number(direction, getattr(load, direction))
 
     @property
     def names(self) -> list[str]:
@@ -313,10 +348,9 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
     if not 2 <= len(outline) <= MOST_PARTS:
         raise InputError("outline", f"must have 2 to {MOST_PARTS} parts, not {len(outline)}")
     for part in outline:
-        string("name", part.name)
         points = [part.start, part.end] + ([part.through] if part.through is not None else [])
-        for point in points:
-            if not max(abs(point.real), abs(point.imag)) <= MOST_EXTENT * radius:
+        for corner in points:
+            if not max(abs(corner.real), abs(corner.imag)) <= MOST_EXTENT * radius:
                 raise InputError(
                     "outline", f"part {as_toml(part.name)} has a point more than {MOST_EXTENT:g} hole radii away"
                 )
@@ -333,6 +367,18 @@ def _check_outline(outline: Sequence[Part], radius: float) -> None:
     crossing = _crossing(outline)
     if crossing is not None:
         raise InputError("outline", f"crosses itself near {_point(crossing)}")
+
+
+def distances(part: Part, points: np.ndarray) -> np.ndarray:
+    """Distances of points from a part, m."""
+    ends = np.minimum(np.abs(points - part.start), np.abs(points - part.end))
+    if part.circle is None:
+        along = (part.end - part.start) / abs(part.end - part.start)
+        place = np.conj(along) * (points - part.start)
+        return np.where((place.real > 0.0) & (place.real < part.length), np.abs(place.imag), ends)
+    centre, radius, first, sweep = part.circle
+    turned = np.angle((points - centre) * np.exp(-1j * (first + 0.5 * sweep)))
+    return np.where(np.abs(turned) < 0.5 * abs(sweep), np.abs(np.abs(points - centre) - radius), ends)
 
 
 def _point(z: complex) -> str:
@@ -384,8 +430,8 @@ def _crossing(outline: Sequence[Part]) -> complex | None:
     return None
 
 
-def _is_inside(outline: Sequence[Part], point: complex) -> bool:
-    points = _polygon(outline) - point
+def _is_inside(outline: Sequence[Part], place: complex) -> bool:
+    points = _polygon(outline) - place
     turn = float(np.sum(np.angle(np.roll(points, -1) * np.conj(points))))
     return abs(turn) > math.pi
 
@@ -397,8 +443,8 @@ def _check_holes(lug: Lug) -> None:
     least = LEAST_LIGAMENT * lug.hole_radius
     circles = [("outline", "the pin's hole", 0j, lug.hole_radius)]
     for hole in lug.holes:
-        words = f"the hole {as_toml(string('name', hole.name))}"
-        if positive("radius", hole.radius) < LEAST_HOLE * lug.hole_radius:
+        words = f"the hole {as_toml(hole.name)}"
+        if hole.radius < LEAST_HOLE * lug.hole_radius:
             raise InputError("holes", f"{words} must have a radius of at least {LEAST_HOLE:g} of the pin's hole")
         circles.append(("holes", words, hole.centre, hole.radius))
     for place, (at_fault, words, centre, radius) in enumerate(circles):
@@ -407,7 +453,7 @@ def _check_holes(lug: Lug) -> None:
         ):
             raise InputError(at_fault, f"{words} does not lie inside the outline")
         for part in lug.outline:
-            if float(part.distance(np.array([centre]))[0]) < radius + least:
+            if float(distances(part, np.array([centre]))[0]) < radius + least:
                 raise InputError(
                     at_fault, f"{words} must keep {LEAST_LIGAMENT:g} hole radii from the part {as_toml(part.name)}"
                 )

@@ -128,7 +128,11 @@ class Material:
         return self.yield_strength
 
     def scaled(self, factor: float) -> Material:
-        """The same material with another modulus, E times `factor`. It is another one: its strengths are unknown."""
+        """The same material with another modulus, E times `factor`. It is another one: its strengths are unknown.
+
+        A `factor` that is not positive raises :class:`InputError`.
+        """
+        positive("factor", factor)
         return Material(self.E * factor, self.nu, self.name)
 
     def kolosov(self, plane: Plane) -> float:

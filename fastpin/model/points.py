@@ -10,7 +10,7 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.bodies import Ring, Tube
-from fastpin.model.checks import numbers
+from fastpin.model.checks import choice, in_one_shape, instance, numbers
 from fastpin.model.compliance import Compliance
 from fastpin.model.problem import Problem
 
@@ -41,28 +41,40 @@ class Points:
         Distances from the centre, m; None for points by depth.
     depth : ndarray or None
         Distances from the edge, m, into the body; None for points by radius. No digit is lost close to the edge.
+
+    Raises
+    ------
+    InputError
+        If an array holds no finite numbers, its shape is another one, or both or none of radius and depth are given.
     """
 
     theta: np.ndarray
     radius: np.ndarray | None
     depth: np.ndarray | None
 
+    def __post_init__(self) -> None:
+        if (self.radius is None) == (self.depth is None):
+            raise InputError("radius", "or depth must be given, and not both")
+        name, given = ("depth", self.depth) if self.radius is None else ("radius", self.radius)
+        assert given is not None
+        values, angles = in_one_shape(name, numbers(name, given, 0.0), numbers("theta", self.theta))
+        object.__setattr__(self, name, values)
+        object.__setattr__(self, "theta", angles)
+
     @classmethod
     def at_radius(cls, radius: ArrayLike, theta: ArrayLike) -> Points:
         """Points at distances `radius` from the centre, m, at the angles `theta`, rad."""
-        r, angle = _broadcast("radius", numbers("radius", radius, 0.0), numbers("theta", theta))
-        return cls(angle, r, None)
+        return cls(theta, radius, None)  # type: ignore[arg-type]
 
     @classmethod
     def at_depth(cls, depth: ArrayLike, theta: ArrayLike) -> Points:
         """Points at distances `depth` below the edge, m, at the angles `theta`, rad."""
-        below, angle = _broadcast("depth", numbers("depth", depth, 0.0), numbers("theta", theta))
-        return cls(angle, None, below)
+        return cls(theta, None, depth)  # type: ignore[arg-type]
 
     @classmethod
     def at_xy(cls, x: ArrayLike, y: ArrayLike) -> Points:
         """Points at the coordinates `x` and `y` from the centre of the hole, m."""
-        along, up = _broadcast("x", numbers("x", x), numbers("y", y))
+        along, up = in_one_shape("x", numbers("x", x), numbers("y", y))
         return cls(np.arctan2(up, along), np.hypot(along, up), None)
 
     @property
@@ -78,6 +90,8 @@ class Points:
         InputError
             If a point lies outside the body, or inside a plate that a compliance describes.
         """
+        instance("problem", problem, Problem, "a Problem")
+        choice("body", body, BODIES)
         radius, far = problem.hole_radius, far_rim(problem, body)
         wall = abs(far - 1.0) if far is not None else math.inf
         if self.depth is not None:
@@ -106,11 +120,3 @@ def far_rim(problem: Problem, body: Body) -> float | None:
         return problem.pin_body.bore_radius / problem.hole_radius if isinstance(problem.pin_body, Tube) else 0.0
     lug = problem.joint.lug
     return lug.outer_radius / problem.hole_radius if isinstance(lug, Ring) else None
-
-
-def _broadcast(field: str, one: np.ndarray, other: np.ndarray) -> list[np.ndarray]:
-    """Both arrays in their common shape."""
-    try:
-        return [np.array(array) for array in np.broadcast_arrays(one, other)]
-    except ValueError:
-        raise InputError(field, f"has the shape {one.shape}, which does not fit the other's {other.shape}") from None

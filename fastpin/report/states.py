@@ -13,7 +13,7 @@ import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.bodies import Bushing
-from fastpin.model.checks import instance, items
+from fastpin.model.checks import instance, instances
 from fastpin.model.problem import Problem
 from fastpin.model.units import printed_scale, printed_unit, units, with_unit
 from fastpin.report.case import ROUNDING, hole_body, load_columns
@@ -188,6 +188,8 @@ def state_table(problem: Problem, states: Sequence[State], rows: TableRows | Non
         If an argument is of another class.
     """
     states = _checked(problem, states)
+    if rows is not None:
+        instance("rows", rows, TableRows, "the rows of table_rows")
     if rows is None:
         rows = table_rows(problem, states)
         states = [states[place] for place in rows.printed]
@@ -232,9 +234,7 @@ def state_columns(problem: Problem, states: Sequence[State]) -> list[Column]:
 def _checked(problem: Problem, states: Sequence[State]) -> list[State]:
     """Check the class of the problem and of each state."""
     instance("problem", problem, Problem, "a Problem")
-    return [
-        instance("states", state, State, "a list of states") for state in items("states", states, "a list of states")
-    ]
+    return instances("states", states, State, "a list of states")
 
 
 def quantity_column(

@@ -8,4 +8,3 @@ from .result import Restart as Restart
 from .result import Result as Result
 from .session import Session as Session
 from .solving import solve as solve
-from .task import Task as Task

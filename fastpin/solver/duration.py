@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fastpin.model.checks import instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.options import SolveOptions
@@ -42,7 +43,12 @@ def expected_seconds(problem: Problem, history: LoadHistory, options: SolveOptio
     """Return the seconds that a history takes, within a factor of 3 on a usual machine.
 
     A step costs as much as the load turns in it: a reversal is a whole step, and a polygon of 24 corners two in a turn.
+
+    An argument of another class raises :class:`InputError`.
     """
+    instance("problem", problem, Problem, "a Problem")
+    instance("history", history, LoadHistory, "a LoadHistory")
+    instance("options", options, SolveOptions, "a SolveOptions")
     scale = options.nodes / REFERENCE
     step = LEAST_STEP + STEP * scale**STEP_EXPONENT
     if options.method == "increment":

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fastpin.elasticity.system import Scales
-from fastpin.model.history import CycleKey, LoadHistory
+from fastpin.model.history import CycleKey, LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.options import KeepRule
 from fastpin.solver.configuration import Configuration
 from fastpin.states.cycles import Cycle
@@ -134,7 +134,7 @@ class CornerLog:
 
     def begin_cycles(self, corner: int, now: Configuration) -> None:
         """Note the beginning of the cycles that begin after a corner; -1 for the start of the history."""
-        for key in self.history.cycles_after(corner):
+        for key in cycles_after(self.history, corner):
             if key not in self.marks or self.marks[key].corner != corner:
                 self.marks[key] = CycleEnd(corner, 0, now)
 
@@ -159,7 +159,7 @@ class CornerLog:
         """
         periods = []
         for key in ended:
-            mark, length = self.marks.get(key), self.history.cycle_length(key)
+            mark, length = self.marks.get(key), cycle_length(self.history, key)
             number, changes = 1, (math.nan, math.nan, math.nan, math.nan)
             if mark is not None and mark.corner == corner - length:
                 number, earlier = mark.number + 1, mark.configuration
@@ -174,7 +174,7 @@ class CornerLog:
                     periods.append((length, mark.corner))
             self.marks[key] = CycleEnd(corner, number, now)
             self.log[-1].cycles.append((key, Cycle(corner, length, number, *changes, True)))
-        for key in [key for key, mark in self.marks.items() if mark.corner < corner - self.history.cycle_length(key)]:
+        for key in [key for key, mark in self.marks.items() if mark.corner < corner - cycle_length(self.history, key)]:
             del self.marks[key]
         return periods
 
@@ -206,7 +206,7 @@ class CornerLog:
         length = length if unkept else with_kept
         if length == 0 or len(self.log) < length or now - since < length:
             return None
-        ahead = history.same_ahead(following, length)
+        ahead = same_ahead(history, following, length)
         if unkept:
             ahead = min(ahead, keep.every - 1 - following % keep.every)
         ahead = min(ahead, min((stop for stop in stops if stop > following), default=len(history)) - following)

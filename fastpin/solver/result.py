@@ -115,14 +115,6 @@ class Result(Sequence[State]):
     cycles: tuple[Cycle, ...] = ()
     coarse: Result | None = None
 
-    def with_coarse(self, coarse: Result) -> Result:
-        """This result with error bars, from the states of the same history on a coarser grid."""
-        states = []
-        for state, coarse_state in zip(self, coarse, strict=True):
-            assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
-            states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
-        return replace(self, states=states, coarse=coarse)
-
     def cycle(self, place: int = -1, *, first: int | None = None, last: int | None = None) -> LoadCycle:
         """The quantities over a cycle: ranges of slip and tractions, friction energy, loops of the loads.
 
@@ -274,3 +266,12 @@ class Result(Sequence[State]):
 
     def __iter__(self) -> Iterator[State]:
         return iter(self.states)
+
+
+def with_error_bars(result: Result, coarse: Result) -> Result:
+    """A result with error bars, from the states of the same history on a coarser grid."""
+    states = []
+    for state, coarse_state in zip(result, coarse, strict=True):
+        assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
+        states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
+    return replace(result, states=states, coarse=coarse)

@@ -19,7 +19,7 @@ import numpy as np
 from fastpin.elasticity.large import build_system
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, whole_number
+from fastpin.model.checks import choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
@@ -155,7 +155,7 @@ class Session:
             check_loads(problem, self._expected)
         self._grid = grid
         self._here = Place(problem, Loads())
-        self._undo = deque[Place](maxlen=None if undo is None else whole_number("undo", undo, 0))
+        self._undo = deque[Place](maxlen=None if undo is None else whole_number("undo", undo, 0, MAX_CORNERS))
         self._redo: list[Place] = []
         self._forget()
 
@@ -261,6 +261,7 @@ class Session:
         :meth:`undo` takes the change back.
         """
         choice("replay", replay, ("history", "load", "none"))
+        true_or_false("new_arc", new_arc)
         here = self._here
         problem = changed_problem(here.problem, changes)
         loads = here.loads if replay == "history" else Loads()
@@ -323,7 +324,7 @@ class Session:
         """Another session at the same place, with the same matrices or, to be small, without `matrices`."""
         other = Session.__new__(Session)
         other.__setstate__(self.__getstate__())
-        if matrices:
+        if true_or_false("matrices", matrices):
             other._system, other._recorder.outside = self._system, self._recorder.outside
         return other
 

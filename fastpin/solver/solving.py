@@ -21,7 +21,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import Interrupted, SolveError
-from fastpin.solver.result import Result
+from fastpin.solver.result import Result, with_error_bars
 from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
@@ -172,7 +172,7 @@ def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
         if isinstance(ended, SolveError):
             ended.args = (f"{ended} (on the coarse grid of {grid.size} nodes that the error bars take)",)
         raise
-    return result.with_coarse(coarse)
+    return with_error_bars(result, coarse)
 
 
 class MemoryRecorder:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, number
+from fastpin.model.checks import as_toml, number, places_of
 from fastpin.model.history import LoadHistory
 from fastpin.states.cycles import Cycle
 from fastpin.states.quantities import load_point
@@ -72,7 +72,7 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
     if not len(points):
         raise InputError("states", "there is no state to plot")
     if isinstance(chosen, slice):
-        places = list(range(*chosen.indices(len(points))))
+        places = list(places_of("states", chosen, len(points)))
         if not places:
             raise InputError("states", f"the slice holds no state; there are {len(points):,}")
         return places

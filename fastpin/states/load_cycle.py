@@ -16,6 +16,7 @@ from fastpin.elasticity.system import load_columns
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import near_bottom
+from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
 from fastpin.states.state import State
@@ -82,9 +83,22 @@ class LoadCycle:
     ----------
     states : tuple of State
         The kept states from the first corner to the last one, both included; at least two.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two states, or they are not of one problem and on one grid.
     """
 
     states: tuple[State, ...]
+
+    def __post_init__(self) -> None:
+        states = tuple(instances("states", self.states, State, "a sequence of fastpin.State"))
+        if len(states) < 2:
+            raise InputError("states", f"must be two or more, not {len(states)}")
+        if any(state.problem != states[0].problem or state.theta.shape != states[0].theta.shape for state in states):
+            raise InputError("states", "must be of one problem, and on one grid")
+        object.__setattr__(self, "states", states)
 
     def __repr__(self) -> str:
         kind = "closed" if self.is_closed else "open"
@@ -257,7 +271,13 @@ class LoadCycle:
     # -- output --------------------------------------------------------------------------------------------------
 
     def angle_of_largest(self, values: np.ndarray) -> float:
-        """Angle of the node with the largest of `values`, shape (n,), rad; NaN if none is above 0."""
+        """Angle of the node with the largest of `values`, shape (n,), rad; NaN if none is above 0.
+
+        Another shape raises :class:`InputError`.
+        """
+        values = number_array("values", values)
+        if values.shape != self.theta.shape:
+            raise InputError("values", f"must have the shape {self.theta.shape}, not {values.shape}")
         return near_bottom(float(self.theta[np.argmax(values)])) if values.max() > 0.0 else math.nan
 
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:

@@ -23,6 +23,7 @@ import numpy as np
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
 from fastpin.states import fits
+from fastpin.states.exponents import contact_exponents, signs_beside, stick_exponents
 from fastpin.states.fits import Law
 from fastpin.states.half_line import half_line
 from fastpin.states.old_borders import OldBorder
@@ -420,7 +421,7 @@ def _patches(state: State) -> Iterator[Patch]:
     left, right = grid.knots()
     for run, edges in zip(runs(grid, state.status != OPEN), state.contact_in_runs, strict=True):
         whole = is_all_round(edges[1] - edges[0])
-        exponents = None if whole else state.contact_exponents(run)
+        exponents = None if whole else contact_exponents(state.status, state.tilt, run)
         if whole and sticking:
             run = np.roll(run, -int(np.flatnonzero(run == sticking[0][0][0])[0]))
         theta = unrolled(grid, run)
@@ -442,6 +443,6 @@ def _zones(state: State, run: np.ndarray, theta: np.ndarray) -> tuple[Zone, ...]
         if places[nodes[0]] >= 0:
             turn = 2.0 * math.pi * round((theta[places[nodes[0]]] - ends[0]) / (2.0 * math.pi))
             moved = ends[0] + turn, ends[1] + turn
-            signs, exponents = state.signs_beside(nodes), state.stick_exponents(nodes)
+            signs, exponents = signs_beside(state.shear, nodes), stick_exponents(state.shear, state.tilt, nodes)
             zones.append(Zone(moved, places[nodes], signs, exponents, state.nodes.old_borders(nodes)))
     return tuple(zones)

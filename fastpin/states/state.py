@@ -13,12 +13,14 @@ import numpy as np
 from fastpin import states
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
+from fastpin.model.checks import true_or_false
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
 from fastpin.states.cusps import ShearNodes
+from fastpin.states.exponents import contact_exponents, signs_beside, stick_exponents
 from fastpin.states.half_line import HalfLine, half_line
 from fastpin.states.marks import Marks
 from fastpin.states.old_borders import truly_sticking
@@ -254,33 +256,13 @@ class State:
         """Dundurs' parameter beta_D of the surfaces."""
         return self.problem.surfaces.dundurs()[1]
 
-    def contact_exponents(self, run: np.ndarray) -> tuple[float, float]:
-        """Exponents of the pressure at both ends of the contact of the nodes `run`, (T21)."""
-        first, last = self.status[run[[0, -1]]]
-        return 0.5 - self.tilt * float(first), 0.5 + self.tilt * float(last)
-
     def _contact_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = self.contact_exponents(run)
+        start, stop = contact_exponents(self.status, self.tilt, run)
         return half_line(start), half_line(stop)
 
     def _stick_lines(self, run: np.ndarray) -> tuple[HalfLine, HalfLine]:
-        start, stop = self.stick_exponents(run)
+        start, stop = stick_exponents(self.shear, self.tilt, run)
         return half_line(start, self.coupling), half_line(stop, self.coupling)
-
-    def stick_exponents(self, run: np.ndarray) -> tuple[float, float]:
-        """Exponents of mu N - |T| at both ends of the stick zone of the nodes `run`, (T26)."""
-        before, after = self.signs_beside(run)
-        return 0.5 - self.tilt * before, 0.5 + self.tilt * after
-
-    def signs_beside(self, run: np.ndarray) -> tuple[int, int]:
-        """Signs of the shear traction before and after the stick zone of the nodes `run`.
-
-        They are 0 beside an open node, and for a stick zone all round.
-        """
-        if run.size == self.shear.size:
-            return 0, 0
-        before, after = np.sign(self.shear[[run[0] - 1, (run[-1] + 1) % self.shear.size]])
-        return int(before), int(after)
 
     @cached_property
     def _reserve(self) -> np.ndarray:
@@ -294,7 +276,7 @@ class State:
         """
         reserve = np.array([self._reserve, self._reserve])
         for run in runs(self.grid, self._sticking):
-            for values, sign in zip(reserve, self.signs_beside(run), strict=True):
+            for values, sign in zip(reserve, signs_beside(self.shear, run), strict=True):
                 if sign != 0:
                     values[run] = self.problem.friction * self.pressure[run] - sign * self.shear[run]
         return reserve
@@ -338,12 +320,12 @@ class State:
 
     @cached_property
     def _tractions(self) -> Tractions:
-        return states.tractions_of(self.grid, self.status, self.pressure, self.shear)
+        return states.stress.tractions_of(self.grid, self.status, self.pressure, self.shear)
 
     @cached_property
     def refined(self) -> RefinedTractions:
         """The tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`."""
-        return states.refined_tractions(self)
+        return states.refined.refined_tractions(self)
 
     def stress(self, points: Points, body: Body = "plate", straight: bool = False) -> Stress:
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
@@ -364,10 +346,10 @@ class State:
         ------
         InputError
             If a point lies outside the body, inside a plate that a compliance describes, or where the stress is
-            infinite, or if the body is rigid.
+            infinite, if the body is rigid, or if an argument is of another class.
         """
-        tractions = self._tractions if straight else self.refined.tractions
-        return states.stress_at(self.problem, tractions, self.load, points, body)
+        tractions = self._tractions if true_or_false("straight", straight) else self.refined.tractions
+        return states.stress.stress_at(self.problem, tractions, self.load, points, body)
 
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
         """The hoop stress on the edge of the hole or of the pin, Pa; tension is positive.
@@ -395,7 +377,7 @@ class State:
         InputError
             If the body is rigid.
         """
-        states.check_body(self.problem, body)
+        states.stress.check_body(self.problem, body)
         is_kept = "refined" in self.__dict__
         peak = self._plate_peak if body == "plate" else self._pin_peak
         if not is_kept:  # the refined tractions of many states would fill the memory
@@ -404,11 +386,11 @@ class State:
 
     @cached_property
     def _plate_peak(self) -> HoopPeak:
-        return states.hoop_peak(self, "plate")
+        return states.hoop.hoop_peak(self, "plate")
 
     @cached_property
     def _pin_peak(self) -> HoopPeak:
-        return states.hoop_peak(self, "pin")
+        return states.hoop.hoop_peak(self, "pin")
 
     @property
     def displacement(self) -> dict[str, float]:
@@ -438,7 +420,7 @@ class State:
         InputError
             If the plate has no bush, or `friction` is negative.
         """
-        return states.bush_fit(self, friction)
+        return states.joint.bush_fit(self, friction)
 
     def joint_displacement(
         self, hub_radius: float | None = None, gauge_radius: float | None = None
@@ -463,7 +445,7 @@ class State:
         InputError
             If a circle lies outside its body, or the body has no such circle.
         """
-        return states.joint_displacement(self, hub_radius, gauge_radius)
+        return states.joint.joint_displacement(self, hub_radius, gauge_radius)
 
 
 def _in_degrees(intervals: list[Interval]) -> str:

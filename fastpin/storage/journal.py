@@ -22,7 +22,7 @@ from types import ModuleType
 import h5py
 
 from fastpin.errors import InputError
-from fastpin.model.checks import HDF5_SIGNATURE
+from fastpin.model.checks import HDF5_SIGNATURE, file_path
 
 fcntl: ModuleType | None
 try:
@@ -293,6 +293,7 @@ def check_free(path: Path) -> None:
 
 def is_being_written(path: Path) -> bool:
     """Return whether another process is writing to a file, as far as its lock tells."""
+    path = file_path("path", path)
     if fcntl is None or not path.is_file():
         return False
     with path.open("rb") as file:

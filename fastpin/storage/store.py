@@ -17,8 +17,18 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, file_path, instance, is_whole, items, string, true_or_false, whole_number
-from fastpin.model.history import LoadHistory
+from fastpin.model.checks import (
+    as_toml,
+    file_path,
+    instance,
+    is_whole,
+    items,
+    places_of,
+    string,
+    true_or_false,
+    whole_number,
+)
+from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
@@ -161,6 +171,8 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
         states = items("states", states, "a slice or whole numbers")
         if not all(map(is_whole, states)):
             raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
+    else:
+        places_of("states", states, 0)
     with open_result(path) as file:
         result, task = _read(file, path, states, after)
     restart = result.restart
@@ -241,8 +253,9 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
     Raises
     ------
     InputError
-        See :func:`load`.
+        If a corner is no whole number. Also see :func:`load`.
     """
+    first, last = whole_number("first", first, 0, MAX_CORNERS), whole_number("last", last, 0, MAX_CORNERS)
     return slice(*np.searchsorted(load_points(path), [first, np.nextafter(last, np.inf)]).tolist())
 
 

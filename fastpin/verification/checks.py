@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from fastpin.model.angles import BOTTOM
+from fastpin.model.checks import check_callable
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
@@ -109,7 +110,13 @@ def verify(progress: Callable[[int, int], None] | None = None) -> list[Check]:
     list of Check
         The checks in the order of the topics. A case that ends in an error gives a check that has not passed; the other
         cases still run.
+
+    Raises
+    ------
+    InputError
+        If `progress` can't be called.
     """
+    check_callable("progress", progress)
     solving = Solving()
     checks: list[Check] = []
     cases = [(key, title, name, rows) for key, (title, topic) in TOPICS.items() for name, rows in topic.items()]

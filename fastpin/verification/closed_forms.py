@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, numbers
+from fastpin.model.checks import choice, in_one_shape, number, number_array, numbers, positive
 
 Branch = Literal["loading", "unloading", "reloading"]
 """Part of a load cycle: first loading, unloading from +Q_max, reloading from -Q_max."""
@@ -222,10 +222,10 @@ def cattaneo_mindlin_shear(
         If an argument is out of range, missing on its branch, or not allowed on it.
     """
     place = numbers("x", x)
-    a = float(numbers("half_width", half_width, 0.0, open_low=True))
-    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
-    mu = float(numbers("friction", friction, 0.0))
-    e = float(numbers("eccentricity", eccentricity))
+    a = positive("half_width", half_width)
+    p0 = positive("peak_pressure", peak_pressure)
+    mu = number("friction", friction, 0.0)
+    e = number("eccentricity", eccentricity)
     forms = _loading_forms(load_ratio, peak_ratio, branch)
     if branch == "loading":
         _inside(e, math.sqrt(1.0 - forms[0][1]) * a, a)
@@ -260,11 +260,11 @@ def bulk_stress_eccentricity(
     InputError
         If an argument is out of range, or |e| + c exceeds a. Then slip has two directions and the form fails.
     """
-    sigma = float(numbers("bulk_stress", bulk_stress))
-    a = float(numbers("half_width", half_width, 0.0, open_low=True))
-    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
-    mu = float(numbers("friction", friction, 0.0, open_low=True))
-    now = float(numbers("load_ratio", load_ratio, 0.0, 1.0))
+    sigma = number("bulk_stress", bulk_stress)
+    a = positive("half_width", half_width)
+    p0 = positive("peak_pressure", peak_pressure)
+    mu = positive("friction", friction)
+    now = number("load_ratio", load_ratio, 0.0, 1.0)
     e = a * sigma / (4.0 * mu * p0)
     _inside(e, math.sqrt(1.0 - now) * a, a, "bulk_stress")
     return e
@@ -292,7 +292,7 @@ def spence_stick_ratio(mu_over_beta: ArrayLike) -> Values:
     InputError
         If `mu_over_beta` is negative or NaN.
     """
-    ratio = np.asarray(mu_over_beta, dtype=float)
+    ratio = number_array("mu_over_beta", mu_over_beta)
     if np.any(np.isnan(ratio)) or np.any(ratio < 0.0):
         raise InputError("mu_over_beta", f"must not be negative, not {np.min(ratio):g}")
     with np.errstate(divide="ignore"):
@@ -334,9 +334,9 @@ def elliptic_stress(
     InputError
         If an argument is out of range.
     """
-    a = float(numbers("half_width", half_width, 0.0, open_low=True))
-    p0, q0 = float(numbers("pressure", pressure)), float(numbers("shear", shear))
-    place, z = np.broadcast_arrays(numbers("x", x), numbers("depth", depth, 0.0))
+    a = positive("half_width", half_width)
+    p0, q0 = number("pressure", pressure), number("shear", shear)
+    place, z = in_one_shape("x", numbers("x", x), numbers("depth", depth, 0.0))
     root = np.sqrt((a - place) * (a + place) + z * z + 2j * place * z)
     m, n = root.real, np.copysign(root.imag, place)
     square = m * m + n * n
@@ -382,9 +382,9 @@ def cattaneo_mindlin_stress(
     InputError
         If an argument is out of range, or missing on its branch.
     """
-    a = float(numbers("half_width", half_width, 0.0, open_low=True))
-    p0 = float(numbers("peak_pressure", peak_pressure, 0.0, open_low=True))
-    mu = float(numbers("friction", friction, 0.0))
+    a = positive("half_width", half_width)
+    p0 = positive("peak_pressure", peak_pressure)
+    mu = number("friction", friction, 0.0)
     total = elliptic_stress(x, depth, a, p0)
     for factor, ratio in _loading_forms(load_ratio, peak_ratio, branch):
         total = total + elliptic_stress(x, depth, a, 0.0, factor * mu * p0)
@@ -414,8 +414,9 @@ def kirsch_stress(radius: ArrayLike, theta: ArrayLike, sxx: float, syy: float, s
     InputError
         If `radius` is below 1, or an argument is no number.
     """
-    square = np.asarray(numbers("radius", radius, 1.0)) ** -2.0
-    angle = numbers("theta", theta)
+    away, angle = in_one_shape("radius", numbers("radius", radius, 1.0), numbers("theta", theta))
+    square = away**-2.0
+    sxx, syy, sxy = number("sxx", sxx), number("syy", syy), number("sxy", sxy)
     mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
     along = half * np.cos(2.0 * angle) + sxy * np.sin(2.0 * angle)
     across = sxy * np.cos(2.0 * angle) - half * np.sin(2.0 * angle)
@@ -448,11 +449,11 @@ def _loading_forms(load_ratio: float, peak_ratio: float | None, branch: Branch) 
     """The loading forms whose sum is the shear on a branch: the factor and Q/(mu P) of each."""
     choice("branch", branch, ("loading", "unloading", "reloading"))
     if branch == "loading":
-        return [(1.0, float(numbers("load_ratio", load_ratio, 0.0, 1.0)))]
+        return [(1.0, number("load_ratio", load_ratio, 0.0, 1.0))]
     if peak_ratio is None:
         raise InputError("peak_ratio", f"the {branch} branch needs it")
-    peak = float(numbers("peak_ratio", peak_ratio, 0.0, 1.0))
-    now = float(numbers("load_ratio", load_ratio, -peak, peak))
+    peak = number("peak_ratio", peak_ratio, 0.0, 1.0)
+    now = number("load_ratio", load_ratio, -peak, peak)
     sign = 1.0 if branch == "unloading" else -1.0
     return [(sign, peak), (-2.0 * sign, 0.5 * (peak - sign * now))]
 

@@ -193,7 +193,8 @@ def frictionless_opening_load(problem: Problem) -> float:
     InputError
         If the fit has no interference, or the bodies have no closed form.
     """
-    return math.pi * problem.hole_radius * _fitted(problem)
+    pressure = _fitted(problem)
+    return math.pi * problem.hole_radius * pressure
 
 
 def bonded_opening_load(problem: Problem) -> float:

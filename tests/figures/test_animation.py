@@ -34,7 +34,7 @@ def test_a_gif_has_a_picture_for_each_state_of_the_last_cycle(result, tmp_path):
 
 
 def test_axes_keep_their_limits_and_the_heading_names_the_loads(result):
-    scene = animation._Scene(figures.drawn_states(result), figures.Look(title="Joint"))
+    scene = animation._Scene(figures.states.drawn_states(result), figures.sheet.Look(title="Joint"))
     limits = []
     for place, state in enumerate(result):
         scene.show(place, state)

@@ -94,10 +94,10 @@ def test_slip_without_friction_has_no_direction():
 def test_many_cycles_show_their_first_states_and_no_slow_cycle():
     result = sample_result([{"P": 1e6 * (2 + k % 2)} for k in range(MOST_COLUMNS + 50)], nodes=21)
     result.cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(3, len(result), 2))
-    drawn = figures.drawn_states(result, "all", MOST_COLUMNS, in_a_row=True)
+    drawn = figures.states.drawn_states(result, "all", MOST_COLUMNS, in_a_row=True)
     assert [state.step for state in drawn] == list(range(MOST_COLUMNS))
     assert drawn.note == f"{MOST_COLUMNS} of {MOST_COLUMNS + 50} states: load points 1 to {MOST_COLUMNS}"
-    assert [state.step for state in figures.drawn_states(result, None, MOST_COLUMNS)] == [247, 248, 249]
+    assert [state.step for state in figures.states.drawn_states(result, None, MOST_COLUMNS)] == [247, 248, 249]
 
 
 # -- the polar view --------------------------------------------------------------------------------------------------

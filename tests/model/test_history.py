@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.history import LoadHistory
+from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.history_csv import MOST_FAULTS
 from fastpin.model.loads import LOADS, complete_load
 from fastpin.model.options import KeepRule
@@ -84,7 +84,7 @@ def test_what_is_said_to_be_the_same_ahead_is(random_program: LoadHistory) -> No
     found = 0
     for index in range(len(random_program)):
         for period in range(1, index + 1):
-            for k in range(index, index + random_program.same_ahead(index, period)):
+            for k in range(index, index + same_ahead(random_program, index, period)):
                 (one, ended), (other, ended_before) = random_program.corner(k), random_program.corner(k - period)
                 assert np.array_equal(one, other, equal_nan=True)
                 assert ended == ended_before
@@ -98,8 +98,8 @@ def test_cycles_begin_and_end_in_turns(random_program: LoadHistory) -> None:
     for index in range(-1, len(random_program)):
         ended = random_program.corner(index)[1] if index >= 0 else []
         for key in ended:
-            assert index - random_program.cycle_length(key) in begun[key]
-        for key in [*ended, *random_program.cycles_after(index)]:
+            assert index - cycle_length(random_program, key) in begun[key]
+        for key in [*ended, *cycles_after(random_program, index)]:
             begun.setdefault(key, set()).add(index)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError
-from fastpin.model.lug import MOST_PARTS, Hole, Lug, Part, PartLoad, rectangle
+from fastpin.model.lug import MOST_PARTS, Hole, Lug, Part, PartLoad, distances, rectangle
 from tests.support.lugs import disc, plate
 
 ARC = Part("arc", 1.0, -1.0, 1j)
@@ -23,7 +23,7 @@ def test_an_arc_goes_through_its_three_points(through):
     assert sweep == pytest.approx(np.pi * np.sign(through.imag), rel=1e-14)
     assert arc.length == pytest.approx(np.pi, rel=1e-14)
     assert np.allclose(arc.at(np.array([0.0, 1.0])), [1.0, -1.0], atol=1e-14)
-    assert arc.distance(np.array([complex(through)]))[0] < 1e-14
+    assert distances(arc, np.array([complex(through)]))[0] < 1e-14
 
 
 @pytest.mark.parametrize("part", [ARC, ARC.reversed(), Part("line", 1 + 2j, -2 + 1j)])
@@ -32,7 +32,7 @@ def test_distances_and_directions_agree_with_many_points(part):
     points = part.at(share)
     asked = np.array([0.3 + 0.2j, 2.0, -1.5 - 0.1j, 0.1 + 3j, -2j])
     nearest = np.abs(asked[:, None] - points).min(axis=1)
-    assert np.allclose(part.distance(asked), nearest, atol=1e-4)  # half the distance of the points
+    assert np.allclose(distances(part, asked), nearest, atol=1e-4)  # half the distance of the points
     secants = np.diff(points) / np.abs(np.diff(points))
     assert np.allclose(part.direction(0.5 * (share[1:] + share[:-1])), secants, atol=1e-10)
 
@@ -87,14 +87,15 @@ BULGING = (*rectangle((-3.0, 3.0), (-4.0, 4.0))[:3], Part("left", -3 + 4j, -3 - 
         ({"holes": (Hole("b", 9j, 1.0),)}, 'holes: the hole "b" does not lie inside the outline'),
         ({"holes": (Hole("b", 5.5j, 1.0),)}, 'holes: the hole "b" must keep 0.01 hole radii from the part "top"'),
         ({"holes": (Hole("b", 1.5j, 1.0),)}, 'holes: the hole "b" must keep 0.01 hole radii from the pin\'s hole'),
-        ({"holes": (Hole("b", 3j, -1.0),)}, "radius: must be positive, not -1"),
         ({"holes": (Hole("b", 3j, 1e-4),)}, 'holes: the hole "b" must have a radius of at least 0.001 of the pin'),
         ({"supports": {"tob": "both"}}, 'support: no part or hole is called "tob"; the names are "bottom", "right"'),
         ({"supports": {"top": "all"}}, 'hold: must be "both", "x", "y" or "normal", not "all"'),
         ({"loads": (PartLoad("sxx", ("side",)),)}, 'load: no part or hole is called "side"'),
-        ({"loads": (PartLoad("P", ("left",)),)}, 'load: must be "sxx", "syy" or "sxy", not "P"'),
         ({"loads": (PartLoad("sxx", ("top",), y=1.0),)}, 'y: the support of "top" takes up this component'),
-        ({"loads": (PartLoad("sxx", ("left",), y=float("nan")),)}, "y: must be a finite number, not nan"),
+        ({"outline": "top"}, "outline: must be a list of parts, not "),
+        ({"loads": [None]}, "loads: must be a list of loads, not "),
+        ({"holes": 5}, "holes: must be a list of holes, not 5"),
+        ({"supports": ["top"]}, r"supports: must map names to words, not \["),
         ({"nu": 0.6}, "nu: must lie between 0 and 0.5, not 0.6"),
         ({"plane": "flat"}, 'plane: must be "strain" or "stress", not "flat"'),
         ({"hole_radius": 0.0}, "hole_radius: must lie between 1e-30 and 1e.30, not 0"),
@@ -105,6 +106,24 @@ def test_one_sentence_names_the_fault(fields, message):
     with pytest.raises(InputError, match=message) as caught:
         plate(**fields)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Hole("b", 3j, -1.0), "radius: must be positive, not -1"),
+        (lambda: Hole("b", float("nan"), 1.0), "centre: must be a finite number, not nan"),
+        (lambda: Hole(5, 3j, 1.0), "name: must be text in quotes, not 5"),
+        (lambda: Part("a", 1j, None), "end: must be a number, not None"),
+        (lambda: Part("a", 0j, 1j, complex(0.0, float("inf"))), "through: must be a finite number, not inf"),
+        (lambda: PartLoad("P", ("left",)), 'load: must be "sxx", "syy" or "sxy", not "P"'),
+        (lambda: PartLoad("sxx", (None,)), "parts: must be text in quotes, not None"),
+        (lambda: PartLoad("sxx", ("left",), y=float("nan")), "y: must be a finite number, not nan"),
+    ],
+)
+def test_parts_holes_and_loads_are_checked_when_made(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
 
 
 @pytest.mark.parametrize(
