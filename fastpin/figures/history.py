@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line
 from fastpin.figures.words import caption, quantity
@@ -68,7 +69,10 @@ def plot_history(
     instance("problem", problem, Problem, "a Problem")
     instance("history", history, LoadHistory, "a LoadHistory")
     look = Look(path, title, width, dpi, ax)
-    folded = _folded(history, np.zeros(len(LOADS)) if initial is None else number_array("initial", initial))
+    first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
+    if first.shape != (len(LOADS),):
+        raise InputError("initial", f"must have the shape ({len(LOADS)},), not {first.shape}")
+    folded = _folded(history, first)
     return look.drawn(lambda: _draw(problem, folded, look))
 
 

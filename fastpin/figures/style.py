@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from fastpin.errors import InputError
 from fastpin.model.checks import file_path, number, string
 from fastpin.storage.files import check_writable, no_figure, replacing
 
@@ -46,6 +47,9 @@ MAX_NAMED = len(COLOURS)
 
 LEAST_WIDTH, MOST_WIDTH = 1.0, 12.0
 """Limits of a figure's width, inches."""
+
+LONGEST_TITLE = 2_000
+"""Most characters of the title of a figure. The lines of ten times as many take seconds to draw."""
 
 LEAST_DPI, MOST_DPI = 10.0, 1200.0
 """Limits of a bitmap's dots per inch. The largest bitmap takes less than 1 GB of memory."""
@@ -118,9 +122,10 @@ def check_figure_text(title: str, width: float) -> float:
     Raises
     ------
     InputError
-        If `title` is no text, or `width` is out of range.
+        If `title` is no text or too long, or `width` is out of range.
     """
-    string("title", title)
+    if len(string("title", title)) > LONGEST_TITLE:
+        raise InputError("title", f"must have at most {LONGEST_TITLE:,} characters in a figure, not {len(title):,}")
     return number("width", width, LEAST_WIDTH, MOST_WIDTH)
 
 

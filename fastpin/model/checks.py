@@ -6,6 +6,7 @@ Python, case files, plans and the command line all call these validators. So the
 from __future__ import annotations
 
 import contextlib
+import inspect
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -165,9 +166,18 @@ def instance(field: str, value: object, kind: type[T], name: str) -> T:
 
 
 def check_callable(field: str, value: object) -> None:
-    """Check that a value is None or can be called."""
-    if value is not None and not callable(value):
+    """Check that a value is None or can be called with two arguments, as far as its signature tells."""
+    if value is None:
+        return
+    if not callable(value):
         raise InputError(field, f"must be a callable, not {as_toml(value)}")
+    try:
+        inspect.signature(value).bind(0.0, 1.0)
+    except TypeError:
+        raise InputError(field, f"must be a callable of two arguments, not {as_toml(value)}") from None
+    except ValueError:  # functions in C need not have a signature
+        if isinstance(value, type):
+            raise InputError(field, f"must be a callable of two arguments, not {as_toml(value)}") from None
 
 
 def items(field: str, values: Iterable[T], name: str) -> list[T]:
@@ -219,12 +229,14 @@ def numbers(
 
 
 def in_one_shape(field: str, one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Check that the shapes of two arrays fit, and return copies in their common shape."""
+    """Check that the shapes of two float arrays fit, and return copies in their common shape."""
     try:
-        first, second = np.broadcast_arrays(one, other)
+        shape = np.broadcast(one, other).shape
     except ValueError:
         raise InputError(field, f"has the shape {one.shape}, which does not fit the other's {other.shape}") from None
-    return first.copy(), second.copy()
+    first, second = np.empty(shape), np.empty(shape)
+    first[...], second[...] = one, other
+    return first, second
 
 
 def number_array(field: str, values: ArrayLike) -> np.ndarray:

@@ -30,6 +30,9 @@ DEFAULT_INCREMENTS = 80
 MOST_BETWEEN = 10_000
 """Most states inside a step."""
 
+LEAST_FRACTION = 1e-9
+"""Least part of a step from one state to the next. Load points that are closer are one."""
+
 FULL_TURN = 2.0 * math.pi - 1e-5
 """Length of an arc from which on it is the whole circle, rad. An angle may be written with six digits."""
 
@@ -231,14 +234,15 @@ def _checked_arc(value: object) -> tuple[float, float] | None:
 def _checked_between(value: object) -> int | tuple[float, ...]:
     if is_whole(value):
         return whole_number("between", value, 0, MOST_BETWEEN)
-    allowed = "a whole number, or increasing fractions between 0 and 1"
+    allowed = f"a whole number, or increasing fractions between 0 and 1, at least {LEAST_FRACTION:g} apart"
     wrong = InputError("between", f"must be {allowed}, not {as_toml(value)}")
     items = [value] if isinstance(value, (float, np.floating)) else value
     if not isinstance(items, (list, tuple, np.ndarray)) or getattr(items, "ndim", 1) != 1 or len(items) > MOST_BETWEEN:
         raise wrong
     fractions: list[float] = []
     for item in items:
-        if not isinstance(item, (float, np.floating)) or not (fractions or [0.0])[-1] < item < 1.0:
+        least = (fractions or [0.0])[-1] + LEAST_FRACTION
+        if not isinstance(item, (float, np.floating)) or not least <= item <= 1.0 - LEAST_FRACTION:
             raise wrong
         fractions.append(float(item))
     return tuple(fractions)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, number, places_of
+from fastpin.model.checks import as_toml, items, number, places_of
 from fastpin.model.history import LoadHistory
 from fastpin.states.cycles import Cycle
 from fastpin.states.quantities import load_point
@@ -23,6 +23,9 @@ StateChoice = str | float | Sequence[float] | slice | None
 
 None leaves the choice to the figure.
 """
+
+MOST_CHOSEN = 100_000
+"""Most load points of a choice."""
 
 SAME_POINT = 1e-9
 """Largest difference of equal load points. Texts such as 2.333333333 name thirds of a step."""
@@ -83,7 +86,9 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
         return [len(points) - 1]
     if word == "cycle":
         return _places_of_last_cycle(points, cycles)
-    return [_place(points, point) for point in _points_of(chosen)]
+    wanted = _points_of(chosen)
+    found = {point: _place(points, point) for point in dict.fromkeys(wanted)}
+    return [found[point] for point in wanted]
 
 
 def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
@@ -117,9 +122,12 @@ def _points_of(chosen: Any) -> list[float]:
     """The load points that a choice names."""
     parts = chosen.split(",") if isinstance(chosen, str) else [chosen] if isinstance(chosen, _NUMBERS) else chosen
     try:
-        points = [number("states", float(part) if isinstance(chosen, str) else part) for part in parts]
-    except (InputError, TypeError, ValueError):
+        listed = items("states", parts, "load points")
+        points = [number("states", float(part) if isinstance(chosen, str) else part) for part in listed[:MOST_CHOSEN]]
+    except (InputError, ValueError):
         points = []
+    if points and len(listed) > MOST_CHOSEN:
+        raise InputError("states", f"must be at most {MOST_CHOSEN:,} load points, not {len(listed):,}")
     if not points:
         shown = repr(chosen) if isinstance(chosen, str) else as_toml(chosen)
         raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, not {shown}")

@@ -57,7 +57,7 @@ def persson_load_parameter(half_angle: ArrayLike, mismatch: ArrayLike = 0.0) -> 
         If `half_angle` or `mismatch` is out of range.
     """
     eps = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
-    a = numbers("mismatch", mismatch, -1.0, 1.0)
+    eps, a = in_one_shape("half_angle", eps, numbers("mismatch", mismatch, -1.0, 1.0))
     return _value(_load_parameter(np.tan(0.5 * eps), a))
 
 
@@ -76,9 +76,9 @@ def persson_half_angle(load_parameter: ArrayLike, mismatch: ArrayLike = 0.0) -> 
     InputError
         If `mismatch` is out of range or the contact goes all round the pin.
     """
-    lp = numbers("load_parameter", load_parameter)
-    a = numbers("mismatch", mismatch, -1.0, 1.0)
-    lp, a = np.broadcast_arrays(lp, a)
+    lp, a = in_one_shape(
+        "load_parameter", numbers("load_parameter", load_parameter), numbers("mismatch", mismatch, -1.0, 1.0)
+    )
     limit = (a - 1.0) / (4.0 * math.pi)
     if np.any(lp <= limit):
         worst = np.argmin(lp - limit)
@@ -117,7 +117,8 @@ def persson_pressure(phi: ArrayLike, half_angle: ArrayLike) -> Values:
         If `phi` or `half_angle` is out of range.
     """
     angle = numbers("phi", phi, -math.pi, math.pi)
-    eps = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    half = numbers("half_angle", half_angle, 0.0, math.pi, open_low=True, open_high=True)
+    angle, eps = in_one_shape("phi", angle, half)
     inside = np.abs(angle) < eps
     b = np.tan(0.5 * eps)
     y = np.tan(0.5 * np.where(inside, angle, 0.0))

@@ -49,6 +49,9 @@ NEGLIGIBLE = 1e-13
 LEAST_TERMS = 4
 """Least number of Jacobi polynomials."""
 
+MOST_TERMS = 2_000
+"""Most Jacobi polynomials. The matrix of the equations then takes 30 MB."""
+
 WIDER = (1.0, 2.0, 3.0)
 """Half-widths to start from with finite bodies, in parts of Hertz's: thin walls bend, and their contact is wider.
 
@@ -174,7 +177,7 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
     given = _checked_load(load)
     if isinstance(slip, bool) or not isinstance(slip, (int, np.integer)) or slip not in (1, -1):
         raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
-    counts = TERMS if terms is None else (whole_number("terms", terms, LEAST_TERMS),)
+    counts = TERMS if terms is None else (whole_number("terms", terms, LEAST_TERMS, MOST_TERMS),)
     case = _Case.of(problem, given, -float(slip))
     place: tuple[float, float] | None = None
     with threadpool_limits(limits=1, user_api="blas"):
