@@ -23,20 +23,22 @@ from fastpin.model.checks import choice, true_or_false, whole_number
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import MAX_CORNERS, MOST_LOAD, LoadHistory, check_loads
-from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load, named_load
+from fastpin.model.loads import LOAD_KIND, LOADS, Corner, complete_load
 from fastpin.model.options import KeepRule, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads
 from fastpin.solver.arc import first_direction, narrow_grids
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
-from fastpin.solver.growth import OutsideGap, carried, dividing_the_circle, most_nodes, wider_grid
+from fastpin.solver.growth import carried, dividing_the_circle, most_nodes, wider_grid
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
+from fastpin.solver.latest import LatestState, touches_outside
 from fastpin.solver.place import IN_PLACE, Loads, Place, changed_problem, changed_system
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.run import Run
-from fastpin.solver.solving import DEFAULTS, MemoryRecorder, solve
+from fastpin.solver.solving import DEFAULTS, solve
 from fastpin.solver.task import Task, as_history, check_options, one_blas_thread, reference_force
+from fastpin.solver.turns import InTurns, in_turn
 from fastpin.states.state import State
 
 Replay = Literal["history", "load", "none"]
@@ -52,35 +54,7 @@ NO_HISTORY = LoadHistory([{}])
 """The history of a run that gets its loads one by one."""
 
 
-class LatestState(MemoryRecorder):
-    """A recorder that keeps the latest state only, and notes whether the pin has touched the hole beyond the arc."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.outside: OutsideGap | None = None
-        self.touched_outside = False
-
-    def begin(self, run: Run) -> None:
-        """Forget the state. From here on all states come from `run`."""
-        super().begin(run)
-        self.touched_outside = False
-        if run.system.grid.closed:
-            self.outside = None
-        elif self.outside is None or self.outside.of is not run.system.operator:
-            self.outside = OutsideGap(run.system)
-
-    def add(self, state: State) -> None:
-        """Keep a state in place of the one before."""
-        self.states = [state]
-
-    def corner_reached(self) -> None:
-        """Look beyond the arc."""
-        if self.outside is not None and not self.touched_outside:
-            assert self.run is not None
-            self.touched_outside = self.outside.is_closed(self.run.system, self.run.now)
-
-
-class Session:
+class Session(InTurns):
     """A contact that is led from load to load.
 
     A session gives the states of :func:`fastpin.solve`, to the same bits: the states of ``solve(session.problem,
@@ -96,7 +70,8 @@ class Session:
       more than 4 times `nodes` or 3,000 nodes; the spacing does not divide the circle; or the contact gets too narrow
       for the nodes. A narrow contact is an error if `arc` or `grid` is given.
 
-    A session is not thread-safe. A process may have several sessions. Sessions can be copied and pickled.
+    One thread at a time may use a session; a call from another thread is refused meanwhile. A process may have several
+    sessions. Sessions can be copied and pickled.
 
     Parameters
     ----------
@@ -119,7 +94,8 @@ class Session:
     Raises
     ------
     InputError
-        If an argument can't be used. The error names it.
+        If an argument can't be used. The error names it. All methods and attributes raise it while another thread uses
+        the session.
 
     Examples
     --------
@@ -161,6 +137,7 @@ class Session:
 
     def _forget(self) -> None:
         """Forget all that can be made anew from the present place."""
+        InTurns.__init__(self)
         self._run: Run | None = None
         self._system: System | None = None
         self._limits: dict[str, tuple[int, float]] = {}
@@ -168,35 +145,42 @@ class Session:
         self._recorder = LatestState()
 
     @property
+    @in_turn
     def problem(self) -> Problem:
         """The present problem."""
         return self._here.problem
 
     @property
+    @in_turn
     def state(self) -> State | None:
         """The present state; None before the first load."""
         return self._here.state
 
     @property
+    @in_turn
     def history(self) -> LoadHistory | None:
         """The loads that led to the present state; None before the first load."""
         return self._here.loads.history() if self._here.loads.count else None
 
     @property
+    @in_turn
     def grid(self) -> Grid | None:
         """The present nodes; None before the first load."""
         return self._here.grid
 
     @property
+    @in_turn
     def undos(self) -> int:
         """Number of places to which :meth:`undo` can go back."""
         return len(self._undo)
 
     @property
+    @in_turn
     def redos(self) -> int:
         """Number of places to which :meth:`redo` can go forward."""
         return len(self._redo)
 
+    @in_turn
     def advance(self, loads: Corner) -> State:
         """Follow one straight step from the present loads to these, and return the state there.
 
@@ -229,6 +213,7 @@ class Session:
             self._arrive(place, self._first_step(place, given) if here.grid is None else self._next_step(place, given))
         return self._present_state()
 
+    @in_turn
     def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
         """Change fields of the problem, follow the loads again, and return the state.
 
@@ -281,6 +266,7 @@ class Session:
             self._leave_for(place)
         return self._here.state
 
+    @in_turn
     def undo(self, times: int = 1) -> State | None:
         """Go back to the place before the last load or change, and return its state; `times` times.
 
@@ -293,6 +279,7 @@ class Session:
             raise InputError("times", f"only {len(self._undo)} places before this one are remembered, not {times}")
         return self._move(self._undo, self._redo, times)
 
+    @in_turn
     def redo(self, times: int = 1) -> State | None:
         """Take back so many calls of :meth:`undo`, and return the state. A new load or change forgets them.
 
@@ -313,6 +300,7 @@ class Session:
         self._go_back()
         return self._here.state
 
+    @in_turn
     def reset(self) -> None:
         """Go back to no load, with the present problem and nodes. The history and all other places are forgotten."""
         self._here = replace(self._here, loads=Loads(), restart=None, state=None)
@@ -320,6 +308,7 @@ class Session:
         self._redo.clear()
         self._run = None
 
+    @in_turn
     def copy(self, matrices: bool = True) -> Session:
         """Another session at the same place, with the same matrices or, to be small, without `matrices`."""
         other = Session.__new__(Session)
@@ -328,6 +317,7 @@ class Session:
             other._system, other._recorder.outside = self._system, self._recorder.outside
         return other
 
+    @in_turn
     def result(self, keep: str | KeepRule = DEFAULTS.keep) -> Result:
         """Follow the history once more, and return the result with a state for every load.
 
@@ -346,6 +336,7 @@ class Session:
             raise InputError("result", "no load was followed yet")
         return solve(self.problem, history, grid=self.grid, keep=keep, slip_sums=self._options.slip_sums)
 
+    @in_turn
     def __getstate__(self) -> dict[str, Any]:
         return {
             "options": self._options, "expected": self._expected, "grid": self._grid, "here": self._here,
@@ -359,6 +350,7 @@ class Session:
 
     __copy__ = copy
 
+    @in_turn
     def __repr__(self) -> str:
         here = self._here
         nodes = "no nodes yet" if here.grid is None else f"{here.grid.size} nodes"
@@ -592,9 +584,3 @@ class Session:
                 assert self._recorder.run is not None
                 return self._recorder.run
             arc = ALL_ROUND
-
-
-def touches_outside(run: Run) -> ArcError:
-    """The error of a run whose pin touches the hole beyond the arc."""
-    message = f"step {run.corner}: the pin touches the hole beyond the arc"
-    return ArcError(message, run.corner - 1, 1.0, named_load(run.load))

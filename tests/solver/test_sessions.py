@@ -443,7 +443,7 @@ def test_loads_of_other_types_are_numbers_too(problem):
     ("options", "sentence"),
     [
         ({"nodes": 3}, "nodes: must be a whole number from 5 to 20000"),
-        ({"undo": -1}, "undo: must be a whole number of at least 0"),
+        ({"undo": -1}, "undo: must be a whole number from 0 to 100000000"),
         ({"slip_sums": 1}, "slip_sums: must be true or false"),
         ({"grid": 5}, "grid: must be a Grid"),
         ({"arc": (0.0, 1.0), "grid": fastpin.Grid.circle(41)}, "arc: has no effect where a grid is given"),
