@@ -19,6 +19,7 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.cycles import Cycle
@@ -58,7 +59,7 @@ class HotSpot(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fatigue:
+class Fatigue(ReadOnly):
     """Fatigue of one body over one load cycle. All arrays have the shape of the points.
 
     Attributes

@@ -28,6 +28,7 @@ from fastpin.model.checks import (
 from fastpin.model.compliance import COLUMNS
 from fastpin.model.materials import PLANES, Material, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
+from fastpin.model.read_only import ReadOnlyDict
 
 HOLD = ("both", "x", "y", "normal")
 """Components of the displacement that a support holds."""
@@ -236,6 +237,7 @@ class Lug:
         object.__setattr__(self, "holes", tuple(instances("holes", self.holes, Hole, "a list of holes")))
         if not isinstance(self.supports, Mapping):
             raise InputError("supports", f"must map names to words, not {as_toml(self.supports)}")
+        object.__setattr__(self, "supports", ReadOnlyDict(self.supports))
         _check_outline(self.outline, self.hole_radius)
         if _area(self.outline) < 0.0:
             object.__setattr__(self, "outline", tuple(part.reversed() for part in reversed(self.outline)))

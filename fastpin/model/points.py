@@ -13,6 +13,7 @@ from fastpin.model.bodies import Ring, Tube
 from fastpin.model.checks import choice, in_one_shape, instance, numbers
 from fastpin.model.compliance import Compliance
 from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -22,12 +23,15 @@ Body = Literal["plate", "pin"]
 ROUNDING = 1e-14
 """Distance from the edge that is rounding, in units of the hole's radius."""
 
+MOST_ANGLE = 1e6
+"""Largest size of an angle, rad. Beyond, a turn has too few digits."""
+
 BODIES = ("plate", "pin")
 """The bodies in contact."""
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class Points(ReadOnly):
     """Points by angle and radius, or by angle and depth below the edge of the hole. Both may be arrays of any shape.
 
     ``Points.at_radius``, ``Points.at_depth`` and ``Points.at_xy`` make them. Arrays are broadcast: a column of depths
@@ -57,9 +61,11 @@ class Points:
             raise InputError("radius", "or depth must be given, and not both")
         name, given = ("depth", self.depth) if self.radius is None else ("radius", self.radius)
         assert given is not None
-        values, angles = in_one_shape(name, numbers(name, given, 0.0), numbers("theta", self.theta))
-        object.__setattr__(self, name, values)
-        object.__setattr__(self, "theta", angles)
+        turned = numbers("theta", self.theta, -MOST_ANGLE, MOST_ANGLE)
+        values, angles = in_one_shape(name, numbers(name, given, 0.0), turned)
+        for field, array in ((name, values), ("theta", angles)):
+            array.setflags(write=False)
+            object.__setattr__(self, field, array)
 
     @classmethod
     def at_radius(cls, radius: ArrayLike, theta: ArrayLike) -> Points:

@@ -15,6 +15,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.history import CycleKey, LoadHistory
 from fastpin.model.points import Body
 from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.states.choice import StateChoice, span_of, states_between
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Restart:
+class Restart(ReadOnly):
     """Everything from which a run continues at a corner, to the same bits.
 
     Attributes

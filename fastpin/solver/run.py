@@ -15,6 +15,7 @@ from fastpin.kernels.status import OPEN, SLIP_POSITIVE
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
+from fastpin.model.read_only import ReadOnlyDict
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
@@ -226,7 +227,7 @@ class Run:
         """
         return Restart(
             self.corner, self.load, self.system.scales.force, self.last_corner, self.dissipation, self.work,
-            Repeats(list(self.repeats)), {}, self.statistics.copy(), self.slip_tally,
+            Repeats(list(self.repeats)), {}, ReadOnlyDict(self.statistics), self.slip_tally,
         )  # fmt: skip
 
     def restart(self) -> Restart:
@@ -475,7 +476,7 @@ class Run:
         self.slip_tally, self._counted = self._no_slip, self.now.slip_tally
 
     def _state(self, step: int, fraction: float, residuals: dict[str, float]) -> State:
-        """The present configuration as a state, SI. Its arrays can't be written to: steps that repeat share them."""
+        """The present configuration as a state, SI."""
         system, now, scales = self.system, self.now, self.system.scales
         way, load = now.rest - now.origin, now.load
         moved = np.where(np.isnan(way), 0.0, way) + now.motion[:2]
@@ -485,16 +486,21 @@ class Run:
         status = now.status.copy()
         if system.problem.frictionless:
             status = np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8)
-        state = State(
+        nodal = {
+            "pressure": now.pressure * scales.traction,
+            "shear": now.shear * scales.traction,
+            "gap": now.gap * scales.displacement,
+            "slip": (now.slip - now.rest_slip) * scales.displacement,
+            "status": status,
+        }
+        for array in nodal.values():
+            array.setflags(write=False)  # nobody else writes to them, so the state needs no views
+        return State(
+            **nodal,
             step=step,
             fraction=fraction,
             load=named_load(load * scales.loads),
             theta=system.grid.theta,
-            pressure=now.pressure * scales.traction,
-            shear=now.shear * scales.traction,
-            gap=now.gap * scales.displacement,
-            slip=(now.slip - now.rest_slip) * scales.displacement,
-            status=status,
             dx=float(moved[0]) * scales.displacement,
             dy=float(moved[1]) * scales.displacement,
             rotation=float(now.motion[2]) * scales.rotation,
@@ -507,9 +513,6 @@ class Run:
             marks=now.marks if fraction == 1.0 else marks_left(self.last_corner, now),  # corners are marked already
             **self._slip_fields(self._slip_since_kept()),
         )
-        for array in (state.pressure, state.shear, state.gap, state.slip, state.status):
-            array.setflags(write=False)
-        return state
 
 
 def _stepper(system: System, options: SolveOptions, statistics: dict[str, float], strict: bool) -> Stepper:

@@ -26,7 +26,7 @@ from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import LEAST_COARSE
-from fastpin.states.state import SlipFields, State
+from fastpin.states.state import SlipFields, State, state_again
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
@@ -207,8 +207,7 @@ class MemoryRecorder:
         """Keep the latest states once more, as states of other steps; see :meth:`fastpin.solver.run.Recorder`."""
         latest = self.states[len(self.states) - len(steps) :]
         for state, step, lost, done in zip(latest, steps.tolist(), dissipation.tolist(), work.tolist(), strict=True):
-            load, residuals = dict(state.load), dict(state.residuals)
-            self.states.append(replace(state, step=step, dissipation=lost, work=done, load=load, residuals=residuals))
+            self.states.append(state_again(state, step, lost, done))
         given: dict[str, Any] = {**slip}
         if any(not np.array_equal(getattr(latest[0], name), values, equal_nan=True) for name, values in given.items()):
             self.states[-len(steps)] = replace(self.states[-len(steps)], **slip)

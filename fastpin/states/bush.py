@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.model.angles import near_bottom
+from fastpin.model.read_only import ReadOnly
 
 
 @dataclass(frozen=True, eq=False)
-class BushFit:
+class BushFit(ReadOnly):
     """The tractions between bush and plate in one state, and what the press fit must supply.
 
     The bush is bonded in the calculation. That holds where the pressure is positive all round, and the shear below

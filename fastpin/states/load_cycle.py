@@ -18,6 +18,7 @@ from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units
 from fastpin.states.state import State
 
@@ -45,7 +46,7 @@ class NodeBehaviour(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Loop:
+class Loop(ReadOnly):
     """A load against the displacement on which it does work, at the states of a cycle.
 
     Attributes

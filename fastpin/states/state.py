@@ -17,6 +17,7 @@ from fastpin.model.checks import true_or_false
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import named_loads, units, with_unit
 from fastpin.states import peaks, zones
 from fastpin.states.cusps import ShearNodes
@@ -45,11 +46,11 @@ class SlipFields(TypedDict, total=False):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State:
+class State(ReadOnly):
     """The contact at one load.
 
-    The arrays are read-only, because steps that repeat share them. All numbers are in SI units, or in the units of a
-    dimensionless problem.
+    The arrays and dicts are read-only, because steps that repeat share them. All numbers are in SI units, or in the
+    units of a dimensionless problem.
 
     The angles that are read lie at most half a turn from the bottom of the hole, also if the grid begins elsewhere. The
     angle of a peak lies in (-3 pi/2, pi/2], and so does the middle of every interval. An interval across the top may so
@@ -135,13 +136,7 @@ class State:
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields alone: everything else is computed from them."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        for value in state.values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)  # a copy through pickle could be written to
+        return {name: self.__dict__[name] for name in _FIELDS}
 
     def __repr__(self) -> str:
         unit = units(self.problem)["traction"]
@@ -446,6 +441,16 @@ class State:
             If a circle lies outside its body, or the body has no such circle.
         """
         return states.joint.joint_displacement(self, hub_radius, gauge_radius)
+
+
+_FIELDS = tuple(field.name for field in fields(State))
+
+
+def state_again(state: State, step: int, dissipation: float, work: float) -> State:
+    """The same state at another step, with the energies up to there. It shares the arrays and dicts."""
+    content, again = state.__dict__, State.__new__(State)
+    again.__dict__.update({name: content[name] for name in _FIELDS}, step=step, dissipation=dissipation, work=work)
+    return again
 
 
 def _in_degrees(intervals: list[Interval]) -> str:

@@ -17,6 +17,7 @@ from fastpin.model.grid import MAX_NODES, Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import Method, SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.read_only import ReadOnly
 from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import ArcError, SolveError
@@ -111,7 +112,7 @@ class Study:
 
 
 @dataclass(frozen=True)
-class Convergence:
+class Convergence(ReadOnly):
     """A convergence study.
 
     Attributes
@@ -230,7 +231,7 @@ def converge(
     task = Task(problem, as_history(history), SolveOptions(nodes=counts[0], arc=arc))
     if corner is not None and whole_number("corner", corner, 1) > len(task.history):
         raise InputError("corner", f"must be one of the history, 1 to {len(task.history)}, not {as_toml(corner)}")
-    chosen = _checked_outcomes(outcomes or {})
+    chosen = _checked_outcomes({} if outcomes is None else outcomes)
     warn_of(doubts(problem, task.history, task.options), 3)  # above are the explanation of keywords and the user
     return _Work(task, counts, steps, single, corner, progress, chosen).study()
 
