@@ -132,8 +132,7 @@ class Material:
 
         A `factor` that is not positive raises :class:`InputError`.
         """
-        positive("factor", factor)
-        return Material(self.E * factor, self.nu, self.name)
+        return Material(self.E * positive("factor", factor), self.nu, self.name)
 
     def kolosov(self, plane: Plane) -> float:
         """Kolosov's constant: 3 - 4 nu in plane strain, (3 - nu)/(1 + nu) in plane stress.

@@ -63,10 +63,10 @@ def uniform_pressure(problem: Problem, sxx: float = 0.0, syy: float = 0.0) -> fl
     InputError
         If the bodies have no closed form under the loads, or uniform pressure changes no radius.
     """
-    _checked_loads(problem, {"sxx": sxx, "syy": syy})
+    given = _checked_loads(problem, {"sxx": sxx, "syy": syy})
     if problem.is_incompressible:
         raise InputError("problem", "uniform pressure changes no radius of these bodies")
-    widened = 0.125 * (problem.pair.plate_kolosov + 1.0) * problem.pair.plate_compliance * (sxx + syy)
+    widened = 0.125 * (problem.pair.plate_kolosov + 1.0) * problem.pair.plate_compliance * (given["sxx"] + given["syy"])
     strain = -problem.assembled_clearance / problem.hole_radius - widened
     return strain / problem.joint.uniform_compliance
 

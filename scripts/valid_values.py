@@ -1,0 +1,290 @@
+"""Valid arguments for the calls of :mod:`scripts.calls`: objects of fastpin, and values by parameter."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import shutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fastpin
+from fastpin import benchmarks, casefile, damage, elasticity, model, report, studies, verification
+from fastpin.errors import FastpinError
+from fastpin.report.curves import Curve
+from scripts.inline import Inline
+
+LEFT_OUT = object()
+"""The valid value of a parameter that has a default."""
+
+NODES = 31
+"""Nodes of all results."""
+
+PLAN = 'title = "Friction"\n[grid]\n"contact.friction" = [0.2, 0.4]\n"solve.nodes" = [31]\n'
+
+LUG = (
+    '[plate]\nnu = 0.3\nplane = "strain"\nhole_radius = 1.0\n[outline]\nshape = "rectangle"\nx = [-2.5, 2.5]\n'
+    'y = [-2.5, 6.0]\n[[support]]\nparts = ["top"]\nhold = "both"\n'
+)
+
+MATRIX = np.diag(0.1 ** np.repeat([0.0, 0.0, 1.0, 4.0], [2, 4, 4, 4]))
+"""The matrix of a compliance."""
+
+HISTORY = [[[1.0, 0.5, 0.1, 0.2], [-1.0, 0.0, 0.3, 0.1]]]
+"""A history of stresses of one point."""
+
+PROBLEM_FIELDS = ("pair", "clearance", "friction", "rotation", "pin_body", "plate_body", "hole_radius", "thickness")
+
+LOOK_FIELDS = ("path", "title", "width", "dpi", "ax")
+
+KEYWORDS: dict[str, tuple[str, ...]] = {
+    "LoadHistory.monotonic": ("P", "Q", "x"),
+    "Session.change": PROBLEM_FIELDS,
+    "SolveOptions.changed": ("nodes", "method", "arc", "between", "keep"),
+    "Result.plot": LOOK_FIELDS,
+    "Result.fatigue": ("points", "depth", "constants"),
+    "Result.report": ("title", "case", "convergence", "progress"),
+    "Look.sheet": ("sharex",),
+    "record": ("nodes", "method", "arc", "between", "keep", "slip_sums"),
+}
+"""Keywords that are tried where a callable takes any."""
+
+
+STRENGTHS = model.FatigueConstants(1e9, -0.1, 0.5, -0.6, 5e8, -0.1, 0.5, -0.6, bending_limit=2e8, torsion_limit=1.2e8)
+"""Constants of fatigue for all criteria."""
+
+PLATE = fastpin.Material(72e9, 0.33, "aluminium", STRENGTHS, yield_strength=4e8)
+"""A plate with constants of fatigue."""
+
+
+class Enough(FastpinError):  # noqa: N818 - no fault
+    """The end of a call that would take long."""
+
+
+def enough(done: float, total: float) -> None:
+    """Progress of a long call, which ends it."""
+    raise Enough("the call is valid")
+
+
+def half(done: float, total: float) -> None:
+    """Progress of a run, which ends it half-way."""
+    if done > 0.5 * total:
+        raise KeyboardInterrupt
+
+
+class Valid:
+    """Valid objects and arguments. It writes files that can be read into the present folder.
+
+    Attributes
+    ----------
+    objects : dict of str to callable
+        ``objects[name]()`` is a valid object of the class of this name, which the call may change.
+    """
+
+    def __init__(self) -> None:
+        with contextlib.suppress(ImportError):  # optional packages take seconds to import
+            damage.stress_life(1e8, 1e8, 1e6, 5.0)
+            importlib.import_module("xarray")
+        pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], PLATE)
+        problem = fastpin.Problem.from_load_parameter(pair, 0.1, 0.4)
+        history = fastpin.LoadHistory([{"P": 1.0}]) + fastpin.LoadHistory([{"Q": 0.2}, {"Q": -0.2}]).repeated(2)
+        result = fastpin.solve(problem, history, nodes=NODES, between=1, slip_sums=True)
+        state, cycle = result[-1], result.cycle()
+        options = fastpin.SolveOptions(nodes=NODES)
+        case = fastpin.Case(problem, history, options, "a case")
+        session = fastpin.Session(problem, nodes=NODES)
+        session.advance({"P": 1.0})
+        session.advance({"Q": 0.1})
+        session.undo()
+        self._write_files(result, case)
+        plan = studies.read_plan("plan.toml")
+        studies.sweep.run(plan, "sweep", executor=Inline())
+        shutil.copytree("sweep", "part")
+        rows = studies.sweep.rows(plan, "sweep")
+        convergence = fastpin.converge(problem, history, (51, 101, 201))
+        study = convergence.studies[0]
+        fatigue = damage.fatigue(result, "smith-watson-topper")
+        lug = casefile.parse_lug(LUG).lug
+        compliance = model.Compliance(0.3, "strain", 1.0, MATRIX)
+        grid = result.grid
+        made: Sequence[Any] = (
+            pair, pair.pin, problem, history, history.blocks[0], result, state, cycle, result.cycles[-1], options, case,
+            grid, convergence, study, study.series[0], fatigue, fatigue.hot_spot, lug, compliance, plan, plan.points[0],
+            result.restart, fastpin.Points.at_depth(0.0, state.theta), state.stress(fastpin.Points.at_depth(0.0, -1.5)),
+            state.peak_hoop_stress(), cycle.loops["Q"], model.Disk(), model.Plate(), model.Ring(3.0), model.Tube(0.5),
+            model.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6), model.Hole("bolt", 3j, 0.5),
+            model.PartLoad("sxx", ("left", "right"), normal=1.0), lug.outline[0], casefile.parse_lug(LUG),
+            report.sweep.chart(plan, rows, "peak_pressure"), studies.sweep.status(plan, "sweep"),
+            damage.findley(HISTORY, 0.3),
+            report.convergence.reported_series(study, problem, study.series[0].corner)[0],
+            elasticity.PlateResult(compliance, 0.0, 0.0, 0.0, 100), benchmarks.Row("peak", "1", "0.5", 0.5),
+            Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}),
+            fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
+        )  # fmt: skip
+        self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
+        del self.objects["type"]
+        bush = fastpin.Problem.from_load_parameter(
+            pair, 0.1, 0.4, plate_body=model.Bushing(pair.pin, 2.0, 0.01, friction=0.2)
+        )
+        bushed = fastpin.solve(bush, [{"P": 1.0}], nodes=NODES)[-1]
+        self._bushed = bushed
+        self.objects |= {
+            "BushFit": _always(bushed.bush_fit()),
+            "Session": session.copy,
+            "Outcome": lambda: benchmarks.Outcome([benchmarks.Row("peak", "1", "0.5", 0.5)]),
+        }
+        self._by_target = self._targets(result)
+        self._by_annotation = self._annotations(result)
+
+    def _write_files(self, result: fastpin.Result, case: fastpin.Case) -> None:
+        """Write a case, a plan, a lug, a history, materials, a compliance and a result into the present folder."""
+        texts = {
+            "case.toml": casefile.EXAMPLE,
+            "plan.toml": PLAN,
+            "lug.toml": LUG,
+            "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
+            "outcomes.toml": '[outcomes]\nwork = {quantity = "work"}\n',
+            "materials.toml": '["own steel"]\nE = 2e11\nnu = 0.3\n',
+            "lug.json": model.Compliance(0.3, "strain", 1.0, MATRIX).to_text(),
+        }
+        for name, text in texts.items():
+            Path(name).write_text(text, encoding="utf-8")
+        fastpin.save(result, "result.h5")
+        with contextlib.suppress(KeyboardInterrupt):
+            fastpin.record(result.problem, result.history, "unfinished.h5", nodes=NODES, arc=(-3.1, 0.0), progress=half)
+
+    @property
+    def _fitted(self) -> fastpin.Problem:
+        """A problem with an interference fit."""
+        return fastpin.Problem.from_load_parameter(self.objects["MaterialPair"](), -0.1, 0.4)
+
+    def object_of(self, owner: type, target: str = "") -> Any:
+        """A valid object of a class, for a call of one of its methods."""
+        if target == "fastpin.State.bush_fit":
+            return self._bushed
+        if owner.__name__ not in self.objects:
+            raise LookupError(f"scripts/valid_values.py has no object of the class {owner.__name__}")
+        return self.objects[owner.__name__]()
+
+    def argument(self, target: str, name: str, annotation: str, is_optional: bool) -> Any:
+        """The valid argument of a parameter; LEFT_OUT if it has a default."""
+        words = (target + "." + name).split(".")
+        last = words[-2]
+        for key in (".".join(words[place:]) for place in range(len(words) - 1)):
+            if key in self._by_target:
+                return self._by_target[key]()
+        if is_optional:
+            return LEFT_OUT
+        if last in self.objects and hasattr(found := self.objects[last](), name):
+            return getattr(found, name)
+        for key in (annotation, annotation.split(" | ")[0]):
+            if key in self._by_annotation:
+                return self._by_annotation[key]()
+            if key in self.objects:
+                return self.objects[key]()
+        if name in BY_NAME:
+            return BY_NAME[name]
+        raise LookupError(f"scripts/valid_values.py has no value for the parameter {name} of {target}, {annotation}")
+
+    def _annotations(self, result: fastpin.Result) -> dict[str, Callable[[], Any]]:
+        return {
+            "Sequence[State]": _always(result),
+            "LoadHistory | Sequence[dict[str, float]]": _always([{"P": 1.0}]),
+            "Corner": _always({"P": 1.0}),
+            "Mapping[str, float]": _always({"P": 1.0, "Q": 1.0}),
+        }
+
+    def _targets(self, result: fastpin.Result) -> dict[str, Callable[[], Any]]:
+        n = result.grid.size
+        values: dict[str, Any] = {
+            "Grid.theta": np.linspace(-3.0, 0.0, 11),
+            "LoadHistory.corners": [{"P": 1.0}, {"Q": 0.2}],
+            "of_blocks.blocks": result.history.blocks,
+            "damage_sum.cycles": result.cycles,
+            "damage_sum.constants": STRENGTHS,
+            "fatigue_at_distance.length": 0.01,
+            "read_case.path": "case.toml",
+            "from_csv.path": "loads.csv",
+            "read_lug.path": "lug.toml",
+            "read_materials.path": "materials.toml",
+            "read_plan.path": "plan.toml",
+            "read_outcomes.path": "outcomes.toml",
+            "from_file.path": "lug.json",
+            "parse_case.text": casefile.EXAMPLE,
+            "parse_lug.text": LUG,
+            "parse_plan.text": PLAN,
+            "from_document.content": model.Compliance(0.3, "strain", 1.0, MATRIX).document(),
+            "with_outcomes.outcomes": {"work": {"quantity": "work"}},
+            "angle_of_largest.values": np.arange(float(n)),
+            "elliptic_stress.pressure": 1.0,
+            "merge.directory": "whole",
+            "run.directory": "sweep",
+            "run.executor": Inline(),
+            "fatigue.criterion": "smith-watson-topper",
+            "bonded_opening_load.problem": self._fitted,
+            "first_slip_load.problem": self._fitted,
+            "first_slip_moment.problem": self._fitted,
+            "frictionless_opening_load.problem": self._fitted,
+            "verify.progress": enough,
+            "animate.progress": enough,
+            "write_report.progress": enough,
+            "Result.report.progress": enough,
+            "plate_compliance.progress": enough,
+            "plate_compliance.lug": casefile.parse_lug(LUG).lug,
+            "solve_sliding.problem": _sliding_problem(result.problem.pair),
+            "solve_sliding.load": {"P": 1.0, "Q": 1.0},
+            "bush_fit.friction": 0.3,
+            "Session.change.friction": 0.3,
+            "FatigueConstants.required.names": ["fatigue_strength"],
+            "Lug.supports": {"top": "both"},
+            "archard_depth.pressure": [[1.0], [2.0]],
+            "archard_depth.slip": [[1e-6], [2e-6]],
+            "ruiz.shear": [[1.0], [2.0]],
+            "resume.path": "unfinished.h5",
+            "bulk_stress_eccentricity.bulk_stress": 0.01,
+            "bulk_stress_eccentricity.load_ratio": 0.1,
+            "animate.path": "out.gif",
+            "animate.states": "all",
+            "write_report.path": "out.html",
+            "write_report.result": result,
+            "write_sweep_report.path": "out.html",
+            "save.path": "out.h5",
+            "Result.report.path": "out.html",
+            "record.path": "out.h5",
+            "record.nodes": NODES,
+            "solve.nodes": NODES,
+            "converge.nodes": (51, 101, 201),
+            "is_being_written.path": Path("result.h5"),
+            "benchmarks.Outcome.rows": [benchmarks.Row("peak", "1", "0.5", 0.5)],
+        }
+        return {name: _always(value) for name, value in values.items()}
+
+
+BY_NAME: dict[str, Any] = {
+    "E": 2e11, "a": 0.3, "alpha": 0.25, "amplitude": 1e8, "bending_limit": 2e8, "beta": 0.06, "beta_star": 1.0,
+    "body": "plate", "corners": [[1.0] * 9], "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper",
+    "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0, "fatigue_ductility": 0.5,
+    "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0, "half_width": 1.0,
+    "history": HISTORY, "index": 1, "k": 0.3, "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3,
+    "limit_range": 2e8, "lives": [1e5, 1e6], "load_parameter": 0.1, "load_ratio": 0.5, "mu_over_beta": 2.0,
+    "name": "sxx", "nodes": NODES, "nu": 0.3, "nu_pin": 0.3, "parameter": [1e6], "path": "result.h5",
+    "paths": [[[0.0, 1.0], [1.0, 0.0]]], "peak_pressure": 2.0, "phi": [0.0, 0.5],
+    "places": [(-3.0, 0.1), (-1.5, 0.05), (0.0, 0.1)], "plane": "strain", "purpose": "fatigue", "radius": 2.0,
+    "share": np.array([0.0, 0.5]), "shear_ductility_exponent": -0.6, "shear_fatigue_ductility": 0.5,
+    "shear_fatigue_strength": 5e8, "shear_modulus": 8e10, "shear_strength_exponent": -0.1, "slip_range": [1e-6],
+    "slope": 5.0, "sources": ["part"], "start": -3.0, "stop": 0.0, "strength_exponent": -0.1, "sxx": 1.0, "sxy": 0.1,
+    "syy": 0.0, "theta": [-1.5, -1.0], "thickness": 0.01, "threshold_range": 5e6, "torsion_limit": 1.2e8,
+    "values": [0.0, 1.0, -1.0], "wear_coefficient": 1e-14, "x": [0.0, 0.5], "y": [0.0, 0.5], "yield_strength": 4e8,
+}  # fmt: skip
+"""Valid values by the name of a parameter."""
+
+
+def _sliding_problem(pair: fastpin.MaterialPair) -> fastpin.Problem:
+    return fastpin.Problem.from_load_parameter(pair, 0.5, 0.3, "centre", "fixed")
+
+
+def _always(value: Any) -> Callable[[], Any]:
+    return lambda: value
