@@ -15,7 +15,7 @@ from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model import Bushing, Ring, Tube
 from fastpin.states.cycles import Cycle
-from tests.support.samples import PAIR, sample_result
+from tests.support.samples import PAIR, sample_result, with_values
 
 
 def legend_texts(figure):
@@ -56,9 +56,7 @@ def test_the_map_is_drawn_below_the_loads_that_change(tmp_path):
 
 def test_states_without_contact_have_white_columns():
     result = sample_result()
-    result[0].pressure[:] = 0.0
-    result[0].shear[:] = 0.0
-    result[0].status[:] = 2
+    result.states[0] = with_values(result[0], pressure=0.0, shear=0.0, status=2)
     panel = figures.plot_stick_slip(result).axes[-1]
     assert panel.get_xlim() == (0.5, 3.5)
     assert {box.point for box in zone_boxes(result)} == {2.0, 3.0}
@@ -74,10 +72,10 @@ def test_the_two_directions_of_slip_differ_without_colour():
 def test_a_triangle_marks_a_narrow_slip_zone():
     result = sample_result(nodes=401)
     state = result[0]
-    inside = np.flatnonzero(state.status != 2)
-    state.status[inside] = STICK
-    state.shear[inside] = 0.0
-    state.status[inside[:1]], state.shear[inside[:1]] = SLIP_POSITIVE, 0.4 * state.pressure[inside[:1]]
+    status, shear = np.where(state.status != 2, STICK, state.status), np.zeros(state.shear.size)
+    first = np.flatnonzero(status != 2)[:1]
+    status[first], shear[first] = SLIP_POSITIVE, 0.4 * state.pressure[first]
+    result.states[0] = with_values(state, status=status, shear=shear)
     panel = figures.plot_stick_slip(result).axes[-1]
     (marks,) = panel.lines
     assert (marks.get_marker(), marks.get_xdata().tolist()) == ("^", [1.0])

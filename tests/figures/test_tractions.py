@@ -21,7 +21,7 @@ from fastpin.figures.tractions import plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
-from tests.support.samples import PAIR, sample_result
+from tests.support.samples import PAIR, sample_result, with_values
 
 
 def curves(panel: mpl.axes.Axes, thicker_than: float = 0.8) -> list[np.ndarray]:
@@ -48,11 +48,10 @@ def test_tractions_are_drawn_in_degrees_from_the_bottom_and_in_megapascal() -> N
 @pytest.mark.parametrize("half", [0.02, 0.3, 1.0, 1.4])
 def test_both_ends_of_the_axis_of_angles_have_numbers(half: float) -> None:
     result = sample_result(nodes=401)
-    for state in result:
-        away = np.abs(state.theta + 0.5 * np.pi)
-        state.pressure[:] = 1e8 * np.sqrt(np.maximum(1.0 - (away / half) ** 2, 0.0))
-        state.shear[:] = 0.0
-        state.status[:] = np.where(state.pressure > 0.0, 0, 2)
+    away = np.abs(result[0].theta + 0.5 * np.pi)
+    pressure = 1e8 * np.sqrt(np.maximum(1.0 - (away / half) ** 2, 0.0))
+    status = np.where(pressure > 0.0, 0, 2)
+    result.states = [with_values(state, pressure=pressure, shear=0.0, status=status) for state in result]
     for panel, axis in ((plot_tractions(result).axes[-1], "x"), (plot_stick_slip(result).axes[-1], "y")):
         low, high = getattr(panel, f"get_{axis}lim")()
         ticks = [tick for tick in getattr(panel, f"get_{axis}ticks")() if low - 1e-6 <= tick <= high + 1e-6]
@@ -135,10 +134,10 @@ def test_zones_of_each_state() -> None:
 def test_an_arrow_points_at_a_slip_zone_that_is_too_narrow_to_be_seen() -> None:
     result = sample_result(nodes=401)
     state = result[0]
-    inside = np.flatnonzero(state.status != 2)
-    state.status[inside] = 0
-    state.shear[inside] = 0.0
-    state.status[inside[:2]], state.shear[inside[:2]] = 1, 0.4 * state.pressure[inside[:2]]
+    status, shear = np.where(state.status != 2, 0, 2), np.zeros(state.shear.size)
+    first = np.flatnonzero(status != 2)[:2]
+    status[first], shear[first] = 1, 0.4 * state.pressure[first]
+    result.states[0] = state = with_values(state, status=status, shear=shear)
     (narrow,) = state.slip_zones
     assert np.degrees(narrow[1] - narrow[0]) < 3.0
     panel = plot_tractions(result).axes[-1]
@@ -216,9 +215,7 @@ def test_a_contact_across_the_seam_of_the_circle_is_drawn_in_one_piece(centre: f
 
 def test_contact_all_round() -> None:
     result = sample_result([{"P": 1e6}, {"Q": 1e5}], closed=True, nodes=60)
-    for state in result:
-        state.pressure[:] = 1e8
-        state.status[:] = 0
+    result.states = [with_values(state, pressure=1e8, status=0) for state in result]
     figure = plot_tractions(result)
     low, high = figure.axes[0].get_xlim()
     assert high - low == pytest.approx(360.0)
@@ -226,10 +223,7 @@ def test_contact_all_round() -> None:
 
 def test_states_without_contact(tmp_path: Path) -> None:
     result = sample_result()
-    for state in result:
-        state.pressure[:] = 0.0
-        state.shear[:] = 0.0
-        state.status[:] = 2
+    result.states = [with_values(state, pressure=0.0, shear=0.0, status=2) for state in result]
     plot_tractions(result, tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 0
 
@@ -280,13 +274,15 @@ def test_nothing_to_plot_and_unknown_formats(tmp_path: Path) -> None:
 
 def test_equal_states_share_a_line() -> None:
     result = sample_result([{"P": 1e6, "Q": 1e5}, {"Q": -1e5}, {"Q": 1e5}, {"Q": 1e5}])
-    for name in ("pressure", "shear", "status"):
-        getattr(result[2], name)[:] = getattr(result[0], name)
+    same = {name: getattr(result[0], name) for name in ("pressure", "shear", "status")}
+    result.states[2] = with_values(result[2], **same)
     figure = plot_tractions(result)
     assert labels(figure)[:3] == ["1, 3:  Q = +0.1 MN/m", "2:  Q = −0.1 MN/m", "4:  Q = +0.1 MN/m"]
     colours = [line.get_color() for line in figure.axes[0].lines]
     assert colours == [COLOURS[k] for k in (0, 1, 0, 3)]
-    result[2].pressure[40] += 2e-3 * 1e8
+    pressure = result[0].pressure.copy()
+    pressure[40] += 2e-3 * 1e8
+    result.states[2] = with_values(result[2], pressure=pressure)
     assert labels(plot_tractions(result))[0] == "1:  Q = +0.1 MN/m"
 
 

@@ -20,7 +20,7 @@ from fastpin.paper.curves import steps, traction_curve
 from fastpin.report.curves import Curve, write_csv
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
-from tests.support.samples import sample_result
+from tests.support.samples import sample_result, with_values
 
 NODES = 81
 SWEEPS = ("5", "8")
@@ -291,17 +291,15 @@ def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
     assert np.ptp(whole["angle_deg"]) == pytest.approx(np.degrees(2.0), rel=0.05)
     state = sample_result(closed=True, nodes=90)[0]
     middle = np.abs(state.theta + 0.5 * np.pi) < 0.3
-    state.status[middle], state.pressure[middle] = 2, 0.0
+    state = with_values(state, status=np.where(middle, 2, state.status), pressure=np.where(middle, 0.0, state.pressure))
     split = traction_curve(state)
     assert np.isnan(split["N"]).sum() == 1
     assert np.sum(split["N"] == 0.0) == 4
-    state = sample_result(closed=True, nodes=90)[0]
-    state.status[:], state.pressure[:] = 0, 1.0
+    state = with_values(sample_result(closed=True, nodes=90)[0], status=0, pressure=1.0)
     round_and_round = traction_curve(state)
     assert round_and_round["N"] == pytest.approx(1.0)
     assert round_and_round["angle_deg"][[0, -1]] == pytest.approx([-180.0, 180.0], abs=4.0)
-    state = sample_result()[0]
-    state.status[:] = 2
+    state = with_values(sample_result()[0], status=2)
     assert traction_curve(state)["N"].size == 0
 
 

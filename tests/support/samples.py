@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model.grid import Grid
@@ -78,3 +81,9 @@ def sample_result(
     assert set(states[0].load) == set(LOADS)
     statistics = {"events": 12, "exchanges": 20, "rebuilds": 1, "seconds": 0.25}
     return Result(states, problem, history, grid, "path", statistics, complete, None)
+
+
+def with_values(state: State, **values: ArrayLike) -> State:
+    """A state with other nodal values. A number stands for all nodes."""
+    arrays = {name: np.full_like(getattr(state, name), value) for name, value in values.items()}
+    return replace(state, **arrays)
