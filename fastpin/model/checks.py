@@ -165,19 +165,21 @@ def instance(field: str, value: object, kind: type[T], name: str) -> T:
     return value
 
 
-def check_callable(field: str, value: object) -> None:
-    """Check that a value is None or can be called with two arguments, as far as its signature tells."""
+def check_callable(field: str, value: object, arguments: int = 2) -> None:
+    """Check that a value is None or can be called with so many arguments, as far as its signature tells."""
     if value is None:
         return
     if not callable(value):
         raise InputError(field, f"must be a callable, not {as_toml(value)}")
     try:
-        inspect.signature(value).bind(0.0, 1.0)
+        fits = True
+        inspect.signature(value).bind(*range(arguments))
     except TypeError:
-        raise InputError(field, f"must be a callable of two arguments, not {as_toml(value)}") from None
+        fits = False
     except ValueError:  # functions in C need not have a signature
-        if isinstance(value, type):
-            raise InputError(field, f"must be a callable of two arguments, not {as_toml(value)}") from None
+        fits = not isinstance(value, type)
+    if not fits:
+        raise InputError(field, f"must be a callable of {arguments} arguments, not {as_toml(value)}")
 
 
 def items(field: str, values: Iterable[T], name: str) -> list[T]:

@@ -217,7 +217,7 @@ def converge(
     StudyInterrupted
         After Ctrl-C. It holds the study of the finished grids, if there are three.
     """
-    check_callable("progress", progress)
+    check_callable("progress", progress, 3)
     counts = _increasing("nodes", nodes, LEAST_NODES, MAX_NODES)
     for before, after in pairwise(counts):
         if after < LEAST_RATIO * before:

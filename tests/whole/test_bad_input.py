@@ -259,6 +259,25 @@ def test_values_of_odd_classes_are_refused(call):
     assert len(str(raised.value)) < 300
 
 
+@pytest.mark.parametrize("progress", [5, "all", int, float, lambda: None, lambda done: None, lambda a, b, c: None])
+def test_progress_that_takes_no_two_arguments_is_refused_before_the_work(similar, progress):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.4)
+    with pytest.raises(InputError, match="progress: must be a callable"):
+        fastpin.solve(problem, [{"P": 1.0}], nodes=41, progress=progress)
+
+
+def test_progress_of_any_callable_with_two_arguments_is_accepted(similar):
+    problem = fastpin.Problem.from_load_parameter(similar, 0.1, 0.4)
+    for progress in (max, print, lambda *both: None, lambda done, total, more=1: None, {}.setdefault):
+        fastpin.solve(problem, [{"P": 1.0}], nodes=41, progress=progress)
+
+
+@pytest.mark.parametrize("between", [[1e-300], [0.5, 0.5 + 1e-12], [1.0 - 1e-12]])
+def test_fractions_of_a_step_that_are_one_load_point_are_refused_before_the_work(between):
+    with pytest.raises(InputError, match=r"between: must be a whole number, or increasing fractions .* 1e-09 apart"):
+        SolveOptions(between=between)
+
+
 def test_numpy_numbers_are_options():
     options = SolveOptions(
         nodes=np.int64(61), between=np.array([0.25, 0.5], np.float32), arc=np.array([-3.0, -0.5]), shortcut=np.True_
