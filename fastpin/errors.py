@@ -57,6 +57,18 @@ class InputError(FieldMessage, FastpinError, ValueError):
     """
 
 
+class OutputError(FieldMessage, FastpinError):
+    """An output file that could not be written to its end, for example because the disk is full.
+
+    Attributes
+    ----------
+    field : str
+        The file.
+    reason : str
+        The message without the file.
+    """
+
+
 class CaseFileError(InputError):
     """A case file with faults.
 

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import HDF5_SIGNATURE, as_toml, choice, instance, number, why_unreadable
+from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
+from fastpin.model.inputs import HDF5_SIGNATURE, note_input
 from fastpin.model.synonyms import meant
 
 MOST_BYTES = 100_000_000
@@ -45,6 +46,7 @@ def read_text(path: Path) -> str:
     """
     try:
         with path.open("rb") as file:
+            note_input(path)
             raw = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None

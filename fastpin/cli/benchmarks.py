@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
             raise InputError(f"--{error.field}", error.reason) from None
     elif options.format:
         raise InputError("--format", "has a meaning with -o only")
-    check_outputs({"--json": options.json}, None)
+    check_outputs({"--json": options.json})
     documents: dict[str, Any] = {}
     try:
         with Bar(len(names), "benchmark {desc}") as progress_bar:

@@ -24,8 +24,8 @@ def run(options: argparse.Namespace) -> int:
     if options.lug is None:
         raise InputError("lug", "the lug file is missing; start with: fastpin compliance --example > lug.toml")
     output = options.lug.with_suffix(".json") if options.output is None else options.output
-    check_outputs({"--output": output, "--plot": options.plot}, options.lug)
     found = casefile.read_lug(options.lug)
+    check_outputs({"--output": output, "--plot": options.plot})
     drawn = write_files([(options.plot, lambda path: figures.plot_lug(found.lug, path, found.title))])
     made_by = f"fastpin {__version__}, {found.title or printable(options.lug.name)}"
     with Bar(1, "compliance") as progress_bar:

@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
     outcomes = {} if options.outcomes is None else studies.read_outcomes(options.outcomes)
     outputs = {"--csv": options.csv, "--json": options.json, "--plot": options.plot}
-    check_outputs(outputs, options.case)
+    check_outputs(outputs)
     code, trouble = EXIT_OK, ""
     note_duration(_expected_seconds(case, nodes, increments, options.increment_nodes))
     with Bar(1, "{desc}") as progress_bar:

@@ -21,6 +21,7 @@ from typing import Any
 from fastpin.cli.options import read_options
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE, fail, say
 from fastpin.errors import CaseFileError, FastpinError, InputError, InputWarning, printable
+from fastpin.model.inputs import remembered_inputs
 
 COLLECT_AFTER = 50_000
 """New objects after which garbage is looked for. Imports make no garbage, and Python's 700 objects cost them 30 ms."""
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, signal.default_int_handler)  # batch systems end a job by SIGTERM
         file, function = options.command
-        with _printed_warnings():
+        with _printed_warnings(), remembered_inputs():
             code = int(getattr(importlib.import_module(f"fastpin.cli.{file}"), function)(options))
         sys.stdout.flush()
         return code

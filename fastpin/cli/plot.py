@@ -31,13 +31,10 @@ def run(options: argparse.Namespace) -> int:
     film = options.kind == "animation"
     figure = Path(f"{options.kind}.{'gif' if film else 'png'}") if options.output is None else options.output
     outputs = {"--output": figure, "--csv": options.csv}
-    for option, path in outputs.items():
-        if path is not None and path.resolve() == options.result.resolve():
-            raise InputError(option, f"won't overwrite the result {path}")
     if film:
         figures.animation.check_animation("--output", figure)
-    check_outputs(outputs, None, figures=() if film else ("--output",))
     title = "" if _is_case_file(options) else storage.stored_case(options.result).title
+    check_outputs(outputs, figures=() if film else ("--output",))
     try:
         draw, write = KINDS[options.kind](options, title)
     except InputError as error:

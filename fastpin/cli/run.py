@@ -49,9 +49,9 @@ def run(options: argparse.Namespace) -> int:
     """Solve a case, and write its states."""
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
     case = _with_options(case, options)
-    _check_outputs(options)
     _check_combination(case, options)
     start = _start(options)
+    _check_outputs(options)
     if start is not None and start.grid.size != case.options.nodes:
         nodes = f"the {start.grid.size} nodes of {options.start} are used, not {case.options.nodes}"
         say(f"note: {nodes}", file=sys.stderr)
@@ -222,7 +222,7 @@ def _check_outputs(options: argparse.Namespace) -> None:
     names = ("json", "plot", "cycles", "cycle_csv", "record", "output")
     if options.record is not None and options.record.suffix.lower() not in (".html", ".htm"):
         raise InputError("--record", f'must be the name of a page, which ends in .html, not "{options.record.name}"')
-    check_outputs({flag(name): getattr(options, name) for name in names}, getattr(options, "case", None))
+    check_outputs({flag(name): getattr(options, name) for name in names}, result="--output")
 
 
 def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveError | solver.Interrupted | None) -> int:

@@ -14,10 +14,9 @@ from typing import Any
 from fastpin import figures, report, solver, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
 from fastpin.cli.progress import Bar, note_duration, progress_to
-from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_figure, fail, say
+from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
-from fastpin.storage.files import check_writable
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""
@@ -125,13 +124,8 @@ def _check_combination(options: argparse.Namespace) -> None:
 
 def _check_outputs(options: argparse.Namespace, plan: studies.plan.Plan) -> None:
     """Check before the work that the table and the figure can be made and written."""
-    if options.table not in (None, "-"):
-        if Path(options.table).suffix == ".toml":  # "fastpin sweep --table plan.toml"
-            raise InputError("--table", f"won't overwrite the plan {options.table}; write the plan before the options")
-        check_writable(options.table)
+    check_outputs({"--table": options.table, "--plot": options.plot})
     if options.plot is not None:
-        check_figure("--plot", options.plot)
-        check_writable(options.plot)
         try:
             report.sweep.check_axes(plan, _value(options, plan), options.x, options.y)
         except InputError as error:

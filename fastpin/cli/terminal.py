@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TextIO
 
-from fastpin.errors import InputError, printable
+from fastpin.errors import InputError, OutputError, printable
 from fastpin.storage.files import check_writable, no_figure, replacing
 
 EXIT_OK, EXIT_FAILED, EXIT_INPUT, EXIT_INTERRUPTED, EXIT_PIPE = 0, 1, 2, 130, 141
@@ -42,33 +42,38 @@ def check_figure(option: str, path: Path) -> None:
 
 
 def check_outputs(
-    names: Mapping[str, str | Path | None], case: Path | None, figures: Collection[str] = ("--plot", "--cycles")
+    names: Mapping[str, str | Path | None], figures: Collection[str] = ("--plot", "--cycles"), result: str = ""
 ) -> None:
-    """Check before the work that all output files can be written.
+    """Check before the work that all output files can be written. The inputs of the command have been read before.
 
     Parameters
     ----------
     names : mapping of option to path or None
         "-" means standard output.
-    case : Path or None
-        The case file, which must not be overwritten.
     figures : collection of str
         The options that name figures.
+    result : str
+        The option that names a result, if there is one.
 
     Raises
     ------
     InputError
-        If a file can't be written, is a case file, has the wrong suffix of a figure, or is named twice.
+        If a file can't be written or must not be replaced, is a case file, has the wrong suffix of a figure, or is
+        named twice.
     """
     chosen = {name: Path(path) for name, path in names.items() if path is not None and path != "-"}
     seen: dict[Path, str] = {}
     for name, path in chosen.items():
-        # "fastpin run --json case.toml" takes the case file for the output.
-        if path.suffix == ".toml" or (case is not None and path.resolve() == case.resolve()):
-            raise InputError(name, f"won't overwrite the case file {path}; write the case file before the options")
+        if path.suffix == ".toml":  # "fastpin run --json case.toml" takes the case file for the output.
+            raise InputError(
+                name, f"won't overwrite {path}, a case file or plan by its name; write it before the options"
+            )
         if name in figures:
             check_figure(name, path)
-        check_writable(path)
+        try:
+            check_writable(path, result=name == result)
+        except InputError as error:
+            raise InputError(name, str(error)) from None
         other = seen.setdefault(path.resolve(), name)
         if other != name:
             raise InputError(name, f"writes the same file as {other}: {path}")
@@ -85,7 +90,9 @@ def write_files(writers: Iterable[tuple[str | Path | None, Callable[[Path], obje
             continue
         try:
             write(Path(path))
-        except (OSError, InputError) as trouble:
+        except OutputError as trouble:
+            code = fail(str(trouble), EXIT_FAILED)
+        except InputError as trouble:
             code = fail(f"can't write {path}: {trouble}", EXIT_FAILED)
     return code
 

@@ -17,7 +17,7 @@ from fastpin.version import __version__
 
 def run(options: argparse.Namespace) -> int:
     """Check the installation, and print or write the checks. The exit code is 1 if a check fails."""
-    check_outputs({"--json": options.json}, None)
+    check_outputs({"--json": options.json})
     began = time.perf_counter()
     with Bar(0, "check {n} of {total}") as progress_bar:
         checks = verification.verify(progress_to(progress_bar))

@@ -32,9 +32,6 @@ DEEPEST_LIST = 3
 LONGEST_NAME, LONGEST_PATH = 255, 4095
 """Most bytes of a file's name and of its whole path, as usual systems allow them."""
 
-HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-"""The first bytes of an HDF5 file."""
-
 _NUMBER_KINDS = "iuf"
 """Kinds of NumPy arrays and scalars that hold numbers: no truth values, complex numbers, times, texts or objects."""
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import check_callable, file_path
 from fastpin.pages import drawings
@@ -17,7 +18,7 @@ from fastpin.pages.html import check_page, write_page
 from fastpin.pages.source import now
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.sweep import brief, chart, check_axes, run_columns
-from fastpin.storage.packed import INDEX
+from fastpin.storage.files import INDEX
 from fastpin.studies.index import DONE, FAILED, WAITING, Index
 from fastpin.studies.plan import Plan, describe_values, parse_plan, read_plan
 from fastpin.studies.sweep import PLAN, rows
@@ -92,7 +93,7 @@ def _plan_of(folder: Path, digest: str | None) -> Plan:
     copy, fault, changed = folder / PLAN, None, False
     if not copy.is_file():
         raise InputError(str(folder), f"holds no copy of its plan, {PLAN}; name the plan")
-    text = copy.read_text(encoding="utf-8")
+    text = read_text(copy)
     for base in (folder.resolve().parent, folder):
         try:
             plan = parse_plan(text, str(copy), base)

@@ -17,19 +17,13 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import ModuleType
 
 import h5py
 
 from fastpin.errors import InputError
-from fastpin.model.checks import HDF5_SIGNATURE, file_path
-
-fcntl: ModuleType | None
-try:
-    import fcntl
-except ImportError:  # This system has no such locks: no second process may write to the file.
-    fcntl = None
-
+from fastpin.model.checks import file_path
+from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.storage.files import NO_LINK, fcntl, is_locked, try_lock
 
 # Head of a journal record: place in the file, length of the old bytes, checksums of the old and of the new bytes.
 _RECORD = struct.Struct("<QIII")
@@ -43,7 +37,7 @@ MOST_NOTES = 1_000_000
 _PAGE = 4096
 
 # A link is not followed, and a pipe not waited for, where the system knows these flags.
-_NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+_NO_LINK = NO_LINK | getattr(os, "O_NONBLOCK", 0)
 
 
 def journal_of(path: Path) -> Path:
@@ -77,7 +71,7 @@ class JournaledFile:
             self._file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
         except OSError as error:
             raise InputError(str(path), f"can't be written: {error.strerror}") from None
-        if not _try_lock(self._file):
+        if not try_lock(self._file):
             os.close(self._file)
             raise InputError(str(path), "another run is writing to it")
         try:
@@ -285,19 +279,9 @@ def _not_readable(path: Path, start: bytes) -> InputError:
     return InputError(str(path), "is no HDF5 file, and no result")
 
 
-def check_free(path: Path) -> None:
-    """Raise :class:`InputError` if another process is writing to a file."""
-    if is_being_written(path):
-        raise InputError(str(path), "another run is writing to it")
-
-
 def is_being_written(path: Path) -> bool:
     """Return whether another process is writing to a file, as far as its lock tells."""
-    path = file_path("path", path)
-    if fcntl is None or not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return not _try_lock(file.fileno())
+    return is_locked(file_path("path", path))
 
 
 def _wait_for(journal: int, exclusive: bool | None) -> None:
@@ -504,16 +488,3 @@ def _write_all(file: int, data: bytes, place: int) -> None:
     while view:
         done = os.pwrite(file, view, place)
         view, place = view[done:], place + done
-
-
-def _try_lock(file: int) -> bool:
-    """Take the writer's lock. Return False if another process has it."""
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # The file system has no locks.
-        return True
-    return True

@@ -24,18 +24,14 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError
+from fastpin.storage.database import open_database
+from fastpin.storage.files import INDEX
 
 FOLDER = "results"
 """Folder of result files in the directory of a sweep."""
 
-INDEX = "index.sqlite"
-"""Name of the index in the directory of a sweep."""
-
 TABLE = "CREATE TABLE IF NOT EXISTS results (run TEXT PRIMARY KEY, content BLOB NOT NULL)"
 """The table of packed results in the index."""
-
-BUSY_SECONDS = 60.0
-"""Longest wait for another process that has locked the index."""
 
 _HEAD = struct.Struct("<8sII")  # signature, checksum of everything after it, length of the JSON
 _SIGNATURE = b"fpinrun1"
@@ -188,8 +184,7 @@ def packed_result(path: Path) -> bytes | None:
     if path.parent.name != FOLDER or path.suffix != ".h5" or path.exists() or not index.is_file():
         return None
     try:
-        uri = f"{index.resolve().as_uri()}?mode=ro"
-        with closing(sqlite3.connect(uri, uri=True, timeout=BUSY_SECONDS)) as database:
+        with closing(open_database(index, "ro")) as database:
             if not database.execute("SELECT count(*) FROM sqlite_master WHERE name = 'results'").fetchone()[0]:
                 return None
             row = database.execute("SELECT content FROM results WHERE run = ?", [path.stem]).fetchone()

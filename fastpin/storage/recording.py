@@ -61,7 +61,7 @@ def record(
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
-        Replace an existing file.
+        Replace an existing result. No other file is replaced.
     **options
         See :class:`fastpin.SolveOptions`. Error bars are refused: a file has no place for them.
 
@@ -77,7 +77,7 @@ def record(
     A KeyboardInterrupt ends the file properly, with all earlier states.
     """
     path = file_path("path", path)
-    check_writable(path)
+    check_writable(path, result=True)
     string("title", title)
     true_or_false("overwrite", overwrite)
     if start is not None:

@@ -29,13 +29,14 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.history import MAX_CORNERS, LoadHistory
+from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
 from fastpin.storage import packed
 from fastpin.storage.damage import reading, text_of
 from fastpin.storage.files import check_exists, check_writable, replacing
-from fastpin.storage.journal import check_free, open_h5
+from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
     SLIP_FIELDS,
     append,
@@ -67,7 +68,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     ----------
     result : Result
     path : path
-        An existing file is overwritten, but not a file with an unfinished run.
+        An existing result is overwritten, but not an unfinished run. No other file is overwritten.
     error : str, optional
         Why the result is incomplete; stored in the file.
     restart : bool
@@ -76,21 +77,22 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     Raises
     ------
     InputError
-        If `path` can't be written, holds an unfinished run, or another run is writing to it. Also if a state of the
-        result is on another grid.
+        If `path` must not be replaced: it holds an unfinished run or no result, or another run is writing to it. Also
+        if a state of the result is on another grid.
+    OutputError
+        If the file can't be written.
     """
     instance("result", result, Result, "a Result")
     true_or_false("restart", restart)
     if error is not None:
         string("error", error)
     path = file_path("path", path)
-    check_writable(path)
-    check_free(path)
+    check_writable(path, result=True)
     if is_unfinished(path):
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
-    with replacing(path) as temporary, h5py.File(temporary, "w") as file:
+    with replacing(path, result=True) as temporary, h5py.File(temporary, "w") as file:
         _write(file, result, error)
         if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)
@@ -276,6 +278,7 @@ def open_result(path: Path) -> Iterator[Any]:
             yield file
         return
     check_exists(path)
+    note_input(path)
     with open_h5(path) as file, reading(path):
         check_format(file, str(path))
         yield file

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 import logging
 import os
 import time
@@ -25,7 +24,7 @@ from fastpin.solver.task import Task
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage.damage import reading
-from fastpin.storage.files import replacing
+from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, not_readable
 from fastpin.storage.layout import (
     Rows,
@@ -72,8 +71,8 @@ def checkpoint_of(path: Path) -> Path:
 def clear_checkpoints(path: Path) -> None:
     """Remove the checkpoint of an ended run, and the partly written checkpoints of killed processes."""
     checkpoint = checkpoint_of(path)
-    for stale in (checkpoint, *checkpoint.parent.glob(f".{glob.escape(checkpoint.stem)}.*{checkpoint.suffix}")):
-        stale.unlink(missing_ok=True)
+    checkpoint.unlink(missing_ok=True)
+    forget_temporaries(checkpoint)
 
 
 @contextmanager
@@ -329,7 +328,7 @@ class FileRecorder:
         group.attrs.update(states=self._corner[0], cycles=self._corner[1])
 
     def _write_checkpoint(self) -> None:
-        with replacing(checkpoint_of(self.path)) as temporary, h5py.File(temporary, "w") as file:
+        with replacing(checkpoint_of(self.path), result=True) as temporary, h5py.File(temporary, "w") as file:
             file.attrs["run"] = self._name
             self._write_restart(file.create_group("restart"))
         log.debug("checkpoint after corner %d", self._run.corner)

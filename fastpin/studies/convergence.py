@@ -241,6 +241,7 @@ def _checked_outcomes(outcomes: Mapping[str, Any]) -> Outcomes:
     for name in chosen:
         if name in QUANTITIES or (name.startswith(ZONES) and name.endswith(("_start", "_stop"))):
             raise InputError("outcomes", f"{name}: is a quantity that every study has; choose another name")
+    check_loadable(chosen)
     return chosen
 
 

@@ -8,15 +8,19 @@ not. Other processes can read the index during a sweep.
 from __future__ import annotations
 
 import json
+import re
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, get_args
 
-from fastpin.errors import InputError, printable
-from fastpin.model.checks import any_text, choice, instance, number, whole_number
-from fastpin.storage.packed import BUSY_SECONDS, INDEX, TABLE
+from fastpin.errors import InputError, OutputError, printable
+from fastpin.model.checks import any_text, as_toml, choice, instance, number, whole_number
+from fastpin.storage.database import Mode, limited, open_database
+from fastpin.storage.files import INDEX
+from fastpin.storage.packed import TABLE
+from fastpin.studies.identity import ID_LENGTH
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Spacing
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS, RunEnd
@@ -50,26 +54,26 @@ class Index:
     Parameters
     ----------
     directory : path
-    create : bool
-        Create the file if there is none.
+    write : bool
+        Open the index to write, and create it if there is none. Otherwise nothing is written.
 
     Raises
     ------
     InputError
-        If the file can't be read, or is no index. The methods raise it also if the file can't be written.
+        If the file can't be read, or is no index. The methods raise it too.
+    OutputError
+        If the disk is full. The methods raise it too.
     """
 
-    def __init__(self, directory: Path, create: bool = False) -> None:
+    def __init__(self, directory: Path, write: bool = False) -> None:
         self.path = directory / INDEX
-        if not create and not has_index(directory):
+        if not write and not has_index(directory):
             raise InputError(str(directory), "holds no sweep: there is no index.sqlite")
         with self._as_input_error():
-            mode = "rwc" if create else "rw"
-            self._database = sqlite3.connect(
-                f"{self.path.resolve().as_uri()}?mode={mode}", uri=True, timeout=BUSY_SECONDS, isolation_level=None
-            )
+            mode: Mode = "rwc" if write else "ro"
+            self._database = open_database(self.path, mode)
             try:
-                self._check(create)
+                self._check(write)
             except BaseException:
                 self._database.close()
                 raise
@@ -80,9 +84,9 @@ class Index:
     def __exit__(self, *_: object) -> None:
         self._database.close()
 
-    def _check(self, create: bool) -> None:
+    def _check(self, write: bool) -> None:
         """Check that the file is an index. Create the tables if it is empty."""
-        if create and not self._one("SELECT count(*) FROM sqlite_master"):
+        if write and not self._one("SELECT count(*) FROM sqlite_master"):
             columns = ", ".join(f'"{name}" {kind}' for name, kind in RUN_COLUMNS.items())
             with self._transaction():
                 self._database.execute(f"PRAGMA application_id = {APPLICATION}")
@@ -190,7 +194,7 @@ class Index:
         """Read status ("waiting", "done", "failed") and reason of a failure, by id."""
         with self._as_input_error():
             cursor = self._database.execute("SELECT id, status, reason FROM runs")
-            return {str(run): (_status(status), _text("reason", reason)) for run, status, reason in cursor}
+            return {_id(run): (_status(status), _text("reason", reason)) for run, status, reason in limited(cursor)}
 
     def outcomes(self) -> dict[str, dict[str, OutcomeValue]]:
         """Read the values of all outcomes, by run and name. Only finished runs have some."""
@@ -199,7 +203,7 @@ class Index:
         found: dict[str, dict[str, OutcomeValue]] = {}
         with self._as_input_error():
             cursor = self._database.execute("SELECT run, name, definition, value, reason FROM outcomes")
-            for run, name, definition, value, reason in cursor:
+            for run, name, definition, value, reason in limited(cursor):
                 checked = None if value is None else number(name, value)
                 found.setdefault(run, {})[name] = OutcomeValue(definition, checked, _text("reason", reason))
         return found
@@ -209,7 +213,7 @@ class Index:
         if not self._has_table("results"):
             return set()
         with self._as_input_error():
-            return {str(run) for (run,) in self._database.execute("SELECT run FROM results")}
+            return {str(run) for (run,) in limited(self._database.execute("SELECT run FROM results"))}
 
     def content(self, run: str) -> bytes | None:
         """Read the packed result of a run; None if it is not in the index."""
@@ -228,7 +232,7 @@ class Index:
             fields = self.fields
             cursor = self._database.execute("SELECT * FROM runs ORDER BY rowid")
             names = [column[0] for column in cursor.description]
-            rows = [dict(zip(names, row, strict=True)) for row in cursor]
+            rows = [dict(zip(names, row, strict=True)) for row in limited(cursor)]
             for row in rows:
                 _check_row(row)
                 for name in fields:
@@ -313,6 +317,8 @@ class Index:
                 raise
             raise InputError(str(self.path), f"is damaged: {error}") from None
         except (sqlite3.OperationalError, sqlite3.InternalError) as error:
+            if error.sqlite_errorcode & 0xFF in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
+                raise OutputError(str(self.path), f"can't be written: {error}") from None
             raise InputError(str(self.path), f"can't be used: {error}") from None
         except sqlite3.DatabaseError as error:
             raise InputError(str(self.path), f"is no index of a sweep, or a damaged one: {error}") from None
@@ -330,7 +336,7 @@ def lock_directory(directory: Path) -> Iterator[None]:
         If another sweep is running in the directory, or the directory can't be written.
     """
     try:
-        lock = sqlite3.connect(directory / "lock", timeout=0.0, isolation_level=None)
+        lock = open_database(directory / "lock", "rwc", timeout=0.0)
         try:
             lock.execute("BEGIN EXCLUSIVE")
         except BaseException:
@@ -349,12 +355,20 @@ def lock_directory(directory: Path) -> Iterator[None]:
 def _check_row(row: dict[str, Any]) -> None:
     """Check the kinds of values in a row. Its texts can be printed then."""
     _status(row["status"])
-    for name in ("id", "reason", "started", "host"):
+    _id(row["id"])
+    for name in ("reason", "started", "host"):
         row[name] = _text(name, row[name])
     whole_number("dimensionless", row["dimensionless"], 0, 1)
     for name in (*KEY_FIGURES, "seconds"):
         if row[name] is not None:
             number(name, row[name])
+
+
+def _id(value: Any) -> str:
+    """The id of a run. It is a part of the names of files, so nothing but an id may stand there."""
+    if not isinstance(value, str) or not re.fullmatch(rf"[0-9a-f]{{{ID_LENGTH}}}", value):
+        raise InputError("id", f"must be {ID_LENGTH} hexadecimal digits, not {as_toml(value)}")
+    return value
 
 
 def _status(value: Any) -> str:

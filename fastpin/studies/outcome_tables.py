@@ -5,13 +5,14 @@ All faults of a table are reported at once, each with its line.
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import inspect
 import json
 import marshal
 import pickle
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,12 +26,10 @@ from fastpin.studies.outcomes import (
     CYCLE_QUANTITIES,
     SPANS,
     TAKES,
+    FunctionOfFile,
     Outcome,
-    call_in_file,
     digest,
-    module_of,
     of_last_cycle,
-    reason_of,
     taken,
 )
 from fastpin.studies.run_end import RUN_COLUMNS
@@ -53,8 +52,8 @@ def read_outcomes(path: str | Path) -> Outcomes:
     Parameters
     ----------
     path : path
-        A Python file (.py): all its public functions, each called with a result. Or a TOML file with a table
-        [outcomes], such as a plan; its other keys are not read.
+        A Python file (.py): all its public functions, each called with a result. The file is not run yet. Or a TOML
+        file with a table [outcomes], such as a plan; its other keys are not read.
 
     Returns
     -------
@@ -231,6 +230,9 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
         section.report(f"{name}: {file}: must lie beside the plan, or in a folder below", "function")
         return None
     path = folder / file
+    if not path.resolve().is_relative_to(folder.resolve()):
+        section.report(f"{name}: {file}: is a link that leads out of the folder of the plan", "function")
+        return None
     try:
         text = read_text(path)
         functions = _functions(path, text)
@@ -239,16 +241,11 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
             section.report(f"{name}: {file}{f', line {line}' if line else ''}: {message}", "function")
         return None
     if function not in functions:
-        hint = closest(function, functions) or (f"; there are {', '.join(functions)}" if functions else "")
+        hint = closest(function, tuple(functions)) or (f"; there are {', '.join(functions)}" if functions else "")
         section.report(f'{name}: there is no function "{function}" in {file}{hint}', "function")
         return None
-    return _of_file(path, text, function)
-
-
-def _of_file(path: Path, text: str, function: str) -> Outcome:
     definition = json.dumps({"function": function, "file": digest(text)})
-    unit = _unit(getattr(module_of(str(path), text), function))
-    return Outcome("", unit, definition, partial(call_in_file, str(path), text, function))
+    return Outcome("", functions[function], definition, FunctionOfFile(str(path), text, function))
 
 
 def _of_callable(function: Callable[..., Any]) -> Outcome:
@@ -269,22 +266,47 @@ def _unit(function: Callable[..., Any]) -> str:
     return printable(string("the attribute unit", getattr(function, "unit", "")))
 
 
-def _functions(path: Path, text: str) -> tuple[str, ...]:
-    """Names of the public functions that a Python file defines, in their order.
+def _functions(path: Path, text: str) -> dict[str, str]:
+    """Names and units of the public functions that a Python file defines, in their order. The file is not run.
 
     Raises
     ------
     CaseFileError
-        If the file can't be run.
+        If the text is not Python, or a unit is no text in quotes.
     """
     try:
-        module = module_of(str(path), text)
+        tree = ast.parse(text, str(path))
+        statements = list(_top_level(tree.body))
     except SyntaxError as error:
         raise CaseFileError(str(path), [(error.lineno or 0, f"is not Python: {error.msg}")]) from None
-    except (Exception, SystemExit) as error:  # The file may do anything.
-        raise CaseFileError(str(path), [(0, f"can't be imported: {reason_of(error)}")]) from None
-    return tuple(
-        name
-        for name, value in vars(module).items()
-        if inspect.isfunction(value) and value.__module__ == module.__name__ and not name.startswith("_")
-    )
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise CaseFileError(str(path), [(0, f"is not Python: {error}")]) from None
+    found: dict[str, str] = {}
+    for statement in statements:
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
+            found[statement.name] = ""
+            continue
+        for target in statement.targets:
+            if isinstance(target, ast.Name) and isinstance(statement.value, ast.Lambda):
+                found[target.id] = ""
+            elif isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and target.attr == "unit":
+                found[target.value.id] = _written_unit(path, target.value.id, statement)
+    return {name: unit for name, unit in found.items() if not name.startswith("_")}
+
+
+def _top_level(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef | ast.Assign]:
+    """Yield the functions and assignments of a file, also inside of conditions."""
+    for statement in body:
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.Assign):
+            yield statement
+        elif isinstance(statement, ast.If | ast.Try | ast.With):
+            yield from _top_level([*statement.body, *getattr(statement, "orelse", [])])
+
+
+def _written_unit(path: Path, name: str, statement: ast.Assign) -> str:
+    """The unit of a function, which is read without running the file."""
+    value = statement.value.value if isinstance(statement.value, ast.Constant) else None
+    if not isinstance(value, str):
+        words = f"{name}: the attribute unit must be text in quotes, as the file is read without being run"
+        raise CaseFileError(str(path), [(statement.lineno, words)])
+    return string("the attribute unit", value)

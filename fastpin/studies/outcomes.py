@@ -21,7 +21,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from fastpin.errors import FastpinError, printable
+from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
 from fastpin.states.choice import missing_corners, span_of, states_between
@@ -249,17 +249,46 @@ def of_last_cycle(quantity: str, result: Result) -> float:
     return CYCLE_QUANTITIES[quantity].of(result)
 
 
-def call_in_file(path: str, text: str, function: str, result: Result) -> Any:
-    """The value of a function in a Python file with this text. Workers need not see the file."""
-    return getattr(module_of(path, text), function)(result)
+@dataclass(frozen=True)
+class FunctionOfFile:
+    """A function of a Python file with this text. Workers need not see the file.
+
+    The file is run when the function is loaded or called for the first time, and not before.
+    """
+
+    path: str
+    text: str
+    name: str
+
+    def __call__(self, result: Result) -> Any:
+        return self.load()(result)
+
+    def load(self) -> Callable[[Result], Any]:
+        """Run the file, and return the function. It raises whatever the text raises."""
+        function: Callable[[Result], Any] = getattr(_module(self.path, self.text), self.name)
+        return function
+
+
+def check_loadable(outcomes: Mapping[str, Outcome]) -> None:
+    """Run the files of all functions, before the work of which they judge the results.
+
+    Raises
+    ------
+    InputError
+        If a file can't be run, or does not define the function.
+    """
+    for name, outcome in outcomes.items():
+        if isinstance(outcome.read, FunctionOfFile):
+            try:
+                outcome.read.load()
+            except (Exception, SystemExit) as error:  # The file may do anything.
+                file = Path(outcome.read.path).name
+                raise InputError("outcomes", f"{name}: {file}: can't be imported: {reason_of(error)}") from None
 
 
 @functools.cache
-def module_of(path: str, text: str) -> ModuleType:
-    """The module that a Python file with this text defines.
-
-    It raises whatever the text raises.
-    """
+def _module(path: str, text: str) -> ModuleType:
+    """The module that a Python file with this text defines."""
     name = f"{Path(path).stem}_{digest(text)}"
     module = ModuleType(name)
     module.__file__ = path

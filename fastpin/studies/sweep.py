@@ -22,7 +22,6 @@ from typing import Any
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
 from fastpin.model.checks import (
-    HDF5_SIGNATURE,
     as_toml,
     check_callable,
     file_path,
@@ -32,8 +31,9 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.storage import store
-from fastpin.storage.files import replacing
-from fastpin.storage.packed import FOLDER, INDEX
+from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.storage.files import INDEX, forget_temporaries, replacing
+from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point
@@ -148,9 +148,10 @@ def run(
     directory = ensure_directory(file_path("directory", directory))
     with lock_directory(directory):
         _check_plan_copy(directory, plan.text)
-        with Index(directory, create=True) as index:
+        with Index(directory, write=True) as index:
             results = ensure_directory(directory / FOLDER).resolve()
-            _clear(results)
+            for run in points:  # Killed workers leave partly written files.
+                forget_temporaries(results / f"{run}.h5")
             _keep_plan(directory, plan.text)
             index.expect(plan, points.values())
             if retry:
@@ -355,14 +356,12 @@ def _check_plan_copy(directory: Path, text: str = "") -> None:
 
 
 def _keep_plan(directory: Path, text: str) -> None:
-    with replacing(directory / PLAN) as temporary:
+    """Write the copy of the plan, unless it is there: the copy itself may have been read as the plan."""
+    path = directory / PLAN
+    if path.is_file() and path.read_bytes() == text.encode():
+        return
+    with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-
-
-def _clear(results: Path) -> None:
-    """Remove the partly written files of killed workers."""
-    for path in results.glob(".*.h5"):
-        path.unlink(missing_ok=True)
 
 
 # -- merging -------------------------------------------------------------------------------------------------
@@ -401,7 +400,7 @@ def merge(sources: Sequence[str | Path], directory: str | Path) -> int:
             raise InputError(str(source), "can't be merged into itself")
     _check_parts([*([target] if (target / INDEX).exists() else []), *parts])
     _check_plan_copy(ensure_directory(target))
-    with lock_directory(target), Index(target, create=True) as index:
+    with lock_directory(target), Index(target, write=True) as index:
         ensure_directory(target / FOLDER)
         for source in parts:
             with Index(source) as other:
@@ -442,7 +441,7 @@ def _absorb(index: Index, other: Index, target: Path, source: Path) -> None:
         path = source / FOLDER / f"{run}.h5"
         (target / FOLDER / path.name).unlink(missing_ok=True)  # It would stand before a result in the index.
         if path.exists():
-            with replacing(target / FOLDER / path.name) as temporary:
+            with replacing(target / FOLDER / path.name, result=True) as temporary:
                 shutil.copyfile(path, temporary)
     index.absorb(other, wanted)
     _keep_plan(target, index.read_note("text") or "")

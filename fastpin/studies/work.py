@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError, InputError
 from fastpin.studies.index import Index
-from fastpin.studies.outcomes import OutcomeValue, pickled
+from fastpin.studies.outcomes import OutcomeValue, check_loadable, pickled
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import RunEnd
 from fastpin.studies.workers import (
@@ -41,7 +41,8 @@ MOST_IN_BATCH = 32
 
 
 def pickled_outcomes(plan: Plan) -> PickledOutcomes:
-    """Return the outcomes of a plan for workers."""
+    """Return the outcomes of a plan for workers. The files of functions are run, to find their faults early."""
+    check_loadable(plan.outcomes)
     content = {}
     for name, outcome in plan.outcomes.items():
         try:

@@ -36,7 +36,7 @@ def plan() -> Plan:
 @pytest.fixture
 def directory(plan: Plan, tmp_path: Path) -> Path:
     """An index with one run that is done, one that failed and two that wait."""
-    with Index(tmp_path, create=True) as index:
+    with Index(tmp_path, write=True) as index:
         index.expect(plan, plan.points)
         first, second = (point.id for point in plan.points[:2])
         figures = dict.fromkeys(KEY_FIGURES) | {"states": 3, "peak_pressure": 0.1 + 0.2, "nodes": 41}
@@ -76,7 +76,7 @@ def test_plain_sql_reads_it(plan: Plan, directory: Path) -> None:
 
 def test_a_plan_that_has_grown_keeps_what_is_known(plan: Plan, directory: Path) -> None:
     grown = parse_plan(TEXT.replace("[grid]", "[grid]\nsolve.nodes = [401, 61]"))
-    with Index(directory, create=True) as index:
+    with Index(directory, write=True) as index:
         index.expect(grown, grown.points)
         rows = {row["id"]: row for row in index.rows()}
     assert len(rows) == 8
@@ -141,7 +141,7 @@ def test_what_is_no_index_is_refused(damage: Callable[[Path], None], words: str,
     damage(directory / INDEX)
     before = (directory / INDEX).read_bytes()
     with pytest.raises(InputError) as caught:
-        Index(directory, create=create)
+        Index(directory, write=create)
     assert words in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
     assert (directory / INDEX).read_bytes() == before
@@ -167,7 +167,7 @@ def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) 
 
 def test_an_index_that_can_not_be_made_is_named() -> None:
     with pytest.raises(InputError, match=r"can't be used: unable to open database file"):
-        Index(Path("/proc/1"), create=True)
+        Index(Path("/proc/1"), write=True)
 
 
 def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
@@ -178,7 +178,7 @@ def test_half_a_transaction_is_none(plan: Plan, tmp_path: Path) -> None:
         yield plan.points[0]
         raise Interrupted
 
-    with Index(tmp_path, create=True) as index:
+    with Index(tmp_path, write=True) as index:
         with pytest.raises(Interrupted):
             index.expect(plan, points())
         assert index.rows() == []
@@ -206,7 +206,7 @@ def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
     (tmp_path / INDEX).touch()  # as SQLite does before it writes
     with pytest.raises(InputError, match="holds no sweep"):
         Index(tmp_path)
-    with Index(tmp_path, create=True):
+    with Index(tmp_path, write=True):
         pass
     with Index(tmp_path):
         pass
@@ -225,7 +225,7 @@ def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
 )
 def test_a_damaged_row_is_described(tmp_path, statement, reason):
     plan = parse_plan('[grid]\n"contact.friction" = [0.1, 0.2]\n')
-    with Index(tmp_path, create=True) as index:
+    with Index(tmp_path, write=True) as index:
         index.expect(plan, plan.points)
     with contextlib.closing(sqlite3.connect(tmp_path / "index.sqlite", isolation_level=None)) as database:
         database.execute(statement)

@@ -491,7 +491,7 @@ def test_a_merge_and_a_part_that_were_killed_at_their_beginning_do_no_harm(
 ) -> None:
     for name in ("whole", "part"):
         (tmp_path / name).mkdir()
-        with sweep.Index(tmp_path / name, create=True):
+        with sweep.Index(tmp_path / name, write=True):
             pass
     assert sweep.merge([tmp_path / "part", swept[0], tmp_path / "part"], tmp_path / "whole") == len(
         sweep.load(swept[0])
