@@ -259,6 +259,8 @@ class Caller:
             value = target.call(*arguments, **keywords)
             if inspect.isgenerator(value):
                 collections.deque(itertools.islice(value, 1000), 0)
+        except valid_values.Enough:
+            return Ending("accepted")
         except InputError as error:
             return Ending("InputError", str(error))
         except FastpinError as error:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin import damage, model, solver, states
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
@@ -257,6 +258,63 @@ def test_values_of_odd_classes_are_refused(call):
     with pytest.raises(InputError) as raised:
         call()
     assert len(str(raised.value)) < 300
+
+
+STEEL = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
+PROBLEM = fastpin.Problem.from_load_parameter(STEEL, 0.1, 0.4)
+SOLVED = fastpin.solve(PROBLEM, [{"P": 1.0}, {"Q": 0.1}], nodes=31)
+STATE = SOLVED[-1]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: STATE.hoop_stress(straight=np.ones(2)), "straight: must be true or false, not [1.0, 1.0]"),
+        (lambda: fastpin.Session(PROBLEM).copy(matrices=1), "matrices: must be true or false, not 1"),
+        (
+            lambda: fastpin.Session(PROBLEM).change(friction=0.3, new_arc="no"),
+            'new_arc: must be true or false, not "no"',
+        ),
+        (
+            lambda: fastpin.Session(PROBLEM, undo=10**30),
+            "undo: must be a whole number from 0 to 100000000, not",
+        ),
+        (lambda: fastpin.casefile.case_text("x"), 'case: must be a Case, not "x"'),
+        (lambda: fastpin.report.state_table(PROBLEM, [STATE], 5), "rows: must be the rows of table_rows, not 5"),
+        (lambda: model.Compliance.from_document([1]), "content: must be a table, not [1]"),
+        (lambda: model.FatigueConstants(np.ones(2)), "fatigue_strength: must be a number, not [1.0, 1.0]"),
+        (lambda: model.FatigueConstants().required(["x"], "a", "b"), "names: must be "),
+        (lambda: fastpin.converge(PROBLEM, [{"P": 1.0}], outcomes=np.ones(2)), "outcomes: must be "),
+        (lambda: fastpin.Points("x", None, None), "radius: or depth must be given, and not both"),
+        (lambda: fastpin.Points("x", 1.0, None), 'theta: must be a number, not "x"'),
+        (lambda: fastpin.Points.at_depth([0.0, 0.1, 0.2], [0.0, 0.1]), "depth: has the shape (3,), which does not fit"),
+        (lambda: fastpin.Points.at_depth(0.0, 1e30), "theta: must be at least -1e+06 and at most 1e+06, not 1e+30"),
+        (lambda: states.LoadCycle("x"), "states: must be a sequence of fastpin.State, not "),
+        (lambda: states.LoadCycle([STATE]), "states: must be two or more, not 1"),
+        (lambda: damage.critical_distance(1e300, 1e-300), "threshold_range: is inf times limit_range"),
+        (lambda: damage.critical_distance(1e-300, 1e300), "threshold_range: is 0 times limit_range"),
+        (
+            lambda: damage.smith_watson_topper_life([1.0], 2e11, 1e300, -0.1, 0.5, -0.6),
+            "fatigue_strength: must give a coefficient that is a positive number, not inf",
+        ),
+        (lambda: solver.expected_seconds(None, [], None), "problem: must be a Problem, not None"),
+        (lambda: fastpin.plot_tractions(SOLVED, title="x" * 2_001), "title: must have at most 2,000 characters in a"),
+        (
+            lambda: fastpin.plot_tractions(SOLVED, states=range(2**62)),
+            "states: must be last, cycle, all or load points",
+        ),
+        (
+            lambda: SOLVED.plot(states=slice(None, None, 0)),
+            "states: must be a slice of whole numbers with a step",
+        ),
+        (lambda: SOLVED.history[::0], "history: must be a slice of whole numbers with a step other than 0"),
+        (lambda: SOLVED.history["x":], "history: must be a slice of whole numbers"),
+    ],
+)
+def test_arguments_of_a_wrong_kind_give_the_sentence_of_their_field(call, message):
+    with pytest.raises(InputError) as raised:
+        call()
+    assert str(raised.value).startswith(message)
 
 
 @pytest.mark.parametrize("progress", [5, "all", int, float, lambda: None, lambda done: None, lambda a, b, c: None])
