@@ -29,7 +29,7 @@ from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quanti
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import Estimate, estimate
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from
-from fastpin.studies.outcomes import Outcome, OutcomeValue, value_of
+from fastpin.studies.outcomes import Outcome, OutcomeValue, check_loadable, value_of
 
 LEAST_GRIDS = 3
 """Fewest grids, or numbers of increments, of a study."""
