@@ -4,10 +4,11 @@
 #                     $python is then the interpreter
 #
 # The environment is made when it is missing. It is installed again when pyproject.toml has changed, or the
-# directory has moved. The package is then compiled: Python's files, and the solver by solving the built-in case. PYTHON chooses the interpreter that makes it.
+# directory has moved. The package is then compiled: Python's files, and the solver by solving the built-in case. PYTHON
+# chooses the interpreter that makes it. ENVIRONMENT chooses another directory than .venv.
 
 root=$(dirname -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")")
-environment=$root/.venv
+environment=${ENVIRONMENT:-$root/.venv}
 python=$environment/bin/python
 
 fail() {
