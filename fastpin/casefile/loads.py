@@ -16,6 +16,9 @@ from fastpin.model.problem import Problem
 MAX_ROWS = 10_000_000
 """Largest number of corners of a repeated block. They are held in memory."""
 
+MOST_BLOCKS = 10_000
+"""Most [[load]] blocks. A block can hold any number of corners."""
+
 HARMONIC = ("mean", "amplitude", "phase", "points")
 """Keys of a [[load]] block with harmonic cycles, besides ``repeat``."""
 
@@ -84,6 +87,11 @@ def _from_blocks(source: CaseText, folder: Path) -> LoadHistory | None:
         return None
     if not isinstance(given, list) or not given or len(blocks) < len(given):
         source.report("loads are [[load]] blocks, with double brackets", "load")
+        return None
+    if len(blocks) > MOST_BLOCKS:
+        source.report(
+            f"{len(blocks):,} [[load]] blocks are more than {MOST_BLOCKS:,}; take lists of loads, or csv", "load"
+        )
         return None
     histories = [_from_block(block, folder) for block in blocks]
     whole = [block for history in histories if history is not None for block in history.blocks]

@@ -6,6 +6,7 @@ lines of all keys itself, and parses again without a faulty line.
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import re
 import tomllib
@@ -18,8 +19,17 @@ from fastpin.model.checks import as_toml, choice, instance, number, why_unreadab
 from fastpin.model.inputs import HDF5_SIGNATURE, note_input
 from fastpin.model.synonyms import meant
 
-MOST_BYTES = 100_000_000
-"""Most bytes of a case file or a plan."""
+MOST_BYTES = 16_000_000
+"""Most bytes of a case file, a plan, a lug file or a file of materials. Python parses 2 to 3 MB of TOML in a second."""
+
+MOST_PARSED = 32_000_000
+"""Characters that are parsed in all, where the text is parsed again without faulty lines."""
+
+MOST_FAULTS = 100
+"""Most faults that are listed. Reading ends there: each fault costs a search for what was meant."""
+
+MOST_PARTS = 32
+"""Most parts of a dotted key. The parser takes a time that grows with the square of their number."""
 
 KINDS = {
     "case file": (("contact",), "run"),
@@ -78,7 +88,10 @@ def parse_text(text: str, name: str, kind: str, read: Callable[[CaseText], T | N
     other = _other_kind(source.root.table, kind)
     if other and source.readable:
         raise CaseFileError(title, [(0, f"is a {other}, not a {kind}; see fastpin {KINDS[other][1]}")])
-    found = read(source) if source.readable else None
+    found = None
+    if source.readable:
+        with contextlib.suppress(TooManyFaultsError):
+            found = read(source)
     if source.faults:
         raise CaseFileError(title, source.faults)
     assert found is not None
@@ -89,6 +102,10 @@ def _other_kind(tables: dict[str, Any], kind: str) -> str:
     """The kind of file whose sections a text has; empty if it may be of the expected `kind`."""
     found = [name for name, (sections, _) in KINDS.items() if any(section in tables for section in sections)]
     return "" if kind in found or not found else found[0]
+
+
+class TooManyFaultsError(Exception):
+    """The faults of a text fill the list, and reading ends."""
 
 
 class CaseText:
@@ -118,12 +135,19 @@ class CaseText:
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
+        if _LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)):
+            self.readable = False
+            self._lines = {}
+            self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
+            self.root = Section(self, (), {})
+            return
         self._lines, keys, starts = _locate(lines)
         self.root = Section(self, (), self._parse(lines, keys, starts))
 
     def _parse(self, lines: list[str], keys: dict[int, Place], starts: dict[int, int]) -> dict[str, Any]:
         """Parse the lines. Blank a faulty ``key = value`` line and parse again, to report the other faults as well."""
         faulty: list[Place] = []
+        size = sum(map(len, lines)) + len(lines)
         while True:
             try:
                 tables = tomllib.loads("\n".join(lines))
@@ -139,7 +163,8 @@ class CaseText:
                     message = f"the value that begins here is not closed, or wrong in line {line}"
                 self._add(start, message)
                 alone = start == line and starts.get(line + 1) != line  # the value ends on its line
-                if start not in keys or not alone or not lines[start - 1]:
+                spent = (len(faulty) + 2) * size > MOST_PARSED or len(self.faults) >= MOST_FAULTS
+                if spent or start not in keys or not alone or not lines[start - 1]:
                     self.readable = False
                     return {}
                 faulty.append(keys[start])
@@ -152,6 +177,9 @@ class CaseText:
         """Add a fault, on the line that :meth:`line` gives for `place`."""
         self.placed.append((place, message))
         self._add(self.line(*place), message)
+        if len(self.faults) >= MOST_FAULTS:
+            self._add(0, f"has {MOST_FAULTS} faults or more; reading ended there")
+            raise TooManyFaultsError
 
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
@@ -291,6 +319,7 @@ def written(name: str, value: object) -> str:
     return f"[[{name}]]" if is_blocks else ""
 
 
+_LONG_KEY = re.compile(rf"""(?<![\w"'-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MOST_PARTS}}}""")
 _KEY = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
 _KEY_LINE = re.compile(rf"\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*=(.*)")
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_KEY}(?:\s*\.\s*{_KEY})*)\s*\]")

@@ -16,6 +16,7 @@ from typing import Any
 
 from fastpin.model.problem import Problem
 from fastpin.model.units import named_loads, scaled, units
+from fastpin.report.cells import csv_cell
 from fastpin.report.summary import json_ready
 from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
@@ -198,7 +199,7 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                     for count, value in zip(study.counts, row.values, strict=True):
                         grid = (count, "") if study.method == "path" else (study.nodes, count)
                         known = [value, row.verdict, row.order, row.limit, row.bar, row.path]
-                        head = [corner, study.method, *grid, row.name, row.unit]
+                        head = [corner, study.method, *grid, csv_cell(row.name), csv_cell(row.unit)]
                         writer.writerow([*head, *("" if _missing(each) else each for each in known)])
 
 

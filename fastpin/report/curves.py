@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.report.cells import csv_cell
 from fastpin.storage.files import replacing
 
 
@@ -58,11 +59,11 @@ def write_csv(curves: Sequence[Curve], path: Path, remarks: Sequence[str] = ()) 
 
 def _parameter(value: float | str) -> float | str:
     if isinstance(value, str):
-        return value.replace(",", ";")
+        return csv_cell(value.replace(",", ";"))
     return "" if math.isnan(value) else value
 
 
 def _cell(value: Any) -> str:
     if isinstance(value, str):
-        return value
+        return csv_cell(value)
     return "" if math.isnan(value) else f"{value:.9g}"

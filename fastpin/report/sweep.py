@@ -18,6 +18,7 @@ from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import printed_unit, scaled, units
+from fastpin.report.cells import csv_cell
 from fastpin.report.field_words import field_words
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
@@ -114,10 +115,10 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     out.write(f"# fastpin {__version__}{f', {plan.title}' if plan.title else ''}\n")
     out.write(f"# units: {', '.join(f'{name} {label}' for name, label in named if label)}, seconds s\n")
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(names)
+    writer.writerow(map(csv_cell, names))
     for row in rows:
         cells = (row.get(name) for name in names)
-        writer.writerow([json.dumps(cell) if isinstance(cell, list) else cell for cell in cells])
+        writer.writerow([json.dumps(cell) if isinstance(cell, list) else csv_cell(cell) for cell in cells])
     with replacing(path) as temporary:
         temporary.write_text(out.getvalue(), encoding="utf-8")
 
