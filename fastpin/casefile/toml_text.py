@@ -137,7 +137,7 @@ class CaseText:
         lines = text.replace("\r\n", "\n").split("\n")
         if _LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)):
             self.readable = False
-            self._lines = {}
+            self._lines: dict[Place, int] = {}
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
             self.root = Section(self, (), {})
             return

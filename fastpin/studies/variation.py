@@ -7,6 +7,7 @@ body replaces the keys of other kinds.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.loads import read_history
 from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.reader import case_from
-from fastpin.casefile.toml_text import CaseText
+from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError
 from fastpin.model.case import Case
 from fastpin.model.history import LoadHistory
@@ -49,7 +50,9 @@ class BaseCase:
         if self.text.faults:
             raise CaseFileError(name, self.text.faults)
         self._folder = folder
-        self._materials = known_materials(self.text.with_tables(self.text.root.table), folder)
+        self._materials: Mapping[str, Material] = MATERIALS
+        with contextlib.suppress(TooManyFaultsError):  # every variation reports these faults
+            self._materials = known_materials(self.text.with_tables(self.text.root.table), folder)
         self._loads: tuple[str, LoadHistory | None] = "", None
 
     @property
@@ -61,7 +64,9 @@ class BaseCase:
     def vary(self, values: dict[str, Any]) -> tuple[CaseText, Case | None]:
         """Return text and case with these values of fields. The case has no meaning if the text has faults."""
         text = self.text.with_tables(with_values(self.text.root.table, values, self._materials))
-        case = case_from(text, self._folder, self._read_loads)
+        case = None
+        with contextlib.suppress(TooManyFaultsError):
+            case = case_from(text, self._folder, self._read_loads)
         if case is not None and case.options.error_bars:
             text.report("error_bars: are not kept by sweeps; leave them out", "solve", "error_bars")
         return text, case
