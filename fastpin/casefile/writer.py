@@ -131,6 +131,6 @@ def _value(value: object) -> str:
     """A number, text, truth value or list of numbers as TOML."""
     if isinstance(value, tuple):
         return f"[{', '.join(map(repr, value))}]"
-    if isinstance(value, str):  # TOML takes the escapes of JSON, and wants one for DEL too
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, str):  # TOML takes the escapes of JSON
+        return json.dumps(value, ensure_ascii=False)
     return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -44,7 +44,9 @@ def test_a_written_case_reads_back_to_the_same_bits(name: str) -> None:
     problem = Problem(pair, 0.01, 2e-5 * THIRD, 0.4 * THIRD, **changes)
     loads = {"ux": 1e-5, "uy": -1e-5} if name == "driven" else {"P": 1e6, "Q": -1e5}
     rows = [{key: value * math.sin(k) for key, value in loads.items()} for k in range(1, 21)]
-    case = Case(problem, LoadHistory(rows), SolveOptions(nodes=61, arc=(-3.0, -0.1), slip_sums=True), 'a "title" \x7f')
+    case = Case(
+        problem, LoadHistory(rows), SolveOptions(nodes=61, arc=(-3.0, -0.1), slip_sums=True), 'a "title" \\ \xa0 µ'
+    )
     back = parse_case(casefile.case_text(case))
     assert back.problem == problem
     assert np.array_equal(back.history.values(), case.history.values())
