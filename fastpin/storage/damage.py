@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,12 +13,14 @@ import numpy as np
 
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.checks import number
-from fastpin.storage.packed import Array
+from fastpin.storage import hdf5, packed
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[None]:
+def reading(path: Path, *arguments: str) -> Iterator[None]:
     """Turn every error of the block, which reads the file `path`, into one sentence.
+
+    An error of one of the `arguments` of the caller stays as it is.
 
     Raises
     ------
@@ -26,12 +29,22 @@ def reading(path: Path) -> Iterator[None]:
     """
     try:
         yield
+    except InputError as error:
+        if error.field in (str(path), *arguments):
+            raise
+        raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
     except FastpinError:
         raise
     except MemoryError as error:
         raise InputError(str(path), f"needs more memory than there is: {_first_line(error)}") from None
     except Exception as error:  # h5py and NumPy raise errors of many kinds.
         raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
+
+
+def not_written(path: Path, error: BaseException) -> InputError:
+    """Return the error of a file that h5py could not write."""
+    reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else _first_line(error)
+    return InputError(str(path), f"can't be written: {reason}")
 
 
 def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...] | None = None) -> h5py.Dataset:
@@ -53,7 +66,7 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     """
     dataset = group.get(name)
     label = f"{group.name}/{name}".strip("/")
-    if not isinstance(dataset, (h5py.Dataset, Array)):
+    if not isinstance(dataset, (h5py.Dataset, hdf5.Array, packed.Array)):
         raise ValueError(f"there is no array {label}")
     if dataset.dtype != np.dtype(dtype):
         raise ValueError(f"{label} has numbers of the type {dataset.dtype}, not {np.dtype(dtype)}")

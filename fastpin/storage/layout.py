@@ -435,7 +435,7 @@ def check_growing(file: h5py.File, nodes: int) -> None:
         group = file[part]
         for name in arrays:
             dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
-            if dataset.maxshape[0] is not None:
+            if dataset.maxshape[0] is not None or dataset.chunks is None:
                 raise ValueError(f"{part}/{name} can't grow")
             if len(dataset) != count(group):
                 raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {count(group)}")

@@ -35,6 +35,7 @@ TABLE = "CREATE TABLE IF NOT EXISTS results (run TEXT PRIMARY KEY, content BLOB 
 
 _HEAD = struct.Struct("<8sII")  # signature, checksum of everything after it, length of the JSON
 _SIGNATURE = b"fpinrun1"
+_KINDS = ("<f8", "<i8", "|i1", "|b1")  # types of the entries of all arrays but texts
 
 
 class _Scale:
@@ -215,7 +216,7 @@ def _fill(group: Group, described: dict[str, Any], data: memoryview, at: int) ->
         if kind == "text":
             values = np.array(text[0], dtype=h5py.string_dtype())
         else:
-            dtype, size = np.dtype(kind), math.prod(shape)
+            dtype, size = _described_array(name, kind, shape)
             values = np.frombuffer(data, dtype, size, at).reshape(shape) if size else np.zeros(shape, dtype)
             at += size * dtype.itemsize
         group[name] = values
@@ -223,6 +224,15 @@ def _fill(group: Group, described: dict[str, Any], data: memoryview, at: int) ->
     for name, inner in described["groups"].items():
         at = _fill(group.create_group(name), inner, data, at)
     return at
+
+
+def _described_array(name: str, kind: Any, shape: Any) -> tuple[np.dtype[Any], int]:
+    """Return the type and the number of the entries of an array. The head may come from a stranger."""
+    if kind not in _KINDS:
+        raise ValueError(f"{name} has numbers of the type {kind}, not of {', '.join(_KINDS)}")
+    if not isinstance(shape, list) or not all(type(size) is int and 0 <= size < 1 << 31 for size in shape):
+        raise ValueError(f"{name} has the shape {shape}")
+    return np.dtype(kind), math.prod(shape)
 
 
 def _as_json(value: Any) -> Any:

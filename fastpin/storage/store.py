@@ -33,8 +33,8 @@ from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
-from fastpin.storage import packed
-from fastpin.storage.damage import reading, text_of
+from fastpin.storage import hdf5, packed
+from fastpin.storage.damage import not_written, reading, text_of
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
@@ -92,10 +92,16 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         raise InputError(str(path), "holds an unfinished run; resume it, or remove it")
     if any(not np.array_equal(state.theta, result.grid.theta) for state in result):
         raise InputError("result", "all states must be on the grid of the result")
-    with replacing(path, result=True) as temporary, h5py.File(temporary, "w") as file:
-        _write(file, result, error)
-        if restart and result.restart is not None:
-            write_restart(file.create_group("restart/latest"), result.restart)
+    if path.exists() and not path.is_file():
+        raise InputError(str(path), "must be an ordinary file")
+    with replacing(path, result=True) as temporary:
+        try:
+            with h5py.File(temporary, "w") as file:
+                _write(file, result, error)
+                if restart and result.restart is not None:
+                    write_restart(file.create_group("restart/latest"), result.restart)
+        except (OSError, RuntimeError) as failure:  # h5py raises both if the disk is full
+            raise not_written(path, failure) from None
 
 
 def _write(file: h5py.File | packed.Group, result: Result, error: str | None) -> None:
@@ -136,9 +142,9 @@ def unpack(content: bytes, path: Path) -> Result:
 
 
 @contextmanager
-def _opened(content: bytes, path: Path) -> Iterator[packed.Group]:
+def _opened(content: bytes, path: Path, *arguments: str) -> Iterator[packed.Group]:
     """Open a packed result for reading. `path` names it in errors."""
-    with reading(path):
+    with reading(path, *arguments):
         file = packed.from_bytes(content)
         check_format(file, str(path))
         yield file
@@ -175,7 +181,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
             raise InputError("states", f"must be a slice or whole numbers, not {as_toml(states)}")
     else:
         places_of("states", states, 0)
-    with open_result(path) as file:
+    with open_result(path, "states", "after") as file:
         result, task = _read(file, path, states, after)
     restart = result.restart
     if task is not None and restart is not None and restart.corner < len(task.history):
@@ -184,7 +190,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
 
 
 def _read(
-    file: h5py.File | packed.Group, path: Path, states: slice | Sequence[int], after: int | None
+    file: hdf5.Group | packed.Group, path: Path, states: slice | Sequence[int], after: int | None
 ) -> tuple[Result, Task | None]:
     """Read a result, see :func:`load`. The task leads from its restart to the corner `after`; None without one."""
     problem, grid, history = read_problem(file), read_grid(file), read_history(file)
@@ -262,10 +268,11 @@ def places_between(path: str | Path, first: int, last: int) -> slice:
 
 
 @contextmanager
-def open_result(path: Path) -> Iterator[Any]:
+def open_result(path: Path, *arguments: str) -> Iterator[Any]:
     """Open a result for reading, as its last transaction left it.
 
     A result in the index of a sweep has the path of a file that is not there, see :func:`packed.packed_result`.
+    `arguments` are names in errors of the block that don't come from the file.
 
     Raises
     ------
@@ -274,14 +281,15 @@ def open_result(path: Path) -> Iterator[Any]:
     """
     content = packed.packed_result(path)
     if content is not None:
-        with _opened(content, path) as file:
+        with _opened(content, path, *arguments) as file:
             yield file
         return
     check_exists(path)
     note_input(path)
-    with open_h5(path) as file, reading(path):
-        check_format(file, str(path))
-        yield file
+    with open_h5(path) as h5, reading(path, *arguments):
+        stored = hdf5.Group(h5)
+        check_format(stored, str(path))
+        yield stored
 
 
 def _way_to(path: Path, file: h5py.File, history: LoadHistory, after: int, nodes: int) -> tuple[Task, Restart]:

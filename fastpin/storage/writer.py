@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -23,6 +22,7 @@ from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
+from fastpin.storage import hdf5
 from fastpin.storage.damage import reading
 from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, not_readable
@@ -135,7 +135,7 @@ class FileRecorder:
         self._seconds = 0.0
         self._began = time.monotonic()
 
-    def reopen(self, file: JournaledFile, h5: h5py.File, restart_group: h5py.Group) -> None:
+    def reopen(self, file: JournaledFile, h5: h5py.File, restart_group: hdf5.Group) -> None:
         """Continue a file from a restart in it. The run gives the later states again."""
         self._file, self._h5 = file, h5
         self._name = str(h5.attrs["run"])
@@ -361,19 +361,20 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
             raise not_readable(path) from None
         try:
             with reading(path):
-                check_format(h5, str(path))
+                stored = hdf5.Group(h5)
+                check_format(stored, str(path))
                 if "run" not in h5.attrs:
                     raise InputError(str(path), "was not written by a run: there is nothing to continue")
-                if h5.attrs["complete"]:
+                if stored.attrs["complete"]:
                     raise InputError(str(path), "holds a finished run: there is nothing to continue")
-                task = replace(stored_task(h5), progress=progress)
+                task = replace(stored_task(stored), progress=progress)
                 assert task.grid is not None
-                check_growing(h5, task.grid.size)
-                read_statistics(h5)  # they are written again at the end
-                options = h5["solver"].attrs
+                check_growing(stored, task.grid.size)
+                read_statistics(stored)  # they are written again at the end
+                options = stored["solver"].attrs
                 writer = FileRecorder(path, task, str(options["title"]))
                 writer.chosen_arc = bool(options["arc_chosen"])
-                restart = _latest(path, h5, task.grid.size, lambda group: writer.reopen(file, h5, group))
+                restart = _latest(path, stored, task.grid.size, lambda group: writer.reopen(file, h5, group))
                 h5.attrs.pop("error", None)
                 return writer, restart
         except BaseException:
@@ -385,16 +386,17 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         raise
 
 
-def _latest(path: Path, h5: h5py.File, nodes: int, use: Callable[[h5py.Group], None]) -> Restart:
+def _latest(path: Path, stored: hdf5.Group, nodes: int, use: Callable[[hdf5.Group], None]) -> Restart:
     """Read the latest restart of a run, from its checkpoint or else from the file itself.
 
     `nodes` is the number of nodes of the grid. `use` gets the group of the restart while it is open.
     """
-    file_restart = h5["restart/latest"]
+    file_restart = stored["restart/latest"]
     try:
-        with h5py.File(checkpoint_of(path), "r") as checkpoint:
-            group: Any = checkpoint["restart"]
-            same_run = checkpoint.attrs["run"] == h5.attrs["run"]
+        with h5py.File(checkpoint_of(path), "r") as file:
+            checkpoint = hdf5.Group(file)
+            group = checkpoint["restart"]
+            same_run = checkpoint.attrs["run"] == stored.attrs["run"]
             if same_run and group.attrs["corner"] >= file_restart.attrs["corner"]:
                 restart = read_restart(group, nodes)
                 use(group)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import resource
+import signal
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import h5py
@@ -11,7 +14,7 @@ import pytest
 
 import fastpin
 from fastpin.errors import InputError
-from fastpin.storage import to_xarray
+from fastpin.storage import hdf5, to_xarray
 
 
 @pytest.fixture(scope="module")
@@ -102,3 +105,156 @@ def test_an_unfinished_result_with_damaged_statistics_is_not_continued(whole, tm
         del file["solver/statistics"]
     with pytest.raises(InputError, match="is damaged"):
         fastpin.resume(path)
+
+
+def linked(name: str, link: Any) -> Callable[[h5py.File], None]:
+    def change(file: h5py.File) -> None:
+        file.move(name, "away")
+        file[name] = link
+
+    return change
+
+
+def external(file: h5py.File) -> None:
+    rows, size = file["states/pressure"].shape
+    del file["states/pressure"]
+    file["states"].create_dataset("pressure", (rows, size), float, external=[("precious.txt", 0, rows * size * 8)])
+
+
+def virtual(file: h5py.File) -> None:
+    shape = file["states/pressure"].shape
+    del file["states/pressure"]
+    layout = h5py.VirtualLayout(shape, float)
+    layout[...] = h5py.VirtualSource("other.h5", "pressure", shape)
+    file["states"].create_virtual_dataset("pressure", layout)
+
+
+def remade(name: str, **how: Any) -> Callable[[h5py.File], None]:
+    def change(file: h5py.File) -> None:
+        old = file[name]
+        del file[name]
+        file.create_dataset(name, **({"shape": old.shape, "dtype": old.dtype} | how))
+
+    return change
+
+
+def resized(names: tuple[str, ...], rows: int) -> Callable[[h5py.File], None]:
+    def change(file: h5py.File) -> None:
+        for name in names or [f"states/{name}" for name in file["states"] if file["states"][name].maxshape[0] is None]:
+            file[name].resize(rows, axis=0)
+
+    return change
+
+
+HOSTILE = {
+    "external link": (linked("states", h5py.ExternalLink("precious.txt", "/states")), "states is a link"),
+    "soft link": (linked("states/pressure", h5py.SoftLink("/away")), "states/pressure is a link"),
+    "link in a restart": (linked("restart/latest/met", h5py.SoftLink("/away")), "restart/latest/met is a link"),
+    "external storage": (external, "states/pressure lies in another file"),
+    "virtual": (virtual, "states/pressure lies in another file"),
+    "filter": (remade("states/pressure", chunks=(1, 31), compression="lzf"), "is packed in an unknown way"),
+    "chunk": (remade("states/gap", chunks=(10**6, 31), shape=(0, 31), maxshape=(None, 31)), "has chunks of the shape"),
+    "references": (remade("states/step", dtype=h5py.ref_dtype), "states/step has"),
+    "many rows": (resized((), 300_000_000), "only .* bytes in the file"),
+    "many history ends": (remade("history/ends", shape=(10**11,), chunks=(1024,)), "only .* bytes in the file"),
+    "many lengths": (remade("history/cycle_lengths", shape=(10**11,), chunks=(1024,)), "only .* bytes in the file"),
+    "many nodes": (remade("grid/theta", shape=(10**11,), chunks=(1024,)), "only .* bytes in the file"),
+    "large restart": (remade("restart/latest/met", shape=(10**11, 5), chunks=(128, 5)), "only .* bytes in the file"),
+    "texts": (lambda file: file["solver"].attrs.__setitem__("method", ["x"] * 2000), "has 2000 texts"),
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_a_hostile_result_takes_no_memory_and_no_other_file(whole, tmp_path, kind):
+    change, reason = HOSTILE[kind]
+    path = tmp_path / "hostile.h5"
+    path.write_bytes(whole)
+    (tmp_path / "precious.txt").write_bytes(whole if "link" in kind else bytes(10_000))
+    with h5py.File(path, "r+") as file:
+        change(file)
+        file.attrs["complete"] = True
+    before = {each: each.read_bytes() for each in tmp_path.iterdir()}
+    limits = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 28), limits[1]))
+        with pytest.raises(InputError, match=f"hostile.h5: is damaged: .*{reason}"):
+            fastpin.load(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, limits)
+    with h5py.File(path, "r+") as file:
+        file.attrs["complete"] = False
+    before[path] = path.read_bytes()
+    with pytest.raises(InputError, match="is damaged"):
+        fastpin.resume(path)
+    assert {each: each.read_bytes() for each in tmp_path.iterdir() if each.suffix != ".journal"} == before
+
+
+def test_large_arrays_are_read_in_parts_between_which_an_interrupt_is_heard(tmp_path, monkeypatch):
+    values = np.random.default_rng(0).random((1000, 7))
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["a"] = values
+    with h5py.File(tmp_path / "a.h5", "r") as file:
+        array = hdf5.Group(file)["a"]
+        picks = [(), slice(None), slice(3, 999), slice(5, -5), slice(7, 3), slice(0, 1000, 3), 4, -1]
+        for most in (hdf5.AT_ONCE, 1, 100, 7 * 8 * 10):
+            monkeypatch.setattr(hdf5, "AT_ONCE", most)
+            for pick in picks:
+                assert np.array_equal(array[pick], values[pick])
+        read = h5py.Dataset.read_direct
+        parts = []
+
+        def interrupted(*args: Any) -> None:
+            parts.append(args)
+            if len(parts) == 3:
+                signal.raise_signal(signal.SIGINT)
+            read(*args)
+
+        monkeypatch.setattr(h5py.Dataset, "read_direct", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            array[()]
+        assert len(parts) == 3
+
+
+def test_zeros_of_a_real_result_are_no_claim(tmp_path, monkeypatch):
+    """Zeros are packed as fastpin packs them, in rows of the largest number of nodes."""
+    monkeypatch.setattr(hdf5, "AT_ONCE", 1)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for name, dtype in (("gap", float), ("status", np.int8)):
+            made = file.create_dataset(
+                name, (5, 20_000), dtype, chunks=(1, 20_000), compression="gzip", compression_opts=1, shuffle=True
+            )
+            made[...] = 0
+    with h5py.File(tmp_path / "a.h5", "r") as file:
+        assert not any(hdf5.Group(file)[name][()].any() for name in ("gap", "status"))
+
+
+def test_an_error_of_a_value_names_the_file(whole, tmp_path):
+    path = tmp_path / "damaged.h5"
+    path.write_bytes(whole)
+    with h5py.File(path, "r+") as file:
+        file["problem/pin"].attrs["E"] = np.nan
+    with pytest.raises(InputError, match=r"damaged\.h5: is damaged: E: must be"):
+        fastpin.load(path)
+    path.write_bytes(whole)
+    for given, reason in (({"after": 99}, "^after: must be"), ({"states": [99]}, "^states: must be")):
+        with pytest.raises(InputError, match=reason):
+            fastpin.load(path, **given)
+
+
+def test_an_error_of_the_disk_names_the_file(whole, tmp_path):
+    path = tmp_path / "a.h5"
+    path.write_bytes(whole)
+    result = fastpin.load(path)
+    with pytest.raises(InputError, match="^/dev/full: must be an ordinary file"):
+        fastpin.save(result, "/dev/full")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    before = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+        with pytest.raises(InputError, match=r"^\S+/b\.h5: can't be written: "):
+            fastpin.save(result, tmp_path / "b.h5")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, before)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.h5"]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -156,3 +158,14 @@ def test_an_index_that_can_not_be_read_is_named(path: Path) -> None:
     (path.parent.parent / "other.sqlite").replace(path.parent.parent / packed.INDEX)
     with pytest.raises(InputError, match="there is no such file"):
         store.load(path)
+
+
+@pytest.mark.parametrize(
+    "described",
+    [["<f8", [-1, -5], {}], ["O", [0], {}], ["<f8", [10**30, 0], {}], ["<f8", [True], {}], ["|V999999", [0], {}]],
+)
+def test_an_array_of_a_stranger_is_judged_before_memory_is_taken(described):
+    head = json.dumps({"attrs": {}, "arrays": {"a": described}, "groups": {}}).encode()
+    content = packed._HEAD.pack(packed._SIGNATURE, zlib.crc32(head), len(head)) + head
+    with pytest.raises(InputError, match="is damaged: a has"):
+        store.unpack(content, Path("x.h5"))

@@ -538,8 +538,5 @@ def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, aga
     checkpoint_of(path).unlink()
     checkpoint_of(path).symlink_to(precious)
     with pytest.raises(InputError, match="must be an ordinary file; please remove it"):
-        if again == "resume":
-            fastpin.resume(path)
-        else:
-            fastpin.record(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
+        resume(path) if again == "resume" else follow(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
     assert precious.read_text() == "keep"

@@ -1,0 +1,210 @@
+"""HDF5 files from anywhere: every part is judged before it is read.
+
+A result holds plain groups, arrays and attributes. An HDF5 file can hold more: links to other files, arrays in other
+files, and arrays whose size is only claimed. :class:`Group` and :class:`Array` have the part of h5py's interface that
+reading needs, as those of packed.py. They refuse everything else with :class:`ValueError`. All reading of HDF5 files
+goes through them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import h5py
+import numpy as np
+
+AT_ONCE = 1 << 24
+"""Most bytes that are read at once, so that Ctrl-C is heard. A smaller array needs no proof of its size."""
+
+MOST_CHUNK = 1 << 26
+"""Most bytes of a chunk. A chunk of a result is a row of node values, or what h5py chooses: some 1 MB."""
+
+LARGEST_RATIO = 300
+"""Largest ratio of the bytes of an array to its bytes in the file. Zeros, packed as fastpin does it, reach 230."""
+
+MOST_TEXTS = 1000
+"""Most texts of an array or an attribute. Many of them can share their bytes in the file."""
+
+MOST_ATTRIBUTE = 1 << 24
+"""Most bytes of an attribute in the file."""
+
+_FILTERS = (h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)
+
+
+class Attributes:
+    """The attributes of a group or an array."""
+
+    def __init__(self, owner: h5py.Group | h5py.Dataset) -> None:
+        self._owner = owner
+
+    def __getitem__(self, name: str) -> Any:
+        if name in self._owner.attrs:
+            attribute = h5py.h5a.open(self._owner.id, name.encode())
+            label = f"the attribute {name} of {self._owner.name}"
+            if math.prod(attribute.shape) * attribute.dtype.itemsize > MOST_ATTRIBUTE:
+                raise ValueError(f"{label} is too large")
+            _check_kind(label, attribute.dtype, math.prod(attribute.shape))
+        return self._owner.attrs[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._owner.attrs
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._owner.attrs)
+
+    def __len__(self) -> int:
+        return len(self._owner.attrs)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """The value of an attribute, or `default` if there is none of this name."""
+        return self[name] if name in self else default  # noqa: SIM401 - this is the method itself
+
+    def items(self) -> Iterator[tuple[str, Any]]:
+        """Names and values."""
+        yield from ((name, self[name]) for name in self)
+
+
+class Array:
+    """An array of a file, with the interface of ``h5py.Dataset``.
+
+    Raises
+    ------
+    ValueError
+        If the array lies in another file, is packed in an unknown way, or has chunks of an absurd size.
+    """
+
+    def __init__(self, dataset: h5py.Dataset) -> None:
+        self._dataset = dataset
+        self.name, self.dtype, self.shape = str(dataset.name), dataset.dtype, dataset.shape
+        self.attrs = Attributes(dataset)
+        label, how = self.name[1:], dataset.id.get_create_plist()
+        if how.get_layout() == h5py.h5d.VIRTUAL or how.get_external_count():
+            raise ValueError(f"{label} lies in another file, and a result is one file")
+        if any(how.get_filter(k)[0] not in _FILTERS for k in range(how.get_nfilters())):
+            raise ValueError(f"{label} is packed in an unknown way")
+        if math.prod(self.chunks or ()) * self.dtype.itemsize > MOST_CHUNK:
+            raise ValueError(f"{label} has chunks of the shape {self.chunks}, larger than those of any result")
+        if self.shape is None:
+            raise ValueError(f"{label} is empty")
+
+    @property
+    def ndim(self) -> int:
+        """Number of dimensions."""
+        return len(self.shape)
+
+    @property
+    def maxshape(self) -> tuple[int | None, ...]:
+        """Largest numbers of entries in all dimensions; None without a limit."""
+        return tuple(self._dataset.maxshape)
+
+    @property
+    def chunks(self) -> tuple[int, ...] | None:
+        """Shape of a chunk; None without chunks."""
+        return self._dataset.chunks
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise ValueError(f"{self.name[1:]} is a single number")
+        return int(self.shape[0])
+
+    def __getitem__(self, key: Any) -> Any:
+        """The entries of a slice of rows, of a row, or all of them for ``()``."""
+        self._check_size(key)
+        row = math.prod(self.shape[1:]) * self.dtype.itemsize
+        if not self.shape or not row or not (key == () or isinstance(key, slice)):
+            return self._dataset[key]
+        rows = range(len(self))[slice(None) if key == () else key]
+        if rows.step != 1 or len(rows) * row <= AT_ONCE:
+            return self._dataset[key]
+        values = np.empty((len(rows), *self.shape[1:]), self.dtype)
+        size = max(AT_ONCE // row, 1)
+        for first in range(0, len(rows), size):
+            part = rows[first : first + size]
+            self._dataset.read_direct(values, np.s_[part.start : part.stop], np.s_[first : first + len(part)])
+        return values
+
+    def asstr(self) -> Any:
+        """The array as texts of Python."""
+        self._check_size(())
+        return self._dataset.asstr()
+
+    def _check_size(self, key: Any) -> None:
+        """Raise :class:`ValueError` if the entries of a key can't be in the file."""
+        label, most = self.name[1:], math.prod(self.shape)
+        _check_kind(label, self.dtype, most)
+        if isinstance(key, slice):
+            most = len(range(len(self))[key]) * math.prod(self.shape[1:])
+        elif key != ():
+            most = math.prod(self.shape[1:])
+        if most * self.dtype.itemsize <= AT_ONCE:
+            return
+        stored = min(self._dataset.id.get_storage_size(), self._dataset.file.id.get_filesize())
+        if math.prod(self.shape) * self.dtype.itemsize > LARGEST_RATIO * stored:
+            raise ValueError(f"{label} has the shape {self.shape}, and only {stored} bytes in the file")
+
+
+class Group:
+    """A group of a file, with the interface of ``h5py.Group``.
+
+    Raises
+    ------
+    ValueError
+        If a part of the group is a link, or is no group and no array.
+    """
+
+    def __init__(self, group: h5py.Group) -> None:
+        self._group = group
+        self.name = str(group.name)
+        self.attrs = Attributes(group)
+
+    def __getitem__(self, path: str) -> Any:
+        part: Any = self
+        for name in path.split("/"):
+            if not isinstance(part, Group):
+                raise ValueError(f"{part.name[1:]} is no group")
+            part = part._part(name)
+        return part
+
+    def __contains__(self, name: str) -> bool:
+        return self._group.id.links.exists(name.encode())
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._group)
+
+    def __len__(self) -> int:
+        return len(self._group)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A part of the group, or `default` if there is none of this name."""
+        return self[name] if name in self else default  # noqa: SIM401 - this is the method itself
+
+    def items(self) -> Iterator[tuple[str, Any]]:
+        """Names and parts."""
+        yield from ((name, self[name]) for name in self)
+
+    def values(self) -> Iterator[Any]:
+        """The parts."""
+        yield from (self[name] for name in self)
+
+    def _part(self, name: str) -> Any:
+        label = f"{self.name}/{name}".lstrip("/")
+        if name not in self:
+            raise ValueError(f"there is no part {label}")
+        if self._group.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
+            raise ValueError(f"{label} is a link, and a result has no links")
+        part = self._group[name]
+        if isinstance(part, h5py.Dataset):
+            return Array(part)
+        if isinstance(part, h5py.Group):
+            return Group(part)
+        raise ValueError(f"{label} is no group and no array")
+
+
+def _check_kind(label: str, dtype: np.dtype[Any], entries: int) -> None:
+    """Raise :class:`ValueError` if entries are no numbers and no texts, or too many texts."""
+    if dtype.hasobject and h5py.check_string_dtype(dtype) is None:
+        raise ValueError(f"{label} has no numbers and no texts")
+    if dtype.hasobject and entries > MOST_TEXTS:
+        raise ValueError(f"{label} has {entries} texts, more than any result")
