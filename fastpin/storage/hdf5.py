@@ -72,7 +72,8 @@ class Array:
     Raises
     ------
     ValueError
-        If the array lies in another file, is packed in an unknown way, or has chunks of an absurd size.
+        If the array lies in another file, is packed in an unknown way, has chunks of an absurd size, or claims a size that
+        is not in the file.
     """
 
     def __init__(self, dataset: h5py.Dataset) -> None:
@@ -88,6 +89,8 @@ class Array:
             raise ValueError(f"{label} has chunks of the shape {self.chunks}, larger than those of any result")
         if self.shape is None:
             raise ValueError(f"{label} is empty")
+        _check_kind(label, self.dtype, math.prod(self.shape))
+        self._check_size()
 
     @property
     def ndim(self) -> int:
@@ -111,7 +114,6 @@ class Array:
 
     def __getitem__(self, key: Any) -> Any:
         """The entries of a slice of rows, of a row, or all of them for ``()``."""
-        self._check_size(key)
         row = math.prod(self.shape[1:]) * self.dtype.itemsize
         if not self.shape or not row or not (key == () or isinstance(key, slice)):
             return self._dataset[key]
@@ -127,22 +129,16 @@ class Array:
 
     def asstr(self) -> Any:
         """The array as texts of Python."""
-        self._check_size(())
         return self._dataset.asstr()
 
-    def _check_size(self, key: Any) -> None:
-        """Raise :class:`ValueError` if the entries of a key can't be in the file."""
-        label, most = self.name[1:], math.prod(self.shape)
-        _check_kind(label, self.dtype, most)
-        if isinstance(key, slice):
-            most = len(range(len(self))[key]) * math.prod(self.shape[1:])
-        elif key != ():
-            most = math.prod(self.shape[1:])
-        if most * self.dtype.itemsize <= AT_ONCE:
+    def _check_size(self) -> None:
+        """Raise :class:`ValueError` if the entries can't be in the file."""
+        size = math.prod(self.shape) * self.dtype.itemsize
+        if size <= AT_ONCE:
             return
         stored = min(self._dataset.id.get_storage_size(), self._dataset.file.id.get_filesize())
-        if math.prod(self.shape) * self.dtype.itemsize > LARGEST_RATIO * stored:
-            raise ValueError(f"{label} has the shape {self.shape}, and only {stored} bytes in the file")
+        if size > LARGEST_RATIO * stored:
+            raise ValueError(f"{self.name[1:]} has the shape {self.shape}, and only {stored} bytes in the file")
 
 
 class Group:

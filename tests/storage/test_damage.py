@@ -246,7 +246,7 @@ def test_an_error_of_the_disk_names_the_file(whole, tmp_path):
     path = tmp_path / "a.h5"
     path.write_bytes(whole)
     result = fastpin.load(path)
-    with pytest.raises(InputError, match="^/dev/full: must be an ordinary file"):
+    with pytest.raises(InputError, match=r"^/dev/full: must be an ordinary file"):
         fastpin.save(result, "/dev/full")
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     before = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
