@@ -72,8 +72,8 @@ class Array:
     Raises
     ------
     ValueError
-        If the array lies in another file, is packed in an unknown way, has chunks of an absurd size, or claims a size that
-        is not in the file.
+        If the array lies in another file, is packed in an unknown way, has chunks of an absurd size, or claims a size
+        that is not in the file.
     """
 
     def __init__(self, dataset: h5py.Dataset) -> None:
