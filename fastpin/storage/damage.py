@@ -11,7 +11,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from fastpin.errors import FastpinError, InputError, printable
+from fastpin.errors import FastpinError, InputError, OutputError, printable
 from fastpin.model.checks import number
 from fastpin.storage import hdf5, packed
 
@@ -41,10 +41,10 @@ def reading(path: Path, *arguments: str) -> Iterator[None]:
         raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
 
 
-def not_written(path: Path, error: BaseException) -> InputError:
+def not_written(path: Path, error: BaseException) -> OutputError:
     """Return the error of a file that h5py could not write."""
     reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else _first_line(error)
-    return InputError(str(path), f"can't be written: {reason}")
+    return OutputError(str(path), f"can't be written: {reason}")
 
 
 def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...] | None = None) -> h5py.Dataset:

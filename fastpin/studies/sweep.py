@@ -30,8 +30,8 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.storage import store
 from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.storage import store
 from fastpin.storage.files import INDEX, forget_temporaries, replacing
 from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
