@@ -37,7 +37,7 @@ Mode = Literal["ro", "rw", "rwc"]
 
 # Plain columns: names, types and constraints in capital words. Expressions would need parentheses.
 _COLUMN = r'(?>"(?:[^"]|"")*"|PRIMARY KEY \([a-z, ]+\)|[a-z]+)(?> [A-Z]+)*'
-_PLAIN = re.compile(rf"CREATE TABLE ([a-z]+) \({_COLUMN}(?:, {_COLUMN})*\)")
+_PLAIN = re.compile(rf"CREATE TABLE \"?([a-z]+)\"? \({_COLUMN}(?:, {_COLUMN})*\)")
 
 # The end of a journal that names a super-journal, which SQLite deletes: its length, a checksum, and these bytes.
 _MAGIC = bytes.fromhex("d9d505f920a163d7")

@@ -1,8 +1,8 @@
 """Safe writing of output files: a file is either whole or absent, and an output replaces only files of its own kind.
 
 A path is checked before the work begins, and again before the old file is replaced. The new file is written under
-another name and then renamed. All outputs of all commands and functions are written by :func:`replacing`, except for the
-results of runs, which grow in place (journal.py).
+another name and then renamed. All outputs of all commands and functions are written by :func:`replacing`. Only the
+results of runs grow in place (journal.py).
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
 from fastpin.storage import packed, store
+from fastpin.storage.files import INDEX
 from fastpin.storage.layout import CYCLE_FIELDS, NODE_FIELDS, NUMBER_FIELDS, SLIP_FIELDS
 
 STEEL = MATERIALS["steel"]
@@ -40,7 +41,7 @@ def result() -> Result:
 def path(result: Result, tmp_path: Path) -> Path:
     """The path of a result that is in the index of a sweep."""
     (tmp_path / "results").mkdir()
-    database = sqlite3.connect(tmp_path / packed.INDEX)
+    database = sqlite3.connect(tmp_path / INDEX)
     database.execute(packed.TABLE)
     database.execute("INSERT INTO results VALUES ('abc', ?)", [store.pack(result, "lost", LIMIT)])
     database.commit()
@@ -138,7 +139,7 @@ def test_other_paths_are_no_results(name: str, path: Path) -> None:
 
 @pytest.mark.parametrize("value", ["'text'", "5", "NULL"])
 def test_another_value_in_the_place_of_a_result_is_damage(value: str, path: Path) -> None:
-    database = sqlite3.connect(path.parent.parent / packed.INDEX)
+    database = sqlite3.connect(path.parent.parent / INDEX)
     database.executescript(
         f"CREATE TABLE other (run TEXT, content BLOB); INSERT INTO other VALUES ('abc', {value});"
         "DROP TABLE results; ALTER TABLE other RENAME TO results"
@@ -149,13 +150,13 @@ def test_another_value_in_the_place_of_a_result_is_damage(value: str, path: Path
 
 
 def test_an_index_that_can_not_be_read_is_named(path: Path) -> None:
-    (path.parent.parent / packed.INDEX).write_bytes(b"x" * 1000)
+    (path.parent.parent / INDEX).write_bytes(b"x" * 1000)
     with pytest.raises(InputError, match=r"index.sqlite: can't be used: file is not a database"):
         store.load(path)
     database = sqlite3.connect(path.parent.parent / "other.sqlite")
     database.execute("CREATE TABLE runs (id TEXT)")
     database.close()
-    (path.parent.parent / "other.sqlite").replace(path.parent.parent / packed.INDEX)
+    (path.parent.parent / "other.sqlite").replace(path.parent.parent / INDEX)
     with pytest.raises(InputError, match="there is no such file"):
         store.load(path)
 

@@ -155,7 +155,7 @@ def test_a_sweep_that_is_not_there(damage: Callable[[Path], None], words: str, d
 
 
 def test_an_index_that_can_not_be_written_is_named(plan: Plan, directory: Path) -> None:
-    with Index(directory) as index:
+    with Index(directory, write=True) as index:
         index._database.execute("PRAGMA query_only = ON")  # what SQLite says of a file that may only be read
         for write in (
             lambda: index.expect(plan, plan.points),

@@ -18,9 +18,9 @@ from fastpin.model.angles import from_bottom
 from fastpin.model.materials import MaterialPair
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES
-from fastpin.studies import outcomes, read_outcomes
+from fastpin.studies import outcomes, read_outcomes, sweep
 from fastpin.studies.outcome_tables import outcomes_from
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, pickled, value_of, values_in_worker
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, check_loadable, pickled, value_of, values_in_worker
 from fastpin.studies.plan import parse_plan
 from fastpin.studies.run_end import RUN_COLUMNS
 from tests.support.outcomes import FILE, TABLE, last_work, solved
@@ -218,7 +218,7 @@ def faults(text: str, folder: Path) -> list[str]:
 def test_all_faults_of_the_table_come_at_once_with_their_lines(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text(FILE)
     (tmp_path / "bad.py").write_text("x = 1\ndef f(:\n")
-    (tmp_path / "worse.py").write_text("import nowhere_at_all\n")
+    (tmp_path / "units.py").write_text("def f(result): return 1.0\nf.unit = 3\n")
     text = """titel = "x"
 [grid]
 contact.friction = 0.3
@@ -240,7 +240,7 @@ m = { function = "mine.py" }
 n = { function = "mine.py:largest_presure" }
 o = { function = "none.py:f" }
 p = { function = "bad.py:f" }
-q = { function = "worse.py:f" }
+q = { function = "units.py:f" }
 r = { function = 3 }
 t = { function = "../mine.py:broken" }
 u = { function = "/mine.py:broken" }
@@ -271,7 +271,7 @@ take = "most"
         (21, "p: bad.py, line 2: is not Python: "),
         (
             22,
-            "q: worse.py: can't be imported: ModuleNotFoundError: No module named 'nowhere_at_all' (worse.py, line 1)",
+            "q: units.py, line 2: f: the attribute unit must be text in quotes, as the file is read without being run",
         ),
         (23, 'r: function: must be FILE.py:NAME, such as "my.py:wear", not 3'),
         (24, "t: ../mine.py: must lie beside the plan, or in a folder below"),
@@ -330,7 +330,7 @@ def test_no_column_of_the_index_can_be_an_outcome() -> None:
     [
         ("a.txt", "", "a.txt: must end in .py or .toml to be a file of outcomes"),
         ("a.py", "x = 1\n", "defines no function whose name begins with a letter"),
-        ("a.py", "raise SystemExit('no')\n", r"can't be imported: SystemExit: no \(a.py, line 1\)"),
+        ("a.py", "def f(r):\n  return 1\nf.unit = g()\n", "line 3: f: the attribute unit must be text in quotes"),
         ("a.py", "def f(r):\n  return 1\ndef seconds(r):\n  return 1\n", "seconds: is a column of every sweep"),
         ("a.toml", "[grid]\n", r"the section \[outcomes\] is missing"),
         ("a.toml", "[outcomes]\nx = 3\n", "line 2: x: must be a table"),
@@ -366,3 +366,64 @@ def test_another_body_of_a_function_is_another_definition() -> None:
     for text in ("lambda result: 1.0", "lambda result: 2.0", "lambda result: len(result)"):
         definitions.add(outcomes_from({"mine": eval(text)})["mine"].definition)
     assert len(definitions) == 3
+
+
+TRAP = """
+from pathlib import Path
+
+Path({marker!r}).touch()
+
+
+def loss(result):
+    return 1.0
+
+
+loss.unit = "J"
+if True:
+    other = lambda result: 2.0
+"""
+
+
+def test_a_file_of_functions_is_read_without_being_run(tmp_path: Path) -> None:
+    marker = tmp_path / "ran"
+    (tmp_path / "mine.py").write_text(TRAP.format(marker=str(marker)))
+    plan = parse_plan('[grid]\nsolve.nodes = [41]\n[outcomes]\nw = { function = "mine.py:loss" }\n', "p", tmp_path)
+    found = read_outcomes(tmp_path / "mine.py")
+    assert (plan.outcomes["w"].unit, [*found]) == ("J", ["loss", "other"])
+    assert not marker.exists()
+    check_loadable(found)
+    assert marker.exists()
+
+
+@pytest.mark.parametrize("link", ["file", "folder"])
+def test_a_link_does_not_lead_out_of_the_folder_of_the_plan(link: str, tmp_path: Path) -> None:
+    (tmp_path / "outside").mkdir()
+    (tmp_path / "outside/mine.py").write_text(FILE)
+    folder = tmp_path / "plans"
+    folder.mkdir()
+    if link == "file":
+        (folder / "link.py").symlink_to("../outside/mine.py")
+    else:
+        (folder / "sub").symlink_to("../outside")
+    name = "link.py" if link == "file" else "sub/mine.py"
+    text = f'[grid]\nsolve.nodes = [41]\n[outcomes]\nw = {{ function = "{name}:broken" }}\n'
+    assert faults(text, folder) == [f"plan, line 4: w: {name}: is a link that leads out of the folder of the plan"]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "import nowhere_at_all\ndef f(r): return 1.0\n",
+            "a.py: can't be imported: ModuleNotFoundError: No ",
+        ),
+        ("def f(r): return 1.0\nraise SystemExit('no')\n", r"a.py: can't be imported: SystemExit: no \(a.py, line 2\)"),
+        ("def f(r): return 1.0\ndel f\n", "a.py: can't be imported: AttributeError: "),
+    ],
+)
+def test_a_file_that_can_not_be_run_is_found_before_the_work(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text(text)
+    plan = parse_plan("[grid]\nsolve.nodes = [41]\n").with_outcomes(read_outcomes(tmp_path / "a.py"))
+    with pytest.raises(InputError, match=f"outcomes: f: {words}"):
+        sweep.run(plan, tmp_path / "out", workers=1)
+    assert not (tmp_path / "out").exists()

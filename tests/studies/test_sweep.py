@@ -160,7 +160,7 @@ def test_only_failures_are_retried(plan: Plan, copy: Path) -> None:
 def test_a_result_that_is_gone_is_computed_again(plan: Plan, copy: Path) -> None:
     before = contents(copy)
     run = plan.points[4].id
-    with sweep.Index(copy) as index:
+    with sweep.Index(copy, write=True) as index:
         index._database.execute("DELETE FROM results WHERE run = ?", [run])
     assert sweep.status(plan, copy).waiting == 1
     assert sweep.run(plan, copy, Inline()).ended == 1
@@ -458,7 +458,7 @@ def test_the_order_of_the_points_does_not_matter_to_parts(plan: Plan) -> None:
 def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     shutil.copytree(copy, other)
-    with sweep.Index(other) as index:
+    with sweep.Index(other, write=True) as index:
         index.record([run_end.RunEnd(plan.points[0].id, "lost")])
         index._database.execute("UPDATE runs SET status = 'waiting' WHERE id = ?", [plan.points[1].id])
     for name, order in (("a", (copy, other)), ("b", (other, copy))):
@@ -468,7 +468,7 @@ def test_done_wins_over_failed_and_failed_over_waiting(plan: Plan, copy: Path, t
 
 def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[Path, Summary], tmp_path: Path) -> None:
     run = plan.points[0].id
-    with sweep.Index(copy) as index:
+    with sweep.Index(copy, write=True) as index:
         index._database.execute("UPDATE runs SET peak_pressure = 1.01 * peak_pressure WHERE id = ?", [run])
     with pytest.raises(InputError, match=f"run {run} has peak_pressure = "):
         sweep.merge([swept[0], copy], tmp_path / "whole")
@@ -480,7 +480,7 @@ def test_results_that_disagree_are_refused(plan: Plan, copy: Path, swept: tuple[
 def test_other_plans_and_versions_are_not_merged(
     name: str, words: str, copy: Path, swept: tuple[Path, Summary], tmp_path: Path
 ) -> None:
-    with sweep.Index(copy) as index:
+    with sweep.Index(copy, write=True) as index:
         index._write_notes(**{name: "another"})
     with pytest.raises(InputError, match=words):
         sweep.merge([swept[0], copy], tmp_path / "whole")

@@ -145,7 +145,7 @@ def test_a_failed_run_has_no_outcomes(tmp_path: Path) -> None:
 
 
 def test_a_result_that_can_not_be_read_is_the_reason(copy: Path) -> None:
-    with Index(copy) as index:
+    with Index(copy, write=True) as index:
         index._database.execute("UPDATE results SET content = substr(content, 1, 1000)")
     summary = sweep.run(parse_plan(CYCLES + TABLE), copy, Inline())
     assert len(summary.unread) == 6
@@ -198,7 +198,7 @@ def test_plain_sql_reads_outcomes(copy: Path) -> None:
 
 
 def test_a_damaged_value_is_described(copy: Path) -> None:
-    with Index(copy) as index:
+    with Index(copy, write=True) as index:
         run = index.rows()[0]["id"]
         index.record_outcomes([RunEnd(run, None, outcomes={"shear": OutcomeValue("x", 1.0)})])
         index._database.execute("UPDATE outcomes SET value = 'high'")
@@ -209,7 +209,7 @@ def test_a_damaged_value_is_described(copy: Path) -> None:
 def test_a_run_that_fails_when_solved_again_shows_no_old_outcome(copy: Path) -> None:
     plan = parse_plan(CYCLES + TABLE)
     sweep.run(plan, copy, Inline())
-    with Index(copy) as index:
+    with Index(copy, write=True) as index:
         index.record([RunEnd(plan.points[0].id, "not enough memory")])
     assert [row["loss"] is None for row in sweep.rows(plan, copy)] == [True, False]
 

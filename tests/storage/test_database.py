@@ -1,0 +1,188 @@
+"""Indices of sweeps that come from strangers: reading writes nothing, and no query runs their expressions."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sqlite3
+import struct
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from fastpin.errors import InputError
+from fastpin.storage import database as databases
+from fastpin.storage.database import open_database
+from fastpin.storage.files import INDEX
+from fastpin.studies import sweep
+from fastpin.studies.index import Index
+from fastpin.studies.plan import Plan, parse_plan
+from tests.support.files import contents
+
+PAGE = 16  # place of the page size in the header
+RUN = "0123456789abcdef"
+
+
+@pytest.fixture
+def plan() -> Plan:
+    return parse_plan('title = "t"\n[grid]\ncontact.friction = [0.2, 0.3]\nsolve.nodes = [41]\n')
+
+
+@pytest.fixture
+def directory(plan: Plan, tmp_path: Path) -> Path:
+    folder = tmp_path / "swept"
+    folder.mkdir()
+    with Index(folder, write=True) as index:
+        index.expect(plan, plan.points)
+    return folder
+
+
+def journal_of(directory: Path) -> Path:
+    return directory / f"{INDEX}-journal"
+
+
+def name_super_journal(directory: Path, victim: Path) -> None:
+    """Leave the journal of a killed transaction over several databases, whose super-journal is another file."""
+    content = (directory / INDEX).read_bytes()
+    page = struct.unpack(">H", content[PAGE : PAGE + 2])[0]
+    magic, name = bytes.fromhex("d9d505f920a163d7"), os.fsencode(victim)
+    head = (magic + struct.pack(">5I", 0, 1, len(content) // page, 512, page)).ljust(512, b"\0")
+    end = struct.pack(">I", 0x40000000 // page + 1) + name + struct.pack(">II", len(name), sum(name)) + magic
+    journal_of(directory).write_bytes(head + end)
+
+
+READERS: dict[str, Callable[[Plan, Path, Path], object]] = {
+    "load": lambda plan, directory, other: sweep.load(directory),
+    "status": lambda plan, directory, other: sweep.status(plan, directory),
+    "rows": lambda plan, directory, other: sweep.rows(plan, directory),
+    "merge": lambda plan, directory, other: sweep.merge([directory], other),
+}
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_a_reader_deletes_no_file_that_a_journal_names(
+    reader: str, plan: Plan, directory: Path, tmp_path: Path
+) -> None:
+    victim = tmp_path / "precious.txt"
+    victim.write_text("keep")
+    name_super_journal(directory, victim)
+    before = contents(directory)
+    with pytest.raises(InputError, match=r"index.sqlite: can't be used: its journal names another file"):
+        READERS[reader](plan, directory, tmp_path / "other")
+    assert (victim.read_text(), contents(directory)) == ("keep", before)
+
+
+@pytest.mark.parametrize("name", [INDEX, "lock"])
+def test_a_writer_deletes_no_file_that_a_journal_names(name: str, plan: Plan, directory: Path, tmp_path: Path) -> None:
+    victim = tmp_path / "precious.txt"
+    victim.write_text("keep")
+    if name == "lock":
+        shutil.copyfile(directory / INDEX, directory / "lock")
+    name_super_journal(directory, victim)
+    journal_of(directory).rename(directory / f"{name}-journal")
+    with pytest.raises(InputError, match="its journal names another file that SQLite would delete"):
+        sweep.run(plan, directory, workers=1)
+    assert victim.read_text() == "keep"
+
+
+@pytest.mark.parametrize("first", [b"", b"\0", b"\xd9"])
+def test_a_journal_that_is_a_link_is_refused(first: bytes, plan: Plan, directory: Path, tmp_path: Path) -> None:
+    victim = tmp_path / "precious.bin"
+    victim.write_bytes(first + b"keep")
+    journal_of(directory).symlink_to(victim)
+    for use in (lambda: sweep.load(directory), lambda: sweep.run(plan, directory, workers=1)):
+        with pytest.raises(InputError, match=r"index.sqlite-journal: must be an ordinary file, not a link"):
+            use()
+    assert victim.read_bytes() == first + b"keep"
+
+
+KILLED = """
+import os, signal, sqlite3, sys
+database = sqlite3.connect(sys.argv[1], isolation_level=None)
+database.execute("PRAGMA cache_size = 1")
+database.execute("PRAGMA cache_spill = 1")
+database.execute("BEGIN IMMEDIATE")
+database.execute("UPDATE runs SET reason = hex(zeroblob(20000))")
+database.execute("UPDATE sweep SET value = 'half done' WHERE name = 'title'")
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_readers_see_the_last_transaction_after_a_kill_and_write_nothing(plan: Plan, directory: Path) -> None:
+    whole = sweep.load(directory)
+    ended = subprocess.run([sys.executable, "-c", KILLED, directory / INDEX], timeout=60)
+    assert ended.returncode == -signal.SIGKILL
+    assert journal_of(directory).stat().st_size > 0
+    before = contents(directory)
+    assert sweep.load(directory) == whole
+    with Index(directory) as index:
+        assert index.read_note("title") == "t"
+    assert contents(directory) == before
+    with Index(directory, write=True) as index:
+        assert index.read_note("title") == "t"
+    assert not journal_of(directory).exists()
+    assert sweep.load(directory) == whole
+
+
+HOSTILE = {
+    "view": "ALTER TABLE runs RENAME TO r0; CREATE VIEW runs AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i+1 "
+    "FROM n) SELECT r0.* FROM r0, n",
+    "trigger": "CREATE TRIGGER t AFTER UPDATE ON runs BEGIN DELETE FROM sweep; END",
+    "table": "CREATE TABLE more (id TEXT)",
+    "virtual table": "CREATE VIRTUAL TABLE results USING fts5(run, content)",
+    "generated column": "ALTER TABLE runs ADD COLUMN big AS (hex(zeroblob(1000000000)))",
+    "default": "DROP TABLE sweep; CREATE TABLE sweep (name TEXT PRIMARY KEY, value TEXT DEFAULT (hex(zeroblob(9))))",
+    "check": "DROP TABLE sweep; CREATE TABLE sweep (name TEXT PRIMARY KEY, value TEXT CHECK (random() > 0))",
+    "index": "CREATE INDEX i ON runs (hex(zeroblob(length(id))))",
+}
+
+
+@pytest.mark.parametrize("write", [False, True])
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_only_tables_of_plain_columns_are_read(kind: str, write: bool, directory: Path) -> None:
+    with closing(sqlite3.connect(directory / INDEX)) as database:
+        if kind != "virtual table":
+            database.executescript(HOSTILE[kind])
+        else:
+            database.execute("DROP TABLE results")
+            database.execute(HOSTILE[kind])
+    before = contents(directory)
+    with pytest.raises(InputError, match=r"is no index of a sweep: it holds the (view|trigger|table|index) "):
+        Index(directory, write)
+    assert contents(directory) == before
+
+
+def test_a_write_ahead_log_is_refused(directory: Path) -> None:
+    with closing(sqlite3.connect(directory / INDEX)) as database:
+        database.execute("PRAGMA journal_mode = WAL")
+    before = contents(directory)
+    with pytest.raises(InputError, match="it has a write-ahead log, which fastpin never makes"):
+        sweep.load(directory)
+    assert contents(directory) == before
+
+
+@pytest.mark.parametrize("name", ["../../precious", "", "0123456789abcdeg", f"{RUN}\n", f"{RUN}/x"])
+def test_the_id_of_a_run_is_no_path(name: str, directory: Path, tmp_path: Path) -> None:
+    with closing(sqlite3.connect(directory / INDEX, isolation_level=None)) as database:
+        database.execute("UPDATE runs SET id = ? WHERE rowid = 1", [name])
+    with pytest.raises(InputError, match=r"index.sqlite: is damaged: id: must be 16 hexadecimal digits"):
+        sweep.load(directory)
+    with pytest.raises(InputError, match="id: must be 16 hexadecimal digits"):
+        sweep.merge([directory], tmp_path / "whole")
+
+
+def test_more_rows_than_an_index_has_are_refused(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(databases, "MOST_ROWS", 1)
+    with pytest.raises(InputError, match="a table has more than 1 rows"):
+        sweep.load(directory)
+
+
+def test_a_schema_without_end_is_refused(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(databases, "MOST_OPERATIONS", 1)
+    with pytest.raises(sqlite3.OperationalError, match="interrupted"):
+        open_database(directory / INDEX, "ro")
