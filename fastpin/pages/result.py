@@ -73,8 +73,6 @@ def write_report(
         source = Source.of_result(result, title)
     else:
         file = file_path("result", result)
-        if target.resolve() == file.resolve():
-            raise InputError("path", f"won't overwrite the result {file}")
         source = Source.of_file(file)
         if case is None:
             with contextlib.suppress(InputError, CaseFileError):  # the file is another case, or none

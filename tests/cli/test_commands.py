@@ -286,7 +286,7 @@ def test_the_case_file_is_never_overwritten(
     """argparse takes the case file after an option with an optional value for that value."""
     assert main(["run", option, str(case)]) == 2
     assert main(["run", str(case), option, str(case.parent / "." / case.name)]) == 2
-    assert "won't overwrite the case file" in capsys.readouterr().err
+    assert "a case file or plan by its name" in capsys.readouterr().err
     assert case.read_text() == EXAMPLE
     assert solved == []
 
@@ -688,7 +688,7 @@ def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pyte
         (["run", "CASE", "--cycles", "c.png"], "--cycles: the history has no cycles"),
         (["run", "CASE", "--cycle-csv", "c.csv"], "--cycle-csv: the history has no cycles"),
         (["run", "CASE", "--keep", "cycles"], "--keep: the history has no cycles"),
-        (["run", "CASE", "-o", "CASE"], "won't overwrite the case file"),
+        (["run", "CASE", "-o", "CASE"], "a case file or plan by its name"),
         (["run", "CASE", "--start", "CASE"], "is no result; of a case file, fastpin run"),
         (["run", "CASE", "--start", "none.h5"], "there is no such file"),
         (["resume", "none.h5"], "there is no such file"),

@@ -82,12 +82,12 @@ def test_a_doubtful_result_has_a_note(
     ("arguments", "message"),
     [
         ([], "fastpin: lug: the lug file is missing; start with: fastpin compliance --example > lug.toml"),
-        (["LUG", "-o", "other.toml"], "fastpin: --output: won't overwrite the case file other.toml"),
+        (["LUG", "-o", "other.toml"], "fastpin: --output: won't overwrite other.toml, a case file or plan by its name"),
         (
             ["LUG", "--plot", "lug.doc"],
             "fastpin: --plot: must be the name of a figure, which ends in .png, .pdf or .svg",
         ),
-        (["LUG", "-o", "no/where.json"], "fastpin: no/where.json"),
+        (["LUG", "-o", "no/where.json"], "fastpin: --output: no/where.json: the directory no does not exist"),
         (["no.toml"], "no.toml: there is no such file"),
     ],
 )

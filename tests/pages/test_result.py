@@ -346,6 +346,6 @@ def test_wrong_input_is_one_sentence_and_loses_nothing(
 def test_the_result_is_never_overwritten(stored: Path) -> None:
     odd = stored.with_name("result.html")
     odd.write_bytes(stored.read_bytes())
-    with pytest.raises(InputError, match="won't overwrite the result"):
+    with pytest.raises(InputError, match="is a stored result, which only a result replaces"):
         write_report(odd, odd)
     assert odd.read_bytes() == stored.read_bytes()

@@ -1,0 +1,208 @@
+"""Every output option of every command, against every kind of file that it must not replace."""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from fastpin.casefile.lug import LUG_EXAMPLE
+from fastpin.casefile.reader import EXAMPLE
+from fastpin.cli.main import main
+from fastpin.cli.options import parser
+from fastpin.storage.files import INDEX
+from fastpin.studies.index import Index
+from fastpin.studies.plan import read_plan
+from tests.support.files import contents
+
+CASE = EXAMPLE.split("[[load]]")[0] + "\n[[load]]\nP = 2e6\n[[load]]\nrepeat = 2\nQ = [1e5, -1e5]\n"
+
+COMMANDS = {
+    "run": ["run", "case.toml"],
+    "resume": ["resume", "r.h5"],
+    "show": ["show", "r.h5"],
+    "plot": ["plot", "r.h5", "tractions"],
+    "report": ["report", "r.h5"],
+    "converge": ["converge", "case.toml"],
+    "sweep": ["sweep", "plan.toml"],
+    "compliance": ["compliance", "lug.toml"],
+    "benchmarks": ["benchmarks", "kirsch"],
+    "verify": ["verify"],
+    "paper": ["paper", "--figure", "3"],
+}
+"""Each command with its input."""
+
+STATES = {"--json": ".json", "--plot": ".png", "--cycles": ".svg", "--record": ".html", "--cycle-csv": ".csv"}
+
+TEXTS: dict[str, dict[str, str]] = {
+    "run": STATES,
+    "resume": STATES,
+    "show": STATES,
+    "plot": {"--output": ".png", "--csv": ".csv"},
+    "report": {"--output": ".html"},
+    "converge": {"--csv": ".csv", "--json": ".json", "--plot": ".pdf"},
+    "sweep": {"--table": ".csv", "--plot": ".png"},
+    "compliance": {"--output": ".json", "--plot": ".png"},
+    "benchmarks": {"--json": ".json"},
+    "verify": {"--json": ".json"},
+}
+"""The options of texts and figures, with the ending of their files."""
+
+RESULTS = {"run": {"--output"}}
+DIRECTORIES = {"sweep": {"--output"}, "merge": {"--output"}, "paper": {"--output"}, "benchmarks": {"--output"}}
+INPUTS = {
+    "run": {"--start"},
+    "converge": {"--outcomes"},
+    "sweep": {"--outcomes"},
+    "report": {"--case", "--plan"},
+}
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with an input of each kind, and a result and an index."""
+    folder = tmp_path_factory.mktemp("samples")
+    (folder / "case.toml").write_text(CASE)
+    (folder / "lug.toml").write_text(LUG_EXAMPLE)
+    (folder / "plan.toml").write_text('case = "case.toml"\n[grid]\nsolve.nodes = [41]\ncontact.friction = [0.2, 0.3]\n')
+    assert main(["run", str(folder / "case.toml"), "--nodes", "41", "-o", str(folder / "r.h5")]) == 0
+    plan = read_plan(folder / "plan.toml")
+    with Index(folder, write=True) as index:
+        index.expect(plan, plan.points)
+    return folder
+
+
+@pytest.fixture
+def folder(samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name in ("case.toml", "lug.toml", "plan.toml", "r.h5"):
+        shutil.copyfile(samples / name, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def options_of(command: argparse.ArgumentParser) -> Iterator[str]:
+    """The options of a command that take the name of a file or a directory."""
+    for action in command._actions:
+        if action.metavar in ("FILE", "DIR", "FIGURE", "PAGE") and action.option_strings:
+            yield action.option_strings[-1]
+
+
+def test_every_option_that_names_a_file_is_known_here() -> None:
+    commands = next(action.choices for action in parser()._actions if isinstance(action.choices, dict))
+    found = {(name, option) for name, command in commands.items() for option in options_of(command)}
+    known = {
+        (name, option) for table in (TEXTS, RESULTS, DIRECTORIES, INPUTS) for name in table for option in table[name]
+    }
+    assert found == known
+
+
+@contextmanager
+def nothing(_: Path) -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """A writer's lock on a file, as another process holds it."""
+    with path.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def another_name(path: Path, command: str) -> None:
+    """Give the input of the command a second name."""
+    os.link(COMMANDS[command][1], path)
+
+
+KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
+    "input": (lambda path, samples, command: another_name(path, command), "is an input of this command"),
+    "result": (lambda path, samples, command: shutil.copyfile(samples / "r.h5", path), "is a stored result"),
+    "link": (lambda path, samples, command: path.symlink_to(samples / "r.h5"), "is a stored result"),
+    "index": (lambda path, samples, command: shutil.copyfile(samples / INDEX, path), "is a database"),
+    "running": (lambda path, samples, command: path.write_bytes(b""), "another run is writing to it"),
+    "directory": (lambda path, samples, command: path.mkdir(), "is a directory, a file name is needed"),
+}
+"""Ways to make an existing file at a path, and words of its refusal."""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("command", "option"), [(name, option) for name in TEXTS for option in TEXTS[name]])
+def test_no_text_or_figure_replaces_another_kind(
+    command: str, option: str, kind: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if kind == "input" and command in ("benchmarks", "verify"):
+        return  # they have no input
+    path = Path(f"keep{TEXTS[command][option]}")
+    make, words = KINDS[kind]
+    make(path, samples, command)
+    before, outside = contents(folder), contents(samples)
+    with locked(path) if kind == "running" else nothing(path):
+        assert main([*COMMANDS[command], option, str(path)]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert str(path) in said[0]
+    assert words in said[0] or (command, kind) == ("report", "input")  # the page is refused before the result is read
+    assert (contents(folder), contents(samples)) == (before, outside)
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("input", "won't overwrite"),
+        ("text", "is no result, and a result replaces results only"),
+        ("index", "is a database"),
+        ("running", "another run is writing to it"),
+        ("directory", "is a directory"),
+        ("link", "is no result, and a result replaces results only"),
+    ],
+)
+def test_a_result_replaces_results_only(
+    kind: str, words: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = Path("case.toml" if kind == "input" else "keep.h5")
+    if kind == "text":
+        path.write_text("notes")
+    elif kind == "link":
+        Path("notes.txt").write_text("notes")
+        path.symlink_to("notes.txt")
+    elif kind != "input":
+        KINDS[kind][0](path, samples, "run")
+    before = contents(folder)
+    with locked(path) if kind == "running" else nothing(path):
+        assert main(["run", "case.toml", "--nodes", "41", "-o", str(path), "--overwrite"]) == 2
+    assert words in capsys.readouterr().err
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize(("command", "name"), [("paper", "figure03.png"), ("benchmarks", "kirsch.csv")])
+def test_files_in_a_directory_follow_the_rule(
+    command: str, name: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("out").mkdir()
+    shutil.copyfile(samples / "r.h5", Path("out") / name)
+    before = contents(folder)
+    assert main([*COMMANDS[command], "-o", "out"]) == 2
+    assert f"{name}: is a stored result" in capsys.readouterr().err
+    assert contents(folder) == before
+
+
+def test_files_that_the_case_names_are_inputs(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("h.csv").write_text("P\n1e6\n2e6\n")
+    Path("c.toml").write_text(EXAMPLE.split("[[load]]")[0] + '\n[[load]]\ncsv = "h.csv"\nrepeat = 2\n')
+    for option in ("--json", "--cycle-csv"):
+        assert main(["run", "c.toml", "--nodes", "41", option, "h.csv"]) == 2
+    assert main(["run", "c.toml", "--nodes", "41", "-o", "h.csv", "--overwrite"]) == 2
+    assert capsys.readouterr().err.count("h.csv: is an input of this command") >= 2
+    assert Path("h.csv").read_text() == "P\n1e6\n2e6\n"
+
+
+def test_an_input_may_be_written_by_a_later_command(folder: Path) -> None:
+    assert main(["show", "r.h5", "--json", "a.json"]) == 0
+    assert main(["show", "r.h5", "--json", "a.json"]) == 0
+    assert main(["run", "case.toml", "--nodes", "41", "-o", "r.h5", "--overwrite"]) == 0
