@@ -15,7 +15,8 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.storage import journal
-from fastpin.storage.journal import JournaledFile, check_free, journal_of
+from fastpin.storage.files import check_free
+from fastpin.storage.journal import JournaledFile, journal_of
 from tests.support.rows import ARRAYS, ROWS, SIZE, rows_in
 
 ROOT = Path(__file__).resolve().parents[2]
