@@ -77,9 +77,14 @@ def test_a_link_under_the_name_of_a_temporary_file_is_not_followed(
 def test_a_temporary_file_that_was_exchanged_is_not_taken(tmp_path: Path) -> None:
     path, victim = tmp_path / "a.txt", tmp_path / "precious.txt"
     victim.write_text("keep")
-    with pytest.raises(OutputError, match="another process has exchanged its temporary file"), replacing(path) as found:
-        found.unlink()
-        found.symlink_to(victim)
+
+    def exchange() -> None:
+        with replacing(path) as temporary:
+            temporary.unlink()
+            temporary.symlink_to(victim)
+
+    with pytest.raises(OutputError, match="another process has exchanged its temporary file"):
+        exchange()
     assert not path.exists()
     assert victim.read_text() == "keep"
 
@@ -107,9 +112,14 @@ def test_threads_may_write_one_file_at_the_same_time(tmp_path: Path) -> None:
 
 def test_a_file_that_becomes_a_result_meanwhile_is_kept(tmp_path: Path) -> None:
     path, head = tmp_path / "a.txt", b"\x89HDF\r\n\x1a\n"
-    with pytest.raises(InputError, match="is a stored result"), replacing(path) as temporary:
-        temporary.write_text("table")
-        path.write_bytes(head)
+
+    def write() -> None:
+        with replacing(path) as temporary:
+            temporary.write_text("table")
+            path.write_bytes(head)
+
+    with pytest.raises(InputError, match="is a stored result"):
+        write()
     assert path.read_bytes() == head
 
 
