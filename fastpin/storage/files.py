@@ -128,15 +128,18 @@ def is_locked(path: Path) -> bool:
     if fcntl is None or not path.is_file():
         return False
     with path.open("rb") as file:
-        return not try_lock(file.fileno())
+        return not try_lock(file.fileno(), exclusive=False)
 
 
-def try_lock(file: int) -> bool:
-    """Take the writer's lock of an open file. Return False if another process has it."""
+def try_lock(file: int, exclusive: bool = True) -> bool:
+    """Take the writer's lock of an open file. Return False if another process has it.
+
+    Who only asks whether there is a writer takes a shared lock, so that others may ask at the same time.
+    """
     if fcntl is None:
         return True
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, (fcntl.LOCK_EX if exclusive else fcntl.LOCK_SH) | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:  # The file system has no locks.

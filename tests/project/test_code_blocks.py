@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import shlex
 import sqlite3
 import subprocess
@@ -128,8 +129,7 @@ def names(
     """The common names; their files lie in the working directory."""
     monkeypatch.chdir(tmp_path)
     mpl.use("Agg")
-    for path in small_sweep.iterdir():
-        (tmp_path / path.name).symlink_to(path)
+    shutil.copytree(small_sweep, tmp_path, dirs_exist_ok=True)
     return dict(common_names)
 
 

@@ -15,7 +15,7 @@ import pytest
 from distributed.scheduler import KilledWorker
 
 import fastpin
-from fastpin.errors import FastpinError, InputError
+from fastpin.errors import FastpinError, InputError, OutputError
 from fastpin.kernels.status import OPEN
 from fastpin.kernels.threads import works_alone
 from fastpin.model.angles import interval_from_bottom
@@ -191,10 +191,11 @@ def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypat
 
 
 def test_half_written_results_are_cleared_away(plan: Plan, copy: Path) -> None:
-    rest = copy / "results" / ".abc.123.h5"
+    rest, foreign = copy / "results" / f".{plan.points[0].id}.0123456789abcdef.h5", copy / "results" / ".notes.h5"
     rest.touch()
+    foreign.touch()
     sweep.run(plan, copy, Inline())
-    assert not rest.exists()
+    assert (rest.exists(), foreign.exists()) == (False, True)
 
 
 def test_rows_of_a_plan_are_its_points(plan: Plan, copy: Path, tmp_path: Path) -> None:
@@ -237,7 +238,7 @@ def test_a_sweep_of_files_without_results_in_its_index_goes_on(plan: Plan, tmp_p
     """As earlier versions have written it."""
     sweep.run(plan, tmp_path, Inline(), files=True)
     (tmp_path / "results" / f"{plan.points[0].id}.h5").unlink()
-    with sweep.Index(tmp_path) as index:
+    with sweep.Index(tmp_path, write=True) as index:
         index._database.execute("DROP TABLE results")
     assert sweep.status(plan, tmp_path) == Summary(3, 1, sweep.status(plan, tmp_path).failed)
     assert sweep.run(plan, tmp_path, Inline()).ended == 1
@@ -265,7 +266,7 @@ def test_a_full_disk_ends_a_sweep_and_keeps_what_is_finished(plan: Plan, tmp_pat
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sweep, "Index", Small)
-        with pytest.raises(InputError, match=r"index.sqlite: can't be used: database or disk is full"):
+        with pytest.raises(OutputError, match=r"index.sqlite: can't be written: database or disk is full"):
             sweep.run(plan, tmp_path, Inline())
     finished = set(contents(tmp_path))
     assert 0 < len(finished) < 6
