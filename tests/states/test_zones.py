@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -116,3 +117,15 @@ def test_the_parts_of_a_solved_contact_fit_together(similar):
         assert abs(state.peak_shear) >= largest * (1.0 - 1e-10)
         assert abs(state.peak_shear) < 1.02 * np.abs(state.shear).max()
         assert contact[0] <= state.peak_shear_angle <= contact[1]
+
+
+def test_a_sticking_node_at_coulombs_bound_counts_as_slipping(similar):
+    """At the end of a step a node may have |T| = mu N before its status changes."""
+    problem = Problem.from_load_parameter(similar, 0.1, 0.4)
+    state = solve(problem, [{"P": 1.0}, {"Q": 0.1}], nodes=41).states[-1]
+    slipping = np.flatnonzero((state.status != OPEN) & (state.status != STICK))
+    assert slipping.size > 1
+    status = state.status.copy()
+    status[slipping] = STICK
+    (before,), (after,) = state.stick_runs, replace(state, status=status).stick_runs
+    np.testing.assert_array_equal(after[0], before[0])
