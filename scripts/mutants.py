@@ -67,6 +67,9 @@ MOST_TIMES, MARGIN = 5.0, 5.0
 MEMORY = 6 << 30
 """Bytes of address space of a process that runs tests."""
 
+STUCK = 300.0
+"""Seconds of waiting, beside MOST_TIMES of the unchanged time, after which tests hang: the machine may be busy."""
+
 SKIPPED = ("tests/whole/test_mutations.py", "tests/kernels/test_jit.py")
 """Tests that start many processes or compile. They test no formula."""
 
@@ -372,7 +375,7 @@ def examine(copy: Copy, known: Map, change: Change, budget: float) -> dict[str, 
         path.write_bytes(change.applied(source))
         for stale in (path.parent / "__pycache__").glob(f"{path.stem}.cpython-*.pyc"):
             stale.unlink()
-        ending, seconds = copy.forked(work, MOST_TIMES * unchanged + 60.0, known.plain)
+        ending, seconds = copy.forked(work, MOST_TIMES * unchanged + STUCK, known.plain)
     finally:
         path.write_bytes(source)
     test = json.loads(copy.told.read_text()).get("test", "import")

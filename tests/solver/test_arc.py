@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
 import pytest
 
+from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
@@ -48,3 +52,14 @@ def test_the_quick_run_leaves_the_others_to_the_careful_ones(corner: dict[str, f
     assert estimated is not None
     wide = estimated if "sxx" in corner else (estimated[0] - 1.0, estimated[1] + 1.0)
     assert arc._quick_arc(problem, history, wide, reference_force(problem, values), None) is None
+
+
+@pytest.mark.parametrize("start", [-6.0, -1.5, 0.0, 3.0, 6.0])
+def test_the_arc_of_a_circle_is_in_the_turn_around_the_bottom(start: float) -> None:
+    grid, margin = Grid.circle(100, start=start), 3
+    bottom, step = -0.5 * math.pi, 0.02 * math.pi
+    touched = np.flatnonzero(np.cos(grid.theta - bottom) > 0.8)
+    found = arc._arc_of_circle(grid, touched, margin)
+    assert found is not None
+    half = 0.5 * (touched.size - 1 + 2 * margin) * step
+    assert found == pytest.approx((bottom - half, bottom + half), abs=0.51 * step)
