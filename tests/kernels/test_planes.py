@@ -14,7 +14,7 @@ def python_kernel():
     """The kernel as plain Python: its parts are taken from the same module."""
     space = dict(vars(planes))
     for name in (*INNER, *KERNELS):
-        function = getattr(planes, name).py_func
+        function = getattr(getattr(planes, name), "py_func", None) or getattr(planes, name)
         space[name] = type(function)(function.__code__, space, name)
     return space["worst_planes"]
 
