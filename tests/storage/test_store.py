@@ -249,3 +249,15 @@ def test_a_file_with_fewer_loads_is_read_and_continued(tmp_path):
     last = solve(problem, whole.history[2:], start=stored)[-1]
     assert np.array_equal(last.shear, whole[-1].shear)
     assert last.load == whole[-1].load
+
+
+def test_configurations_of_a_restart_have_equal_lengths(similar, tmp_path):
+    problem, path = Problem.from_load_parameter(similar, 0.1, 0.4), tmp_path / "result.h5"
+    save(solve(problem, [{"P": 1.0}], nodes=21), path)
+    with h5py.File(path, "r+") as file:
+        group = file["restart/latest/configurations"]
+        rows = group["motion"][()]
+        del group["motion"]
+        group["motion"] = np.concatenate([rows, rows])
+    with pytest.raises(InputError, match="different lengths"):
+        load(path)
