@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from fastpin.errors import FastpinError, InputError, OutputError, printable
+from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.checks import number
 from fastpin.storage import hdf5, packed
 
@@ -39,12 +38,6 @@ def reading(path: Path, *arguments: str) -> Iterator[None]:
         raise InputError(str(path), f"needs more memory than there is: {_first_line(error)}") from None
     except Exception as error:  # h5py and NumPy raise errors of many kinds.
         raise InputError(str(path), f"is damaged: {_first_line(error)}") from None
-
-
-def not_written(path: Path, error: BaseException) -> OutputError:
-    """Return the error of a file that h5py could not write."""
-    reason = os.strerror(error.errno) if isinstance(error, OSError) and error.errno else _first_line(error)
-    return OutputError(str(path), f"can't be written: {reason}")
 
 
 def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...] | None = None) -> h5py.Dataset:

@@ -9,7 +9,6 @@ writes nothing. A transaction ends when the journal is emptied. That happens at 
 from __future__ import annotations
 
 import contextlib
-import io
 import os
 import stat
 import struct
@@ -23,6 +22,7 @@ import h5py
 from fastpin.errors import InputError
 from fastpin.model.checks import file_path
 from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.storage.file_objects import Overlay, RestoredFile, WrittenFile, write_all
 from fastpin.storage.files import NO_LINK, fcntl, is_locked, try_lock
 
 # Head of a journal record: place in the file, length of the old bytes, checksums of the old and of the new bytes.
@@ -34,8 +34,6 @@ MOST_BYTES = 1 << 30
 MOST_NOTES = 1_000_000
 """Most records of a journal that are undone. A transaction writes a few thousand times."""
 
-_PAGE = 4096
-
 # A link is not followed, and a pipe not waited for, where the system knows these flags.
 _NO_LINK = NO_LINK | getattr(os, "O_NONBLOCK", 0)
 
@@ -46,7 +44,7 @@ def journal_of(path: Path) -> Path:
     return real.with_name(real.name + ".journal")
 
 
-class JournaledFile:
+class JournaledFile(WrittenFile):
     """A file for h5py. Changes without a commit are undone.
 
     Parameters
@@ -63,16 +61,15 @@ class JournaledFile:
 
     def __init__(self, path: Path, new: bool) -> None:
         self._path = path
-        self._place = 0
         self._open_transaction = False
         self._abandoned = False
-        self._error: OSError | None = None
         try:
-            self._file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
+            file = os.open(path, os.O_RDWR | (os.O_CREAT if new else 0), 0o666)
         except OSError as error:
             raise InputError(str(path), f"can't be written: {error.strerror}") from None
-        if not try_lock(self._file):
-            os.close(self._file)
+        super().__init__(file)
+        if not try_lock(file):
+            os.close(file)
             raise InputError(str(path), "another run is writing to it")
         try:
             self._journal = _open_journal(path, os.O_RDWR | os.O_CREAT)
@@ -115,9 +112,9 @@ class JournaledFile:
         OSError
             If some bytes could not be written. The transaction is undone, and the file can only be closed.
         """
-        if self._error is not None:
+        if self.error is not None:
             self.abandon()
-            raise self._error
+            raise self.error
         if self._abandoned:
             return
         os.ftruncate(self._journal, 0)
@@ -126,13 +123,19 @@ class JournaledFile:
         _wait_for(self._journal, exclusive=None)
 
     def abandon(self) -> None:
-        """Undo the transaction, and ignore all later writes."""
+        """Keep all later writes in memory. :meth:`release` undoes the transaction: h5py has closed the file by then."""
         self._abandoned = True
-        with contextlib.suppress(OSError, InputError):  # After an error the next process that opens the file does it.
-            _roll_back(self._file, self._journal, journal_of(self._path))
+        self.keep_in_memory()
 
     def release(self) -> None:
-        """Close the file and give up its locks. Remove the journal if it is empty: nothing must be undone."""
+        """Close the file and give up its locks. Undo a transaction that was abandoned.
+
+        Remove the journal if it is empty: nothing must be undone.
+        """
+        if self._abandoned:
+            # After an error the next process that writes to the file does it.
+            with contextlib.suppress(OSError, InputError):
+                _roll_back(self._file, self._journal, journal_of(self._path))
         if not os.fstat(self._journal).st_size:
             journal_of(self._path).unlink(missing_ok=True)
         os.close(self._journal)
@@ -140,65 +143,23 @@ class JournaledFile:
 
     def _note(self, place: int, old: bytes, new: bytes) -> None:
         record = _RECORD.pack(place, len(old), _checksum(old, place), zlib.crc32(new)) + old
-        _write_all(self._journal, record, self._written)
+        write_all(self._journal, record, self._written)
         self._written += len(record)
 
-    # h5py calls the methods below. Its library does not survive an exception in them, so errors wait for the end of
-    # the transaction.
+    def write_at(self, data: memoryview, place: int) -> None:
+        """Write `data` at `place`. The overwritten bytes go to the journal first."""
+        self.begin()
+        old = min(len(data), self._size - place)
+        if old > 0:
+            self._note(place, os.pread(self._file, old, place), bytes(data[:old]))
+        super().write_at(data, place)
 
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Move the place of the next read or write, and return it, in bytes."""
-        base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: os.fstat(self._file).st_size}[whence]
-        self._place = base + offset
-        return self._place
-
-    def tell(self) -> int:
-        """Return the place of the next read or write, in bytes."""
-        return self._place
-
-    def readinto(self, buffer: memoryview) -> int:
-        """Read into a buffer, and return the number of bytes."""
-        data = os.pread(self._file, len(buffer), self._place)
-        buffer[: len(data)] = data
-        self._place += len(data)
-        return len(data)
-
-    def read(self, size: int = -1) -> bytes:
-        """Read `size` bytes, or the rest of the file if `size` is negative."""
-        data = os.pread(self._file, size if size >= 0 else os.fstat(self._file).st_size - self._place, self._place)
-        self._place += len(data)
-        return data
-
-    def write(self, data: memoryview) -> int:
-        """Write `data`, and return the number of bytes. The overwritten bytes go to the journal first."""
-        size = len(data)
-        if not self._abandoned and self._error is None:
-            try:
-                self.begin()
-                old = min(size, self._size - self._place)
-                if old > 0:
-                    self._note(self._place, os.pread(self._file, old, self._place), bytes(data[:old]))
-                _write_all(self._file, bytes(data), self._place)
-            except OSError as error:
-                self._error = error
-        self._place += size
-        return size
-
-    def truncate(self, size: int | None = None) -> int:
-        """Set the size of the file, in bytes, and return it. A removed end goes to the journal first."""
-        size = self._place if size is None else size
-        if not self._abandoned and self._error is None:
-            try:
-                self.begin()
-                if size < self._size:
-                    self._note(size, os.pread(self._file, self._size - size, size), b"")
-                os.ftruncate(self._file, size)
-            except OSError as error:
-                self._error = error
-        return size
-
-    def flush(self) -> None:
-        """Do nothing: the file has no buffer."""
+    def resize(self, size: int) -> None:
+        """Set the size of the file, in bytes. A removed end goes to the journal first."""
+        self.begin()
+        if size < self._size:
+            self._note(size, os.pread(self._file, self._size - size, size), b"")
+        super().resize(size)
 
 
 @contextmanager
@@ -334,83 +295,6 @@ def check_beside(path: Path) -> None:
         raise InputError(str(path), "must be an ordinary file; please remove it")
 
 
-class _Overlay:
-    """A file with other bytes at some places, in memory.
-
-    Attributes
-    ----------
-    size : int
-        Size of the whole, in bytes.
-    """
-
-    def __init__(self, file: int) -> None:
-        self._file = file
-        self._pages: dict[int, bytearray] = {}
-        self.size = os.fstat(file).st_size
-
-    def read(self, size: int, place: int) -> bytes:
-        """Return `size` bytes from `place` on, or the bytes up to the end."""
-        size = max(min(size, self.size - place), 0)
-        data = bytearray(os.pread(self._file, size, place))
-        data.extend(bytes(size - len(data)))
-        for number in self._pages.keys() & set(_pages(place, size)):
-            _copy(self._pages[number], number * _PAGE, data, place)
-        return bytes(data)
-
-    def put(self, data: bytes, place: int) -> None:
-        """Put other bytes at `place`."""
-        for number in _pages(place, len(data)):
-            if number not in self._pages:
-                page = os.pread(self._file, _PAGE, number * _PAGE)
-                self._pages[number] = bytearray(page.ljust(_PAGE, b"\0"))
-            _copy(data, place, self._pages[number], number * _PAGE)
-
-
-def _pages(place: int, size: int) -> range:
-    """The numbers of the pages that hold `size` bytes from `place` on."""
-    return range(place // _PAGE, -(-(place + size) // _PAGE)) if size else range(0)
-
-
-def _copy(source: bytes | bytearray, begin: int, target: bytearray, place: int) -> None:
-    """Copy the bytes of `source`, which begins at `begin`, into the part of `target`, at `place`, that they share."""
-    first, last = max(begin, place), min(begin + len(source), place + len(target))
-    if first < last:
-        target[first - place : last - place] = source[first - begin : last - begin]
-
-
-class RestoredFile:
-    """A file without its unfinished transaction, for h5py. It can only be read."""
-
-    def __init__(self, content: _Overlay) -> None:
-        self._content = content
-        self._place = 0
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Move the place of the next read, and return it, in bytes."""
-        base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: self._content.size}[whence]
-        self._place = base + offset
-        return self._place
-
-    def tell(self) -> int:
-        """Return the place of the next read, in bytes."""
-        return self._place
-
-    def readinto(self, buffer: memoryview) -> int:
-        """Read into a buffer, and return the number of bytes."""
-        data = self.read(len(buffer))
-        buffer[: len(data)] = data
-        return len(data)
-
-    def read(self, size: int = -1) -> bytes:
-        """Read `size` bytes, or the rest of the file if `size` is negative."""
-        data = self._content.read(size if size >= 0 else self._content.size - self._place, self._place)
-        self._place += len(data)
-        return data
-
-    def flush(self) -> None:
-        """Do nothing: the file has no buffer."""
-
-
 Note = tuple[int, bytes, int]
 """Place, old bytes, and checksum of the new bytes of a record of a journal."""
 
@@ -423,18 +307,18 @@ def _roll_back(file: int, journal: int, path: Path) -> None:
     notes = _notes(journal, path)
     if _undone(file, notes) is not None:
         for place, old, _ in reversed(notes[1:]):
-            _write_all(file, old, place)
+            write_all(file, old, place)
         os.ftruncate(file, notes[0][0])
     os.ftruncate(journal, 0)
 
 
-def _undone(file: int, notes: list[Note]) -> _Overlay | None:
+def _undone(file: int, notes: list[Note]) -> Overlay | None:
     """Return the content of a file without the transaction of its journal. None if the journal is not the file's own.
 
     The journal may come from an older file of the same name. Then a part of the file has neither the old nor the new
     bytes of its record.
     """
-    content = _Overlay(file)
+    content = Overlay(file)
     if not notes or content.size < notes[0][0]:
         return None
     for number, (place, old, new) in reversed(list(enumerate(notes[1:], start=1))):
@@ -481,10 +365,3 @@ def _notes(journal: int, path: Path) -> list[Note]:
 
 def _checksum(old: bytes, place: int) -> int:
     return zlib.crc32(old, place & 0xFFFFFFFF)
-
-
-def _write_all(file: int, data: bytes, place: int) -> None:
-    view = memoryview(data)
-    while view:
-        done = os.pwrite(file, view, place)
-        view, place = view[done:], place + done

@@ -34,7 +34,8 @@ from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
 from fastpin.states.state import State
 from fastpin.storage import hdf5, packed
-from fastpin.storage.damage import not_written, reading, text_of
+from fastpin.storage.damage import reading, text_of
+from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
 from fastpin.storage.layout import (
@@ -94,14 +95,10 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         raise InputError("result", "all states must be on the grid of the result")
     if path.exists() and not path.is_file():
         raise InputError(str(path), "must be an ordinary file")
-    with replacing(path, result=True) as temporary:
-        try:
-            with h5py.File(temporary, "w") as file:
-                _write(file, result, error)
-                if restart and result.restart is not None:
-                    write_restart(file.create_group("restart/latest"), result.restart)
-        except (OSError, RuntimeError) as failure:  # h5py raises both if the disk is full
-            raise not_written(path, failure) from None
+    with replacing(path, result=True) as temporary, written_h5(temporary) as file:
+        _write(file, result, error)
+        if restart and result.restart is not None:
+            write_restart(file.create_group("restart/latest"), result.restart)
 
 
 def _write(file: h5py.File | packed.Group, result: Result, error: str | None) -> None:

@@ -24,6 +24,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage import hdf5
 from fastpin.storage.damage import reading
+from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, not_readable
 from fastpin.storage.layout import (
@@ -328,7 +329,7 @@ class FileRecorder:
         group.attrs.update(states=self._corner[0], cycles=self._corner[1])
 
     def _write_checkpoint(self) -> None:
-        with replacing(checkpoint_of(self.path), result=True) as temporary, h5py.File(temporary, "w") as file:
+        with replacing(checkpoint_of(self.path), result=True) as temporary, written_h5(temporary) as file:
             file.attrs["run"] = self._name
             self._write_restart(file.create_group("restart"))
         log.debug("checkpoint after corner %d", self._run.corner)

@@ -1,0 +1,78 @@
+"""A full disk: one sentence, and the old file. A limit of the size of files stands in for the disk."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fastpin.model.problem import Problem
+from fastpin.solver.solving import solve
+from fastpin.storage import store
+
+SAVE = """
+import resource, signal, sys
+from fastpin.errors import OutputError
+from fastpin.storage import store
+
+result = store.load(sys.argv[1])
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+for limit in map(int, sys.argv[3:]):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
+    try:
+        store.save(result, sys.argv[2])
+    except OutputError as error:
+        print(error)
+"""
+
+RECORD = """
+import resource, signal, sys
+from fastpin.storage import recording, store, writer
+
+result = store.load(sys.argv[1])
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]), resource.RLIM_INFINITY))
+writer.MOST_PENDING = 4
+try:
+    recording.record(result.problem, result.history, sys.argv[2], nodes=31, arc=(-3.1, 0.0))
+except OSError as error:
+    print(error.strerror)
+"""
+
+
+@pytest.fixture
+def source(similar, tmp_path) -> Path:
+    problem = Problem.from_load_parameter(similar, 0.4, 0.5)
+    store.save(solve(problem, [{"P": 1.0}, *[{"Q": 0.2}, {"Q": -0.2}] * 20], nodes=31), tmp_path / "source.h5")
+    return tmp_path / "source.h5"
+
+
+def output_of(program: str, *words: object) -> str:
+    """What a program prints. It may print nothing on standard error."""
+    command = [sys.executable, "-c", program, *map(str, words)]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert ended.stderr == ""
+    return ended.stdout
+
+
+def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
+    size = source.stat().st_size
+    path = tmp_path / "out.h5"
+    path.write_bytes(source.read_bytes())
+    limits = [0, 100, 3000, size // 3, size // 2, size - 1000]
+    said = output_of(SAVE, source, path, *limits).splitlines()
+    assert said == [f"{path}: can't be written: File too large"] * len(limits)
+    assert path.read_bytes() == source.read_bytes()
+    assert sorted(found.name for found in tmp_path.iterdir()) == ["out.h5", "source.h5"]
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.7, 0.9])
+def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, tmp_path, share):
+    whole = tmp_path / "whole.h5"
+    assert output_of(RECORD, source, whole, 1 << 30) == ""
+    path = tmp_path / "out.h5"
+    assert output_of(RECORD, source, path, int(share * whole.stat().st_size)) == "File too large\n"
+    assert not path.with_name("out.h5.journal").exists()
+    assert store.is_unfinished(path) or path.stat().st_size == 0
