@@ -66,8 +66,11 @@ class FileObject:
 
     def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
         """Move the place of the next read or write, and return it, in bytes."""
-        base = {io.SEEK_SET: 0, io.SEEK_CUR: self._place, io.SEEK_END: self.size()}[whence]
-        self._place = base + offset
+        if whence == io.SEEK_END:
+            offset += self.size()
+        elif whence == io.SEEK_CUR:
+            offset += self._place
+        self._place = offset
         return self._place
 
     def tell(self) -> int:
