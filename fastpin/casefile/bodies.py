@@ -65,7 +65,7 @@ def keys_of(kinds: Kinds) -> tuple[str, ...]:
 
 def implied_kind(kinds: Kinds, table: Mapping[str, Any]) -> str:
     """The kind of body that the keys of a table tell: the first kind that has all of them."""
-    known = set(keys_of(kinds)) & set(table) - {"kind"}
+    known = {key for key in table if any(key in keys for keys in kinds.values())}
     return next((kind for kind, keys in kinds.items() if known <= set(keys)), list(kinds)[-1])
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
-from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_loads
+from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_largest, check_loads
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 
@@ -59,15 +57,16 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
 
 def report_loads(source: CaseText, problem: Problem, history: LoadHistory) -> None:
     """Report every load of the history that the problem does not allow."""
-    # A load that a corner leaves out keeps its value. A load that was never given stays NaN and is not checked.
-    columns = history.distinct(initial=np.full(len(LOADS), np.nan)).T
-    for name, column in zip(LOADS, columns, strict=True):
-        values = np.unique(column[~np.isnan(column)])
-        if len(values):
-            try:
-                check_loads(problem, LoadHistory({name: value} for value in values))
-            except InputError as error:
-                _report_load(source, name, str(error))
+    try:
+        check_loads(problem, history)
+        return
+    except InputError:  # only the first of the faults
+        pass
+    for name, value in history.largest.items():
+        try:
+            check_largest(problem, {name: value})
+        except InputError as error:
+            _report_load(source, name, str(error))
 
 
 def _report_load(source: CaseText, name: str, message: str) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
@@ -22,7 +22,6 @@ from fastpin.errors import InputError
 from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
-from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -59,6 +58,10 @@ KEYS: dict[str, tuple[str, ...]] = {
 
 ROOT_KEYS = ("title", "materials")
 """Keys before the first section."""
+
+T = TypeVar("T")
+
+_DEFAULTS = SolveOptions()
 
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
 
@@ -108,9 +111,25 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     return parse_text(text, name, "case file", lambda source: case_from(source, place))
 
 
-def case_from(
-    source: CaseText, folder: Path, read: Callable[[CaseText, Path], LoadHistory | None] = read_history
-) -> Case | None:
+class Shared:
+    """Parts of the last case that had no fault. The next case of a plan shares them if their input is equal."""
+
+    def __init__(self) -> None:
+        self._parts: dict[str, tuple[object, Any]] = {}
+
+    def part(self, name: str, source: CaseText, given: object, make: Callable[[], T]) -> T:
+        """The part `name` of a case, made by `make` unless the last case had the same `given` input of it."""
+        last, made = self._parts.get(name, (None, None))
+        if last is not None and last == given:
+            return made
+        faults = len(source.placed)
+        made = make()
+        if len(source.placed) == faults:
+            self._parts[name] = given, made
+        return made
+
+
+def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> Case | None:
     """Build the case from the tables of a text, and report all faults to the text.
 
     Parameters
@@ -119,8 +138,8 @@ def case_from(
         The text. If it has faults afterwards, the returned case has no meaning.
     folder : Path
         Folder in which relative paths of files start.
-    read : callable
-        Reads the load history.
+    shared : Shared, optional
+        Parts of the case before.
 
     Returns
     -------
@@ -129,12 +148,17 @@ def case_from(
     """
     _check_keys(source)
     title = source.root.checked("title", string) or ""
-    materials = known_materials(source, folder)
-    problem = _problem(source, folder, read_pair(source, materials), materials)
-    history = read(source, folder)
+    materials, shared = known_materials(source, folder), shared or Shared()
+    tables = source.root.table
+    pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
+    problem = _problem(source, folder, pair, materials)
+    loads = repr([tables.get(name) for name in ("load", "history")])
+    history = shared.part("loads", source, loads, lambda: read_history(source, folder))
     if problem is not None and history is not None and problem.thickness is not None:
-        history = history.per_thickness(problem.thickness)
-    options = _options(source.section("solve"))
+        whole, thickness = history, problem.thickness
+        given = whole, thickness
+        history = shared.part("loads per thickness", source, given, lambda: whole.per_thickness(thickness))
+    options = shared.part("options", source, repr(tables.get("solve")), lambda: _options(source.section("solve")))
     if problem is not None and history is not None:
         report_loads(source, problem, history)
     if problem is not None:
@@ -142,6 +166,16 @@ def case_from(
     if history is not None:
         _check_together(source, lambda: check_keep(history, options))
     return Case(problem, history, options, title) if problem is not None and history is not None else None
+
+
+def _given_of_pair(tables: Mapping[str, Any], materials: Mapping[str, Material]) -> object:
+    """Everything that the materials of a case depend on."""
+    contact = tables.get("contact")
+    contact = contact if isinstance(contact, dict) else {}
+    bodies = [tables.get(name) for name in ("pin", "plate", "dundurs")]
+    names = [body.get("material") for body in bodies if isinstance(body, dict)]
+    named = [materials.get(name) for name in names if isinstance(name, str)]
+    return repr([bodies, contact.get("plane"), [*contact]]), named
 
 
 def _check_together(source: CaseText, check: Callable[[], None]) -> None:
@@ -286,7 +320,7 @@ def _hub_and_thickness(contact: Section) -> tuple[dict[str, float | None], dict[
 
 def _options(section: Section) -> SolveOptions:
     given = {key: section.value(key) for key in KEYS["solve"] if key in section}
-    harmless = SolveOptions().keywords()
+    harmless = _DEFAULTS.keywords()
     if "increments" in given:
         harmless["method"] = "increment"  # replaces a wrong method, so that its increments are not reported as well
-    return section.build(SolveOptions, given, harmless) or SolveOptions()
+    return section.build(SolveOptions, given, harmless) or _DEFAULTS

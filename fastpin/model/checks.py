@@ -275,6 +275,8 @@ def _as_toml(value: object, depth: int) -> str:
 
 def _as_float(value: Any) -> float | None:
     """A number as a float, infinite if it is too large; None for anything else."""
+    if type(value) is float:
+        return value
     no_number = (bool, complex, str, bytes, bytearray, Sequence, Mapping, np.ma.MaskedArray)
     if isinstance(value, no_number):
         return None

@@ -20,7 +20,7 @@ import numpy as np
 from fastpin.errors import InputWarning
 from fastpin.model.bodies import Bushing
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
@@ -123,7 +123,7 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
     pressures : iterable of ndarray, shape (n,)
         Contact pressures at the nodes of each state, Pa. An array that comes again is looked at once.
     """
-    if problem.dimensionless or max(_strains(problem, _largest(history)).values(), default=0.0) > MOST_STRAIN:
+    if problem.dimensionless or max(_strains(problem, history.largest).values(), default=0.0) > MOST_STRAIN:
         return []
     found = []
     distinct = {id(pressure): pressure for pressure in pressures}
@@ -294,7 +294,7 @@ def _stiffest(problem: Problem) -> tuple[str, float]:
 
 def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:
     """Doubts about loads: whether they fit the moduli and the size."""
-    largest = _largest(history)
+    largest = history.largest
     yield from _of_displacements(problem, largest)
     strains = _strains(problem, largest)
     if not strains:
@@ -384,11 +384,3 @@ def _of_displacements(problem: Problem, largest: dict[str, float]) -> Iterator[I
         if abs(shift) - free > MOST_SHIFT * problem.hole_radius:
             parts = abs(shift) / problem.hole_radius
             yield InputWarning(name, f"{_short(shift)} m is {parts:.2g} hole radii; lengths are in m: 1 mm is 1e-3")
-
-
-def _largest(history: LoadHistory) -> dict[str, float]:
-    """The largest value of each load that is given, by size, with its sign."""
-    low = np.fmin.reduce(np.array([np.fmin.reduce(block.given) for block in history.blocks]))
-    high = np.fmax.reduce(np.array([np.fmax.reduce(block.given) for block in history.blocks]))
-    largest = np.asarray(np.where(-low > high, low, high))
-    return {name: value for name, value in zip(LOADS, largest.tolist(), strict=True) if not math.isnan(value)}

@@ -401,6 +401,14 @@ class LoadHistory:
         whole = [len(block.given) for block in self._blocks if block.cycle]
         return max([0, *whole, *(length for block in self._blocks for length in block.lengths)])
 
+    @cached_property
+    def largest(self) -> dict[str, float]:
+        """The largest value in size of every load that is given anywhere, with its sign, by name."""
+        low: np.ndarray = np.fmin.reduce([np.fmin.reduce(block.given, axis=0) for block in self._blocks])
+        high: np.ndarray = np.fmax.reduce([np.fmax.reduce(block.given, axis=0) for block in self._blocks])
+        largest = np.where(-low > high, low, high)
+        return {name: value for name, value in zip(LOADS, largest.tolist(), strict=True) if not math.isnan(value)}
+
     def corner(self, index: int) -> tuple[np.ndarray, list[CycleKey]]:
         """The loads given at a corner, shape (loads,), and the cycles that end there. NaN keeps the last value.
 
@@ -490,7 +498,12 @@ def _locate(history: LoadHistory, index: int) -> tuple[int, int]:
 
 def check_loads(problem: Problem, history: LoadHistory) -> None:
     """Raise :class:`InputError` if a load of `history` can't act in `problem`, or is beyond :data:`MOST_LOAD`."""
-    natural, largest = problem.natural_loads(), _largest_given(history)
+    check_largest(problem, history.largest)
+
+
+def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
+    """Check loads as :func:`check_loads`. `largest` has the largest value of every load that is given."""
+    natural = problem.natural_loads()
     for name, value in largest.items():
         most = MOST_LOAD * natural[LOAD_KIND[name]]
         number(name, value, -most, most)
@@ -517,19 +530,7 @@ def check_loads(problem: Problem, history: LoadHistory) -> None:
         raise InputError(displacement, words)
 
 
-def _largest_given(history: LoadHistory) -> dict[str, float]:
-    """The largest value in size of every load that is given anywhere in a history, by name."""
-    lowest: np.ndarray = np.fmin.reduce(
-        [np.fmin.reduce(block.given, axis=0, initial=np.nan) for block in history.blocks]
-    )
-    highest: np.ndarray = np.fmax.reduce(
-        [np.fmax.reduce(block.given, axis=0, initial=np.nan) for block in history.blocks]
-    )
-    largest = np.where(-lowest > highest, lowest, highest)
-    return {name: value for name, value in zip(LOADS, largest.tolist(), strict=True) if not math.isnan(value)}
-
-
-def _check_remote(problem: Problem, largest: dict[str, float]) -> None:
+def _check_remote(problem: Problem, largest: Mapping[str, float]) -> None:
     """Raise :class:`InputError` if a remote stress other than 0 can't act on the plate's body.
 
     `largest` has the largest value of every load that is given.

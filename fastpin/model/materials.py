@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -309,6 +310,11 @@ class MaterialPair:
         """
         factor = self.beta_star / number("beta_star", beta_star, LEAST_BETA_STAR, MOST_BETA_STAR)
         return MaterialPair(self.pin.scaled(factor), self.plate.scaled(factor), self.plane)
+
+    @cached_property
+    def dimensionless(self) -> MaterialPair:
+        """The pair scaled to a composite compliance of 1."""
+        return self.scaled(1.0)
 
     @property
     def pin_compliance(self) -> float:

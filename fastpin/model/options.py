@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypedDict
 
 import numpy as np
@@ -177,7 +177,7 @@ class SolveOptions:
 
     def keywords(self) -> dict[str, Any]:
         """The options as keyword arguments of :func:`fastpin.solve`."""
-        return asdict(self)
+        return {name: getattr(self, name) for name in _NAMES}
 
     @property
     def is_full_turn(self) -> bool:
@@ -195,6 +195,9 @@ class SolveOptions:
         if isinstance(self.between, int):
             return np.arange(1, self.between + 2) / (self.between + 1)
         return np.r_[np.array(self.between, dtype=float), 1.0]
+
+
+_NAMES = tuple(field.name for field in fields(SolveOptions))
 
 
 class OptionValues(TypedDict, total=False):

@@ -293,7 +293,7 @@ class Problem:
             plate_body = replace(plate_body, material=plate_body.material.scaled(factor))
             pair = pair.scaled(pair.beta_star / factor)
         else:
-            pair = pair.scaled(1.0)
+            pair = pair.dimensionless
         return cls(
             pair, 1.0, value, friction, pin_load, rotation, hub_radius, True,
             hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, pin_body=pin_body,

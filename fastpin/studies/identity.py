@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,6 +31,8 @@ _LATER_FIELDS = ("hub_stiffness", "drive", "gauge_radius")
 
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
+
+_KNOWN_LOADS: WeakKeyDictionary[LoadHistory, dict[str, Any]] = WeakKeyDictionary()
 
 
 def canonical(case: Case) -> dict[str, Any]:
@@ -60,8 +63,13 @@ def canonical(case: Case) -> dict[str, Any]:
 
 def run_id(document: dict[str, Any], version: str = __version__) -> str:
     """Return the id of a run: 16 hexadecimal digits of the SHA-256 of its canonical input and the version."""
-    text = canonical_json({"input": document, "fastpin": version})
-    return hashlib.sha256(text.encode()).hexdigest()[:ID_LENGTH]
+    return id_of_json(canonical_json(document), version)
+
+
+def id_of_json(text: str, version: str = __version__) -> str:
+    """Return the id of a run with the canonical input `text`, see :func:`canonical_json`."""
+    both = f'{{"fastpin":{json.dumps(version)},"input":{text}}}'
+    return hashlib.sha256(both.encode()).hexdigest()[:ID_LENGTH]
 
 
 def canonical_json(document: dict[str, Any]) -> str:
@@ -99,6 +107,13 @@ def _without_negative_zero(value: Any) -> Any:
 
 
 def _loads(history: LoadHistory) -> dict[str, Any]:
+    """Return the loads of a history. Neighbouring runs of a plan often share it."""
+    if history not in _KNOWN_LOADS:
+        _KNOWN_LOADS[history] = _digested(history)
+    return _KNOWN_LOADS[history]
+
+
+def _digested(history: LoadHistory) -> dict[str, Any]:
     """Return the loads of a history. A load that is never given differs from a load of zero."""
     digest, last = hashlib.sha256(), np.full(len(LOADS), np.nan)
     given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)

@@ -28,7 +28,7 @@ from fastpin.model.checks import any_text, as_toml, choice, file_path, instance,
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
-from fastpin.studies.identity import canonical, canonical_json, run_id
+from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
@@ -426,8 +426,8 @@ def _points(
         if case is not None and not text.placed:
             for doubt in doubts(case.problem, case.history, case.options):
                 doubted.setdefault(doubt.field, (doubt, []))[1].append(values)
-            document = canonical(case)
-            points.append(Point(run_id(document), values, canonical_json(document)))
+            input_text = canonical_json(canonical(case))
+            points.append(Point(id_of_json(input_text), values, input_text))
             if len(cases) < MOST_CASES and not reads_files(text.root.table):
                 cases[points[-1].id] = case
     for (place, message), runs in itertools.islice(faults.items(), MAX_FAULTS):

@@ -13,13 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
-from fastpin.casefile.loads import read_history
 from fastpin.casefile.material_files import known_materials
-from fastpin.casefile.reader import case_from
+from fastpin.casefile.reader import Shared, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError
 from fastpin.model.case import Case
-from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
@@ -53,7 +51,7 @@ class BaseCase:
         self._materials: Mapping[str, Material] = MATERIALS
         with contextlib.suppress(TooManyFaultsError):  # every variation reports these faults
             self._materials = known_materials(self.text.with_tables(self.text.root.table), folder)
-        self._loads: tuple[str, LoadHistory | None] = "", None
+        self._shared = Shared()
 
     @property
     def load_blocks(self) -> int:
@@ -66,17 +64,10 @@ class BaseCase:
         text = self.text.with_tables(with_values(self.text.root.table, values, self._materials))
         case = None
         with contextlib.suppress(TooManyFaultsError):
-            case = case_from(text, self._folder, self._read_loads)
+            case = case_from(text, self._folder, self._shared)
         if case is not None and case.options.error_bars:
             text.report("error_bars: are not kept by sweeps; leave them out", "solve", "error_bars")
         return text, case
-
-    def _read_loads(self, text: CaseText, folder: Path) -> LoadHistory | None:
-        """Read the load history. The last one is remembered: neighbouring points of a plan often share it."""
-        given = repr([text.root.table.get(name) for name in ("load", "history")])
-        if given != self._loads[0] or self._loads[1] is None:
-            self._loads = given, read_history(text, folder)
-        return self._loads[1]
 
 
 _REPLACED: dict[str, tuple[str, ...]] = {

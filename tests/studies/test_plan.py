@@ -10,8 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fastpin.casefile import reader
 from fastpin.casefile.reader import EXAMPLE, builtin_case, parse_case
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOADS
 from fastpin.studies import plan
 from fastpin.studies.identity import canonical, run_id
@@ -175,6 +177,66 @@ def test_load_blocks_and_a_file_replace_each_other(tmp_path: Path) -> None:
 
 
 # -- ids -----------------------------------------------------------------------------------------------------
+
+
+SHARED = """
+[grid]
+contact.friction = [0.2, 0.4]
+contact.plane = ["strain", "stress"]
+load.2.Q = [1e5, -0.0, 1e5]
+solve.nodes = [101, 51]
+contact.thickness = [0.01, 0.02]
+[[list]]
+pin.material = "steel"
+[[list]]
+pin.material = "mine"
+[[list]]
+pin.nu = 0
+[[list]]
+pin.nu = 0.0
+"""
+
+
+def test_a_run_is_the_same_case_alone_and_among_others(tmp_path: Path) -> None:
+    """Neighbouring points share parts of their case. Each id equals that of a plan with one point."""
+    case = """
+    materials = "mine.toml"
+    [pin]
+    material = "mine"
+    [plate]
+    material = "aluminium"
+    [contact]
+    hole_radius = 0.01
+    clearance = 1e-5
+    friction = 0.4
+    thickness = 0.01
+    [[load]]
+    P = 1e6
+    [[load]]
+    Q = 1e5
+    """
+    (tmp_path / "case.toml").write_text(case)
+    (tmp_path / "mine.toml").write_text("[mine]\nE = 1e11\nnu = 0.3\n")
+    whole = parse_plan(f'case = "case.toml"{SHARED}', folder=tmp_path)
+    assert (len(whole.points), len(whole.runs)) == (192, 96)
+    for point in whole.points[::7]:
+        rows = "\n".join(f"{name} = {as_toml(value)}" for name, value in point.values.items())
+        alone = parse_plan(f'case = "case.toml"\n[[list]]\n{rows}\n', folder=tmp_path).points
+        assert [(found.id, found.input) for found in alone] == [(point.id, point.input)]
+        assert run_id(canonical(whole.case(point))) == point.id
+
+
+@pytest.mark.parametrize("part", ["read_pair", "read_history", "_options"])
+def test_parts_that_no_field_changes_are_read_once(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls, read = [], getattr(reader, part)
+
+    def counted(*arguments: object) -> object:
+        calls.append(1)
+        return read(*arguments)
+
+    monkeypatch.setattr(reader, part, counted)
+    assert len(parse_plan("[grid]\ncontact.friction = { from = 0.1, to = 0.5, count = 50 }").points) == 50
+    assert len(calls) == 1
 
 
 def test_the_id_depends_on_the_input_and_on_nothing_else() -> None:
