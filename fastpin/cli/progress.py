@@ -14,6 +14,9 @@ from fastpin.cli.terminal import say
 LOAD_POINTS = "{whole} of {total:,} load points"
 """Text of the progress bar of a run."""
 
+READ_POINTS = "checking the plan, {whole} of {total:,} points"
+"""Text of the progress bar while a plan is read."""
+
 DELAY = 2.0
 """Seconds after which a bar appears. Most runs are finished before: then tqdm, which takes 60 ms, is not imported."""
 

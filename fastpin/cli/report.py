@@ -8,7 +8,7 @@ import dataclasses
 from pathlib import Path
 
 from fastpin import casefile, pages, solver, studies
-from fastpin.cli.progress import LOAD_POINTS, Bar, progress_to
+from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
 from fastpin.cli.run import note_run
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag, say
 from fastpin.errors import CaseFileError, InputError
@@ -70,8 +70,8 @@ def _case(source: Path) -> Case:
     try:
         return casefile.read_case(source)
     except CaseFileError:
-        with contextlib.suppress(CaseFileError):
-            studies.read_plan(source)
+        with contextlib.suppress(CaseFileError), Bar(1, READ_POINTS) as bar:
+            studies.read_plan(source, progress_to(bar))
             words = f"is a plan: name the directory of its sweep, such as {source.with_suffix('')}"
             raise InputError(str(source), words) from None
         raise

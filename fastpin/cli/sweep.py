@@ -13,7 +13,7 @@ from typing import Any
 
 from fastpin import figures, report, solver, studies
 from fastpin.cli.options import DEFAULT_KEY_FIGURE
-from fastpin.cli.progress import Bar, note_duration, progress_to
+from fastpin.cli.progress import READ_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
@@ -32,7 +32,8 @@ def run(options: argparse.Namespace) -> int:
     """Run all cases of a plan that are not finished, then write tables and figures."""
     shard = _shard(options.shard)
     _check_combination(options)
-    plan = studies.read_plan(options.plan)
+    with Bar(1, READ_POINTS) as progress_bar:
+        plan = studies.read_plan(options.plan, progress_to(progress_bar))
     if options.outcomes is not None:
         plan = plan.with_outcomes(studies.read_outcomes(options.outcomes))
     directory = Path(options.plan.stem) if options.output is None else options.output

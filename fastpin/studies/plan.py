@@ -24,7 +24,17 @@ from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
 from fastpin.casefile.toml_text import CaseText, Place, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
-from fastpin.model.checks import any_text, as_toml, choice, file_path, instance, number, string, whole_number
+from fastpin.model.checks import (
+    any_text,
+    as_toml,
+    check_callable,
+    choice,
+    file_path,
+    instance,
+    number,
+    string,
+    whole_number,
+)
 from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
@@ -49,6 +59,9 @@ Spacing = Literal["linear", "log", "list"]
 
 Row = dict[str, tuple[Place, Any]]
 """Fields of a [[list]] block, each with its place in the text and its value."""
+
+Progress = Callable[[int, int], None]
+"""A callable ``progress(done, total)`` of numbers of points or runs."""
 
 _ROOT_KEYS = ("title", "case", "grid", "list", "outcomes")
 _RANGE_KEYS = ("from", "to", "count", "spacing")
@@ -159,21 +172,28 @@ class Plan:
         return case
 
 
-def read_plan(path: str | Path) -> Plan:
+def read_plan(path: str | Path, progress: Progress | None = None) -> Plan:
     """Read a plan file.
 
-    A relative path of the case file starts in the folder of the plan. A relative path of a CSV file or of a
-    compliance starts in the folder of the case file, or of the plan if the base case is the built-in case.
+    Parameters
+    ----------
+    path : path
+        The plan. A relative path of the case file starts in its folder. A relative path of a CSV file or of a
+        compliance starts in the folder of the case file, or of the plan if the base case is the built-in case.
+    progress : callable, optional
+        Called as ``progress(done, total)`` before each point is checked. A plan of 100,000 points takes some ten
+        seconds.
 
     Raises
     ------
     CaseFileError
         With all faults of the plan, of the base case and of the runs.
     InputError
-        If `path` is no path.
+        If `path` is no path, or `progress` can't be called.
     """
     path = file_path("path", path)
-    plan = _parsed(read_text(path), str(path), path.parent)
+    check_callable("progress", progress)
+    plan = _parsed(read_text(path), str(path), path.parent, progress)
     warn_of(plan.doubts, 2)
     return plan
 
@@ -203,10 +223,10 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     return plan
 
 
-def _parsed(text: str, name: str, folder: str | Path) -> Plan:
+def _parsed(text: str, name: str, folder: str | Path, progress: Progress | None = None) -> Plan:
     """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
     place = file_path("folder", folder)
-    return parse_text(text, name, "plan", lambda source: _plan(source, text, place))
+    return parse_text(text, name, "plan", lambda source: _plan(source, text, place, progress))
 
 
 def describe_values(values: dict[str, Any]) -> str:
@@ -217,7 +237,7 @@ def describe_values(values: dict[str, Any]) -> str:
 # -- text of a plan ------------------------------------------------------------------------------------------
 
 
-def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
+def _plan(source: CaseText, text: str, folder: Path, progress: Progress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
     _check_root(source)
     title = source.root.checked("title", string) or ""
@@ -240,7 +260,7 @@ def _plan(source: CaseText, text: str, folder: Path) -> Plan | None:
         return None
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
-    points = _points(source, base, places, rows or [{}], axes, (cases, found))
+    points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
     return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, found, base, cases)
 
 
@@ -402,6 +422,7 @@ def _points(
     rows: list[Row],
     axes: dict[str, list[Any]],
     kept: tuple[dict[str, Case], list[InputWarning]],
+    progress: Progress | None,
 ) -> list[Point]:
     """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
 
@@ -411,8 +432,10 @@ def _points(
     doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
     points: list[Point] = []
     faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
-    count = 0
+    count, total = 0, len(rows) * math.prod(map(len, axes.values()))
     for row, *combination in itertools.product(rows, *axes.values()):
+        if progress is not None:
+            progress(count, total)
         values = {name: value for name, (_, value) in row.items()} | dict(zip(axes, combination, strict=True))
         sites = places | {name: place for name, (place, _) in row.items()}
         count += 1

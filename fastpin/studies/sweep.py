@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import shutil
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -36,7 +36,7 @@ from fastpin.storage.files import INDEX, forget_temporaries, replacing
 from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.outcomes import OutcomeValue
-from fastpin.studies.plan import Plan, Point
+from fastpin.studies.plan import Plan, Point, Progress
 from fastpin.studies.work import Work, pickled_outcomes
 
 PLAN = "plan.toml"
@@ -47,9 +47,6 @@ MUST_AGREE = ("states", "nodes", "peak_pressure", "max_pressure", "contact_width
 
 AGREEMENT = 1e-6
 """Largest relative difference of these key figures."""
-
-Progress = Callable[[int, int], None]
-"""Receives the number of ended runs and the number of all runs."""
 
 
 @dataclass(frozen=True)

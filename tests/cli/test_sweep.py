@@ -10,8 +10,10 @@ from typing import Any
 
 import pytest
 
+from fastpin.cli import progress
 from fastpin.cli import sweep as sweep_command
 from fastpin.cli.main import main
+from fastpin.cli.progress import READ_POINTS
 from fastpin.studies import sweep, workers
 from scripts.inline import Inline
 from tests.support.outcomes import FILE
@@ -201,14 +203,26 @@ def test_the_progress_bar_has_the_time_left(
         def __exit__(self, *_: object) -> None:
             pass
 
+        def __init__(self, total: int, text: str) -> None:
+            self.text = text
+
         def update(self, more: int) -> None:
             self.n += more
-            shown.append((self.n, self.total))
+            shown.append((self.text, self.n, self.total))
 
-    def bar(total: int, text: str) -> Bar:
-        assert "{n} of {total}" in text
-        return Bar()
-
-    monkeypatch.setattr(sweep_command, "Bar", bar)
+    monkeypatch.setattr(sweep_command, "Bar", Bar)
     main(["sweep", str(path)])
-    assert shown == [(k, 6) for k in range(7)]
+    read, ran = [(READ_POINTS, k, 6) for k in range(6)], [("run {n} of {total}", k, 6) for k in range(7)]
+    assert shown == read + ran
+
+
+@pytest.mark.parametrize("command", ["sweep PLAN -o DIR --status", "report PLAN"])
+def test_reading_a_plan_moves_a_bar(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "plan.toml").write_text("[grid]\ncontact.friction = [0.3, 0.4]\nsolve.nodes = [41]\n")
+    monkeypatch.setattr(progress, "DELAY", -1.0)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    words = {"PLAN": str(tmp_path / "plan.toml"), "DIR": str(tmp_path / "runs")}
+    main([words.get(word, word) for word in command.split()])
+    assert "checking the plan, 0 of 2 points" in capsys.readouterr().err
