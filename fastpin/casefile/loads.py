@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
@@ -113,7 +115,7 @@ def _from_block(block: Section, folder: Path) -> LoadHistory | None:
         if name in block:
             block.report(f"{name}: needs an amplitude, such as amplitude = {{Q = 1e5}}", name)
     rows = _corners(block)
-    return _repeat(block, LoadHistory(rows)) if rows else None
+    return None if rows is None else _repeat(block, LoadHistory.from_array(rows))
 
 
 def _repeat(section: Section, history: LoadHistory | None) -> LoadHistory | None:
@@ -166,8 +168,8 @@ def _loads(block: Section, name: str) -> dict[str, float] | None:
     return loads if len(loads) == len(table) else None
 
 
-def _corners(block: Section) -> list[dict[str, float]]:
-    """The corners of one block, loads by name. Faults are reported; an empty list stands for unusable corners."""
+def _corners(block: Section) -> np.ndarray | None:
+    """The corners of one block, shape (corners, loads), NaN where left out. None if they have faults (reported)."""
     if not block.means(*LOADS, *HARMONIC):
         block.report(f"[[load]]: gives no load; the loads are {', '.join(LOADS)}")
     columns = {name: column for name in LOADS if (column := _numbers(block, name)) is not None}
@@ -177,11 +179,11 @@ def _corners(block: Section) -> list[dict[str, float]]:
         if length != lengths[first]:
             counts = f"{first} has {lengths[first]} values and {name} {length}"
             block.report(f"{name}: lists in one block must be equally long, {counts}", name)
-            return []
-    return [
-        {name: column[index] if isinstance(column, list) else column for name, column in columns.items()}
-        for index in range(max(lengths.values(), default=1))
-    ]
+            return None
+    corners = np.full((max(lengths.values(), default=1), len(LOADS)), np.nan)
+    for name, column in columns.items():
+        corners[:, LOADS.index(name)] = column
+    return corners
 
 
 def _numbers(block: Section, name: str) -> list[float] | float | None:
@@ -194,9 +196,9 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
     numbers = []
     for index, item in enumerate(value, start=1):
         try:
-            numbers.append(number(f"value {index} of {name}", item))
+            numbers.append(number("", item))
         except InputError as error:
-            block.report(str(error), name)
+            block.report(f"value {index} of {name}: {error.reason}", name)
     return numbers if numbers and len(numbers) == len(value) else None
 
 

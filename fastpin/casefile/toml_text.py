@@ -19,8 +19,14 @@ from fastpin.model.checks import as_toml, choice, instance, number, why_unreadab
 from fastpin.model.inputs import HDF5_SIGNATURE, note_input
 from fastpin.model.synonyms import meant
 
-MOST_BYTES = 16_000_000
-"""Most bytes of a case file, a plan, a lug file or a file of materials. Python parses 2 to 3 MB of TOML in a second."""
+MOST_BYTES = 4_000_000
+"""Most bytes of a case file, a lug file, or a file of materials or outcomes. Python parses some 1 MB in a second.
+
+The worst text of this size takes some ten seconds and 0.9 GB. Long histories stand in CSV files.
+"""
+
+MOST_BYTES_OF_PLAN = 8_000_000
+"""Most bytes of a plan. 100,000 [[list]] blocks of two fields have 6 MB."""
 
 MOST_PARSED = 32_000_000
 """Characters that are parsed in all, where the text is parsed again without faulty lines."""
@@ -28,8 +34,8 @@ MOST_PARSED = 32_000_000
 MOST_FAULTS = 100
 """Most faults that are listed. Reading ends there: each fault costs a search for what was meant."""
 
-MOST_PARTS = 32
-"""Most parts of a dotted key. The parser takes a time that grows with the square of their number."""
+MOST_PARTS = 16
+"""Most parts of a dotted key. The parser takes a time that grows with the square of their number. Four are in use."""
 
 KINDS = {
     "case file": (("contact",), "run"),
@@ -46,24 +52,24 @@ T = TypeVar("T")
 _FAULTY = object()  # stands for a value that can't be parsed: it is reported already, and not missing
 
 
-def read_text(path: Path) -> str:
-    """Read the text of a case file (UTF-8).
+def read_text(path: Path, most: int = MOST_BYTES) -> str:
+    """Read the text of a file of at most `most` bytes (UTF-8).
 
     Raises
     ------
     CaseFileError
-        If the file can't be read, is larger than :data:`MOST_BYTES`, or is not UTF-8 text.
+        If the file can't be read, is larger, or is not UTF-8 text.
     """
     try:
         with path.open("rb") as file:
             note_input(path)
-            raw = file.read(MOST_BYTES + 1)
+            raw = file.read(most + 1)
     except (OSError, ValueError) as error:
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
     if raw.startswith(HDF5_SIGNATURE):
         raise CaseFileError(str(path), [(0, "is a stored result (HDF5), not text; fastpin show prints it")])
-    if len(raw) > MOST_BYTES:
-        raise CaseFileError(str(path), [(0, f"is larger than {MOST_BYTES:,} bytes")])
+    if len(raw) > most:
+        raise CaseFileError(str(path), [(0, f"is larger than {most:,} bytes")])
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

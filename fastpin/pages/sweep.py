@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fastpin.casefile.toml_text import read_text
+from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, read_text
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import check_callable, file_path
 from fastpin.pages import drawings
@@ -93,7 +93,7 @@ def _plan_of(folder: Path, digest: str | None) -> Plan:
     copy, fault, changed = folder / PLAN, None, False
     if not copy.is_file():
         raise InputError(str(folder), f"holds no copy of its plan, {PLAN}; name the plan")
-    text = read_text(copy)
+    text = read_text(copy, MOST_BYTES_OF_PLAN)
     for base in (folder.resolve().parent, folder):
         try:
             plan = parse_plan(text, str(copy), base)

@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
-from fastpin.casefile.toml_text import CaseText, Place, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, Place, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import (
@@ -193,7 +193,7 @@ def read_plan(path: str | Path, progress: Progress | None = None) -> Plan:
     """
     path = file_path("path", path)
     check_callable("progress", progress)
-    plan = _parsed(read_text(path), str(path), path.parent, progress)
+    plan = _parsed(read_text(path, MOST_BYTES_OF_PLAN), str(path), path.parent, progress)
     warn_of(plan.doubts, 2)
     return plan
 

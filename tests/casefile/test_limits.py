@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from fastpin import casefile
-from fastpin.casefile.toml_text import MOST_FAULTS
+from fastpin.casefile.toml_text import MOST_BYTES, MOST_BYTES_OF_PLAN, MOST_FAULTS, MOST_PARTS, CaseText
 from fastpin.errors import CaseFileError
+from fastpin.studies import read_outcomes, read_plan
 
 SECONDS = 20.0
 """Far more than a hostile text takes, and less than it took without limits."""
@@ -31,6 +34,34 @@ def test_a_hostile_text_ends_in_few_sentences(text: str) -> None:
     assert time.monotonic() - began < SECONDS
     assert len(caught.value.problems) <= MOST_FAULTS + 1
     assert len(str(caught.value)) < 100_000
+
+
+@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "x = {{ {} = 1 }}"])
+@pytest.mark.parametrize("part", ["a", '"a"', "'a'", "a "])
+def test_a_key_has_as_many_parts_as_the_message_says(form: str, part: str) -> None:
+    for count in (MOST_PARTS, MOST_PARTS + 1):
+        faults = CaseText(form.format(".".join([part] * count))).faults
+        words = f"a key has more than {MOST_PARTS} parts, joined by points"
+        assert faults == ([(0, words)] if count > MOST_PARTS else [])
+
+
+@pytest.mark.parametrize(
+    ("read", "most"),
+    [
+        (casefile.read_case, MOST_BYTES),
+        (casefile.read_lug, MOST_BYTES),
+        (casefile.read_materials, MOST_BYTES),
+        (read_outcomes, MOST_BYTES),
+        (read_plan, MOST_BYTES_OF_PLAN),
+    ],
+)
+def test_a_file_has_a_limit_by_its_kind(read: Callable[[Path], object], most: int, tmp_path: Path) -> None:
+    path = tmp_path / "file.toml"
+    for size in (most, most + 1):
+        path.write_text("#" * size)
+        with pytest.raises(CaseFileError) as caught:
+            read(path)
+        assert (f"is larger than {most:,} bytes" in str(caught.value)) == (size > most)
 
 
 @pytest.mark.parametrize("title", ["a\x1b[31m", "a\nb", "a\tb", "a\u202eb", "a\x7f"])
