@@ -64,13 +64,34 @@ def test_named_modules_exist(module: str) -> None:
     assert (ROOT / f"{module.replace('.', '/')}.py").exists()
 
 
-def test_differences_by_rounding_are_in_parts_of_the_peak_pressure(tmp_path: Path) -> None:
-    first = np.array(
+def figures_of(values: dict[str, float], bar: float, size: float) -> list[tuple[float, float, float]]:
+    return [(values[name], bar, size) if name in values else (np.nan, np.nan, size) for name in rounding.NAMES]
+
+
+def test_differences_by_rounding_are_in_parts_of_peaks_and_beside_their_bars(tmp_path: Path) -> None:
+    tractions = np.array(
         [[[2.0, 4.0], [1.0, -1.0]], [[0.0, 0.0], [0.0, 0.0]]]
     )  # two states; the second one without contact
-    second = first.copy()
-    second[0, 1, 0] += 4e-9
-    np.savez(tmp_path / "a.npz", same=first, moved=first, lost=first)
-    np.savez(tmp_path / "b.npz", same=first, moved=second)
-    found = rounding.differences(tmp_path / "a.npz", tmp_path / "b.npz")
-    assert found == pytest.approx([0.0, 1e-9, np.inf], rel=1e-6)
+    moved = tractions.copy()
+    moved[0, 1, 0] += 4e-9
+    names = ("peak_pressure", "peak_shear", "dx", "dy", "rotation", "dissipation")
+    values = dict(zip(names, (4.0, -1.0, 5.0, 0.0, 0.5, 3.0), strict=True))
+    ends = {"contact_1_start": -2.0, "contact_1_stop": -1.0}
+    first = np.array([figures_of(values | ends, 0.01, 1.0), figures_of(dict.fromkeys(names, 0.0), np.inf, 1.0)])
+    # the peak moves within its bar, the motion beyond it; the contact is lost; the bar of the dissipation is halved
+    second = np.array([figures_of(values | {"peak_pressure": 4.004, "dy": 0.05}, 0.01, 1.0), first[1]])
+    second[0, rounding.NAMES.index("dissipation"), 1] = 0.005
+    figures = rounding.FIGURES
+    before = {"same": tractions, "moved": tractions, "lost": tractions}
+    np.savez(tmp_path / "a.npz", **before, **{figures + name: first for name in before})
+    after = {"same": tractions, "moved": moved}
+    np.savez(tmp_path / "b.npz", **after, **{figures + "same": first, figures + "moved": second})
+    lines = rounding.table(tmp_path / "a.npz", tmp_path / "b.npz").splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+    assert rows == [
+        ["tractions", "3", "1", "1e-09", "inf", "", "", ""],
+        ["peaks", "8", "7", "0e+00", "1e-03", "0e+00", "0e+00", "0"],
+        ["edges", "4", "2", "inf", "inf", "inf", "inf", "2"],
+        ["motion", "12", "11", "0e+00", "1e-02", "0e+00", "0e+00", "1"],
+        ["dissipation", "4", "4", "0e+00", "0e+00", "8e-04", "2e-03", "0"],
+    ]
