@@ -70,15 +70,14 @@ class Place:
     def save(self, code: machine.Code | None) -> None:
         """Write the machine code, or that there is none, to the first directory that can be written.
 
-        The file is written whole or not at all.
+        The file is written whole or not at all. Any number of processes and threads may do it at once.
         """
         body = marshal.dumps((self.key, tuple(code or ())))
+        content = zlib.crc32(body).to_bytes(4, "little") + body
         for directory in self._directories():
             try:
                 directory.mkdir(parents=True, exist_ok=True)
-                part = directory / f"{self.file}.{os.getpid()}.part"
-                part.write_bytes(zlib.crc32(body).to_bytes(4, "little") + body)
-                part.replace(directory / self.file)
+                _replace(directory / self.file, content)
             except OSError:
                 continue
             if directory == self._beside():
@@ -86,10 +85,11 @@ class Place:
             return
 
     def _forget_older(self, directory: Path) -> None:
-        """Delete the code of earlier texts of the file."""
+        """Delete the code of earlier texts of the file, where that is possible."""
         for path in directory.glob(f"{self.stem}*{SUFFIX}"):
             if path.name != self.file:
-                path.unlink(missing_ok=True)
+                with contextlib.suppress(OSError):  # another process has deleted it, or keeps it open
+                    path.unlink()
 
     def _beside(self) -> Path:
         return Path(self.source).parent / "__pycache__"
@@ -102,6 +102,23 @@ class Place:
         yield self._beside()
         with contextlib.suppress(RuntimeError):  # the user has no home
             yield Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fastpin"
+
+
+def _replace(file: Path, content: bytes) -> None:
+    """Write a file under a new random name, and give it its own name when it is whole.
+
+    Threads, and processes with equal numbers in several containers, never write to the same file. No link is followed.
+    """
+    part = file.with_name(f"{file.name}.{os.urandom(8).hex()}.part")
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(part, flags, 0o666)
+    try:
+        with os.fdopen(descriptor, "wb") as target:
+            target.write(content)
+        part.replace(file)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def place_of(kernel: Kernel, signature: str) -> Place | None:
