@@ -21,10 +21,10 @@ from fastpin.kernels.machine import CAN_LOAD, Code, helpers, load
 def dispatcher(kernel: Kernel, alone: bool) -> Any:
     """Numba's function for a kernel: `alone` for calls from Python, else without a wrapper for these.
 
-    Code of fastpin's own store is not kept by Numba a second time.
+    Code of fastpin's own store is not kept by Numba a second time. Code of a text that was replaced is not kept.
     """
     settings = dict(SETTINGS) if alone else {**SETTINGS, "no_cpython_wrapper": True}
-    if CACHED and not (alone and CAN_LOAD):
+    if CACHED and kernel.is_current() and not (alone and CAN_LOAD):
         return _kept_by_numba(kernel, settings)
     return numba.njit(**settings)(kernel.py_func)
 

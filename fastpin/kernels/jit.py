@@ -41,9 +41,24 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
+SHARED = ("arrays.py", "status.py")
+"""Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
+
 logger = logging.getLogger("fastpin.compiler")
 
 _lock = threading.RLock()
+
+
+def stamp(file: str) -> tuple[int, int] | None:
+    """Time and size of a file, which change with its text. None if there is no such file."""
+    try:
+        found = os.stat(file)  # noqa: PTH116  every process does it for each kernel, and paths take three times as long
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+_shared = tuple((file, stamp(file)) for file in (__file__.removesuffix("jit.py") + name for name in SHARED))
 
 
 class Kernel:
@@ -55,12 +70,16 @@ class Kernel:
         The function as plain Python.
     inner : bool
         Whether only kernels call it. The wrapper for calls from Python is then never compiled.
+    texts : tuple
+        The files of its text, and their stamps at its import. An upgrade may replace the files in a running process.
     """
 
     def __init__(self, function: Callable[..., Any], inner: bool) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
         self.inner = inner
+        file = function.__code__.co_filename
+        self.texts = ((file, stamp(file)), *_shared)
         self._entries: dict[tuple[Any, ...], Callable[..., Any]] = {}
 
     def __call__(self, *arguments: Any) -> Any:
@@ -72,6 +91,10 @@ class Kernel:
         if entry is None:
             entry = self._find(types, arguments)
         return entry(*arguments)
+
+    def is_current(self) -> bool:
+        """Whether the files of its text are still those that were imported."""
+        return all(stamp(file) == imported for file, imported in self.texts)
 
     @functools.cached_property
     def _numba_type_(self) -> Any:

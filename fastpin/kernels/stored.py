@@ -28,9 +28,6 @@ SUFFIX = ".machine"
 UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 """Settings of Numba that do not change the code. All others belong to the code."""
 
-SHARED = ("arrays.py", "status.py")
-"""Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
-
 
 class Place:
     """The files of a kernel for arguments of some types."""
@@ -38,8 +35,9 @@ class Place:
     def __init__(self, kernel: Kernel, signature: str) -> None:
         self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
-        shared = [Path(__file__).with_name(name) for name in SHARED]
-        texts = tuple(file.read_bytes() for file in (Path(self.source), *shared))
+        texts = tuple(Path(file).read_bytes() for file, _ in kernel.texts)
+        if not kernel.is_current():
+            raise OSError("the text of the kernel was replaced after its import")
         rest = (signature, repr(SETTINGS), *_environment())
         self.key = (texts, rest)
         self.name, self.module = function.__qualname__, function.__module__
@@ -122,7 +120,7 @@ def _replace(file: Path, content: bytes) -> None:
 
 
 def place_of(kernel: Kernel, signature: str) -> Place | None:
-    """The place of a kernel's code; None if code can't be loaded, or its text is not in a file."""
+    """The place of a kernel's code; None if code can't be loaded, or its text is not in a file any more."""
     if not machine.CAN_LOAD:
         return None
     try:

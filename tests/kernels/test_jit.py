@@ -22,10 +22,13 @@ from fastpin.kernels import compiler, exchange, influence, jit, machine, stored
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
-from fastpin.kernels.jit import compiled
+from fastpin.kernels.jit import compiled, inner
+@inner
+def product(x, y):
+    return x * y
 @compiled
 def doubled(x):
-    return 2.0 * x
+    return product(2.0, x)
 """
 CODE = """
 import sys
@@ -140,6 +143,30 @@ def test_code_of_older_texts_that_can_not_be_deleted_is_left(place: stored.Place
     assert {path.name for path in tmp_path.iterdir()} == {older.name, place.file}
 
 
+REPLACED = """
+import pathlib, sys
+from fastpin.kernels import small
+file = pathlib.Path(sys.argv[1])
+file.write_text(sys.argv[2] + file.read_text())
+print(small.doubled(1.5))
+"""
+
+
+@keeps
+@pytest.mark.parametrize("file", ["small.py", *jit.SHARED])
+def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
+    """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
+    path = installed / "fastpin" / "kernels" / file
+    variables = {**os.environ, "PYTHONPATH": str(installed), "HOME": str(installed), "NUMBA_CACHE_DIR": ""}
+    words = [sys.executable, "-c", REPLACED, str(path), "# upgraded\n"]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=variables, cwd=installed)
+    assert done.stdout.split() == ["3.0"]
+    assert stored_in(cache(installed)) == []
+    assert not list(cache(installed).glob("*.nb?"))  # Numba's own files, of inner kernels
+    assert compiles(installed)
+    assert stored_in(cache(installed)) == ["small.doubled"]
+
+
 @keeps
 def test_other_settings_need_other_code(installed: Path) -> None:
     assert compiles(installed)
@@ -189,7 +216,7 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
 def test_code_depends_on_the_files_that_are_stored_with_it(file: str) -> None:
     """Stored code is compared with the text of its own file and of the shared files only."""
     module = importlib.import_module(f"fastpin.kernels.{file}")
-    shared = [f"fastpin.kernels.{Path(name).stem}" for name in stored.SHARED]
+    shared = [f"fastpin.kernels.{Path(name).stem}" for name in jit.SHARED]
     imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
     others = [node for node in imports if str(node.module).startswith("fastpin") and node.module not in shared]
     foreign = {alias.asname or alias.name for node in others for alias in node.names}
