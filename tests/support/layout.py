@@ -98,10 +98,37 @@ class Import:
     inside: bool
 
 
+class Source:
+    """A file, parsed, and what the rules ask of all its nodes. The trees of the tests share most files."""
+
+    def __init__(self, text: str) -> None:
+        self.tree = ast.parse(text)
+        self.lines = len(text.splitlines())
+        nodes = list(ast.walk(self.tree))
+        functions = (node for node in nodes if isinstance(node, ast.FunctionDef))
+        inside = {id(node) for function in functions for node in ast.walk(function)}
+        self.imports: list[tuple[int, str, str, bool]] = []
+        """Line, module, name and whether a function holds it, of each imported name."""
+        for node in nodes:
+            if isinstance(node, ast.Import):
+                self.imports += [(node.lineno, alias.name, "", id(node) in inside) for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                module = "." * node.level + (node.module or "")
+                self.imports += [(node.lineno, module, alias.name, id(node) in inside) for alias in node.names]
+        self.prints = [
+            node.lineno for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "print"
+        ]
+        self.private = [
+            (node.lineno, getattr(node.value, "id", ""), node.attr)
+            for node in nodes
+            if isinstance(node, ast.Attribute) and node.attr.startswith("_")
+        ]
+        """Line, owner and name of each attribute with an underscore."""
+
+
 @lru_cache(maxsize=1000)
-def _parsed(text: str) -> ast.Module:
-    """The syntax tree of a file. Trees of the tests share most files."""
-    return ast.parse(text)
+def _source(text: str) -> Source:
+    return Source(text)
 
 
 class Tree:
@@ -110,31 +137,18 @@ class Tree:
     def __init__(self, root: Path) -> None:
         self.package = root / "fastpin"
         paths = sorted(self.package.rglob("*.py")) + sorted(self.package.rglob("*.pyi"))
-        self.trees = {str(path.relative_to(self.package)): _parsed(path.read_text("utf-8")) for path in paths}
-        self.lines = {str(path.relative_to(self.package)): len(path.read_text("utf-8").splitlines()) for path in paths}
+        self.sources = {str(path.relative_to(self.package)): _source(path.read_text("utf-8")) for path in paths}
+        self.trees = {file: source.tree for file, source in self.sources.items()}
 
     @cached_property
     def imports(self) -> list[Import]:
         """All imports, those under TYPE_CHECKING and inside functions too."""
-        found = []
-        for file, tree in self.trees.items():
-            if file.endswith(".pyi"):
-                continue
-            inside = {
-                id(node)
-                for function in ast.walk(tree)
-                if isinstance(function, ast.FunctionDef)
-                for node in ast.walk(function)
-            }
-            for node in ast.walk(tree):
-                if isinstance(node, ast.Import):
-                    for alias in node.names:
-                        found.append(Import(file, node.lineno, alias.name, "", id(node) in inside))
-                elif isinstance(node, ast.ImportFrom):
-                    module = "." * node.level + (node.module or "")
-                    for alias in node.names:
-                        found.append(Import(file, node.lineno, module, alias.name, id(node) in inside))
-        return found
+        return [
+            Import(file, *one)
+            for file, source in self.sources.items()
+            if not file.endswith(".pyi")
+            for one in source.imports
+        ]
 
     def target(self, one: Import) -> str | None:
         """The file of the package that an import names; None for other packages, "" for the public face."""
@@ -252,11 +266,9 @@ def one_home(tree: Tree) -> Iterator[str]:
         homes = HOMES.get(one.module.split(".")[0])
         if homes is not None and _folder(one.file) not in homes:
             yield f"{one.file}:{one.line} imports {one.module}, whose home is {' and '.join(homes)}"
-    for file, parsed in tree.trees.items():
-        for node in ast.walk(parsed):
-            called = isinstance(node, ast.Call) and getattr(node.func, "id", "")
-            if called == "print" and file != PRINTS:
-                yield f"{file}:{node.lineno} prints"
+    for file, source in tree.sources.items():
+        if file != PRINTS:
+            yield from (f"{file}:{line} prints" for line in source.prints)
 
 
 def nothing_private(tree: Tree) -> Iterator[str]:
@@ -265,11 +277,10 @@ def nothing_private(tree: Tree) -> Iterator[str]:
         if tree.target(one) is not None and one.name.startswith("_") and not one.name.startswith("__"):
             yield f"{one.file}:{one.line} imports {one.name} of {one.module}"
     modules = {(one.file, one.name) for one in tree.imports if tree.target(one) and one.name and _is_module(tree, one)}
-    for file, parsed in tree.trees.items():
-        for node in ast.walk(parsed):
-            owner = getattr(node.value, "id", "") if isinstance(node, ast.Attribute) else ""
-            if isinstance(node, ast.Attribute) and (file, owner) in modules and node.attr.startswith("_"):
-                yield f"{file}:{node.lineno} reaches for {owner}.{node.attr}"
+    for file, source in tree.sources.items():
+        for line, owner, name in source.private:
+            if (file, owner) in modules:
+                yield f"{file}:{line} reaches for {owner}.{name}"
 
 
 def _is_module(tree: Tree, one: Import) -> bool:
@@ -289,9 +300,9 @@ def imports_at_the_top(tree: Tree) -> Iterator[str]:
 
 def small(tree: Tree) -> Iterator[str]:
     """Files, functions and lists of parameters stay small."""
-    for file, lines in tree.lines.items():
-        if lines > MOST_LINES:
-            yield f"{file} has {lines} lines"
+    for file, source in tree.sources.items():
+        if source.lines > MOST_LINES:
+            yield f"{file} has {source.lines} lines"
     for name, function in tree.functions():
         if name not in LONG_FUNCTIONS and _folder(name) != "kernels" and _code_lines(function) > MOST_FUNCTION_LINES:
             yield f"{name} has {_code_lines(function)} lines"
