@@ -16,6 +16,14 @@ from tests.support.integrals import log_integrals
 
 RATIO = 0.31
 POINT, WEIGHT = np.polynomial.legendre.leggauss(16)
+FINE_POINT, FINE_WEIGHT = np.polynomial.legendre.leggauss(60)
+
+SHARE = np.concatenate([[0.0], 0.5 * 0.2 ** np.arange(24, -1, -1.0)])
+SHARE = np.concatenate([SHARE, 1.0 - SHARE[-2::-1]])
+PANEL = np.diff(SHARE)
+PLACES = SHARE[:-1, None] + 0.5 * PANEL[:, None] * (1.0 + POINT)
+"""Points of an interval of length 1 in Gauss panels that shrink towards both ends, shape (panels, points)."""
+
 Kernel = Callable[[np.ndarray], np.ndarray]
 
 
@@ -46,13 +54,8 @@ def cross_kernel(x: np.ndarray) -> np.ndarray:
 
 def graded(function: Kernel, start: float, stop: float) -> float:
     """int function over [start, stop]; Gauss panels that shrink towards both ends."""
-    share = np.concatenate([[0.0], 0.5 * 0.2 ** np.arange(24, -1, -1.0)])
-    share = np.concatenate([share, 1.0 - share[-2::-1]])
     width = stop - start
-    total = 0.0
-    for a, b in pairwise(share):
-        total += 0.5 * (b - a) * width * np.dot(WEIGHT, function(start + width * (a + 0.5 * (b - a) * (1.0 + POINT))))
-    return float(total)
+    return float(0.5 * width * PANEL @ (function(start + width * PLACES) @ WEIGHT))
 
 
 def naive_hat(kernel: Kernel, u: float, h_left: float, h_right: float) -> float:
@@ -92,8 +95,8 @@ def naive_cauchy(u: float, h_left: float, h_right: float) -> float:
     ends = [0.0, *sorted({k for k in kinks if 1e-12 < k < math.pi - 1e-12}), math.pi]
     total = 0.0
     for a, b in pairwise(ends):
-        x = a + 0.5 * (b - a) * (1.0 + np.polynomial.legendre.leggauss(60)[0])
-        weight = 0.5 * (b - a) * np.polynomial.legendre.leggauss(60)[1]
+        x = a + 0.5 * (b - a) * (1.0 + FINE_POINT)
+        weight = 0.5 * (b - a) * FINE_WEIGHT
         total += float(np.dot(weight, (hat(u - x) - hat(u + x)) / np.tan(x / 2.0)))
     return total
 
