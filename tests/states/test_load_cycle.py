@@ -41,8 +41,10 @@ CYCLES = {
 }
 
 
-def solved(name: str = "forces", **options: Any) -> Result:
+def solved(name: str = "forces", cycles: int = 6, **options: Any) -> Result:
+    """The first cycles of a history, solved: few cycles are enough where many states are kept."""
     problem, history = CYCLES[name]
+    history = history[: 1 + cycles * history.longest_cycle]
     nodes = {} if "grid" in options else {"nodes": 81}
     return solve(problem, history, **{**nodes, "slip_sums": True, **options})
 
@@ -123,8 +125,8 @@ def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
     """The polygon through the states converges to the work of the solver, with the square of their number."""
     errors, size = [], 0.0
     for between in (7, 63, 511):
-        found = solved(name, between=between)
-        cycle = found.cycle(first=1, last=3 if name != "remote stress" else 5)
+        found = solved(name, cycles=1, between=between)
+        cycle = found.cycle(first=1, last=len(found.history))
         work = sum(loop.work for loop in cycle.loops.values())
         exact = cycle.states[-1].work - cycle.states[0].work
         size = sum(abs(loop.work) for loop in cycle.loops.values())
@@ -192,13 +194,14 @@ def bare(cycle: LoadCycle) -> LoadCycle:
 @pytest.mark.parametrize("name", list(CYCLES))
 def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     """The range from two states against the ranges read from more and more states."""
-    found = solved(name, keep="cycles")
+    cycles = 6 if name == "body" else 2  # by the sixth cycle the nodes of the pin with body loads stick
+    found = solved(name, cycles=cycles, keep="cycles")
     exact, size = found.cycle(), max(float(np.abs(state.slip).max()) for state in found)
     assert exact.has_exact_slip_range
     assert len(exact.states) == 2
     missed = []
     for between in (15, 127, 1023):
-        fine = solved(name, between=between, grid=found.grid).cycle()
+        fine = solved(name, cycles=cycles, between=between, grid=found.grid).cycle()
         if between < 500:  # with more stops the contact begins at a smaller load, and differs by 1e-8
             assert np.abs(fine.slip_range - exact.slip_range).max() <= 1e-13 * size
         read = bare(fine)
