@@ -135,11 +135,17 @@ def test_a_pin_that_creeps_to_an_end_of_the_arc_is_an_error(pressed):
         find_state_beyond(part, now.part(np.arange(15, 46)), turned)
 
 
-def test_a_snap_to_nowhere_is_told(monkeypatch):
+@pytest.mark.parametrize(
+    "nodes",
+    [{"grid": Grid.circle(120)}, pytest.param({"nodes": 121}, marks=pytest.mark.slow)],
+    ids=["a given grid", "a grid that is searched for"],
+)
+def test_a_snap_to_nowhere_is_told(nodes, monkeypatch):
+    """The search for an arc follows the history on many grids."""
     monkeypatch.setattr(path_stepper, "find_state_beyond", lambda *_: None)
     case, history = GRIPPED
     with pytest.raises(NoEquilibriumError, match="the pin snaps") as caught:
-        solve(case, history, nodes=121)
+        solve(case, history, **nodes)
     assert len(caught.value.result) == 2
 
 

@@ -6,6 +6,7 @@ import copy
 import dataclasses
 import pickle
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -120,11 +121,23 @@ def test_a_plan_makes_the_case_that_its_file_would_make(case, friction, tmp_path
     assert_same_case(plan.case(plan.points[0]), parse_case(text_of(case, tables)))
 
 
-@settings(max_examples=15)
+@settings(max_examples=5)
 @given(problem=strategies.problems(), data=st.data())
 def test_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_factory):
+    assert_solved_or_lost(problem, data, tmp_path_factory.mktemp("result"))
+
+
+@pytest.mark.slow
+@settings(max_examples=20)
+@given(problem=strategies.problems(), data=st.data())
+def test_more_valid_input_is_solved_or_lost_with_a_reason(problem, data, tmp_path_factory):
+    assert_solved_or_lost(problem, data, tmp_path_factory.mktemp("result"))
+
+
+def assert_solved_or_lost(problem: fastpin.Problem, data: st.DataObject, folder: Path) -> None:
+    """Record a drawn history. Its result can be loaded, or one sentence says why it was lost."""
     rows = data.draw(strategies.corners(problem, 3))
-    path = tmp_path_factory.mktemp("result") / "result.h5"
+    path = folder / "result.h5"
     try:
         fastpin.record(problem, rows, path, nodes=21, title="generated")
     except (SolveError, InputError) as error:
@@ -182,7 +195,7 @@ CALLS: list[tuple[Any, dict[str, Any]]] = [
 """Public functions and good arguments."""
 
 
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(st.data())
 def test_odd_arguments_are_accepted_or_refused_with_one_sentence(data):
     function, good = data.draw(st.sampled_from(CALLS))
