@@ -104,7 +104,7 @@ def test_tests_need_the_tools_of_development_and_run_at_home(project: Path) -> N
     run(project, "run", "x")
     log(project)
     assert run(project, "test", "-k", "a b").returncode == 0
-    tests = f"{project}> -m pytest -n auto -m not slow -k a b"
+    tests = f"{project}> -m pytest -n auto --dist worksteal -m not slow -k a b"
     found = log(project)
     assert (found[0], found[-1]) == (f"pip {project}[dev]", tests)
     run(project, "run", "x")
