@@ -10,6 +10,7 @@ import contextlib
 import inspect
 import json
 import marshal
+import os
 import pickle
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -221,7 +222,7 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
     if value is None:
         return None
     file, colon, function = value.rpartition(":") if isinstance(value, str) else ("", "", "")
-    if not (colon and file.endswith(".py") and function):
+    if not (colon and file.endswith(".py") and file.isprintable() and function):
         section.report(
             f'{name}: function: must be FILE.py:NAME, such as "my.py:wear", not {as_toml(value)}', "function"
         )
@@ -230,8 +231,12 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
         section.report(f"{name}: {file}: must lie beside the plan, or in a folder below", "function")
         return None
     path = folder / file
-    if not path.resolve().is_relative_to(folder.resolve()):
+    # Unlike Path.resolve, realpath takes links that lead to themselves.
+    if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
         section.report(f"{name}: {file}: is a link that leads out of the folder of the plan", "function")
+        return None
+    if path.exists() and not path.is_file():  # Nothing may ever be written to a pipe.
+        section.report(f"{name}: {file}: must be an ordinary file", "function")
         return None
     try:
         text = read_text(path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -427,3 +428,24 @@ def test_a_file_that_can_not_be_run_is_found_before_the_work(text: str, words: s
     with pytest.raises(InputError, match=f"outcomes: f: {words}"):
         sweep.run(plan, tmp_path / "out", workers=1)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("file", "fault"),
+    [
+        ("pipe.py", "w: pipe.py: must be an ordinary file"),
+        ("folder.py", "w: folder.py: must be an ordinary file"),
+        ("loop.py", "w: loop.py: "),
+        (r"\u0000.py", "w: function: must be FILE.py:NAME"),
+        (r"\u001b[31m.py", "w: function: must be FILE.py:NAME"),
+    ],
+)
+def test_a_function_of_no_ordinary_file_is_a_fault(tmp_path: Path, file: str, fault: str) -> None:
+    os.mkfifo(tmp_path / "pipe.py")
+    (tmp_path / "folder.py").mkdir()
+    (tmp_path / "loop.py").symlink_to("loop.py")
+    with pytest.raises(CaseFileError) as caught:
+        parse_plan(
+            f'[grid]\n"contact.friction" = [0.4]\n[outcomes]\nw = {{ function = "{file}:f" }}\n', folder=tmp_path
+        )
+    assert fault in str(caught.value)
