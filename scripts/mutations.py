@@ -1,10 +1,12 @@
 """Change input files at random: does fastpin answer with a result or one sentence, and leave the files alone?
 
 ``python -m scripts.mutations [--count 1000] [--first 0] [KIND ...]`` changes case files, CSV histories, results,
-unfinished results with their journals, the indices of sweeps, and lug files. It reads each changed file through Python
-and the command line, in a process of its own. A finding is a raw error of Python, a traceback, a crash, a run without
-an end, too much memory, a long or empty message, or a file that was changed without a right to it. Changed bytes can
-crash the HDF5 library itself, or catch it in a loop. Such cases are counted apart: no code of Python can prevent them.
+unfinished results with their journals, the indices of sweeps, plans, and lug files. Some changes are random, and some
+are hostile (hostile.py). It reads each changed file through Python and the command line, in a process of its own. A
+finding is a raw error of Python, a traceback, a crash, a run without an end, too much memory, a long or empty message,
+or a file that was changed without a right to it. Reading may change, make or remove no file at all, also not in the
+folder beside. Changed bytes can crash the HDF5 library itself, or catch it in a loop. Such cases are counted apart: no
+code of Python can prevent them.
 """
 
 from __future__ import annotations
@@ -23,10 +25,12 @@ import resource
 import shutil
 import signal
 import sqlite3
+import stat
 import tempfile
 import time
 import traceback
 import warnings
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -43,13 +47,18 @@ from fastpin.storage import export, recording, store
 from fastpin.storage.journal import JournaledFile
 from fastpin.studies import plan as plans
 from fastpin.studies import sweep, workers
+from fastpin.studies.outcome_tables import read_outcomes
+from scripts import hostile
 from scripts.inline import Inline
 
 NODES = 31
 """Nodes of all results."""
 
 LONGEST = 15.0
-"""Seconds for all attempts with one changed file."""
+"""Seconds of the processor for all attempts with one changed file."""
+
+LONGEST_WAIT = 90.0
+"""Seconds of the clock for the same. The machine may be busy with other work."""
 
 MOST_MEMORY = 2 << 30
 """Bytes of address space that the attempts with one changed file may take, beyond the process before."""
@@ -59,6 +68,12 @@ LONGEST_LINE = 600
 
 MOST_LINES = 60
 """Most lines of a message: a case file can have many faults, a line each."""
+
+MOST_DIGESTED = 1 << 26
+"""Most bytes of a file that is compared by its content. A larger one is compared by its size and time."""
+
+HOSTILE = 0.6
+"""Share of hostile changes."""
 
 IN_LIBRARY = "the HDF5 library crashed, or did not end"
 """Finding that is counted apart."""
@@ -333,11 +348,17 @@ class Examination:
 
     Attributes
     ----------
+    outside : Path
+        A folder beside it that nothing may touch.
+    operator : str
+        Name of the change.
     findings : list of str
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.outside = folder.with_name("outside")
+        self.operator = "random"
         self.findings: list[str] = []
 
     def python(self, name: str, call: Callable[[], Any], may_change: tuple[str, ...] = ()) -> Any:
@@ -392,9 +413,26 @@ class Examination:
 
 
 def digests(folder: Path) -> dict[str, str]:
-    """The digest of every file in a folder, by its relative path."""
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+    """What every path in a folder and in the folder outside is, by its relative path: a digest, a link or a kind."""
+    found = {}
+    for path in [*folder.rglob("*"), *folder.with_name("outside").rglob("*")]:
+        mode = path.lstat().st_mode
+        if stat.S_ISREG(mode) and path.stat().st_size > MOST_DIGESTED:
+            kept = f"{path.stat().st_size} {path.stat().st_mtime_ns}"
+        elif stat.S_ISREG(mode):
+            kept = hashlib.sha256(path.read_bytes()).hexdigest()
+        else:
+            kept = str(path.readlink()) if stat.S_ISLNK(mode) else str(stat.S_IFMT(mode))
+        found[os.path.relpath(path, folder)] = kept
+    return found
+
+
+def change_hostile(
+    rng: np.random.Generator, operators: dict[str, hostile.Operator], path: Path, seen: Examination
+) -> None:
+    """Apply a random one of the hostile operators to a file."""
+    seen.operator = str(rng.choice(list(operators)))
+    operators[seen.operator](rng, path, seen.outside)
 
 
 def examine_case(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
@@ -441,57 +479,73 @@ def _try_case(path: Path, seen: Examination) -> None:
 
 
 def examine_result(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change a finished result."""
+    """Change a finished result, or put something beside it."""
     path = folder / str(rng.choice(["result.h5", "saved.h5"]))
-    if rng.random() < 0.3:
+    if rng.random() < HOSTILE:
+        change_hostile(rng, hostile.RESULT, path, seen)
+    elif rng.random() < 0.3:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
     else:
         change_result(rng, path)
-    _try_result(path, seen, ())
+    _try_result(rng, path, seen)
 
 
 def examine_unfinished(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change an unfinished result, its journal or both. Readers may repair it; only ``resume`` continues it."""
+    """Change an unfinished result, its journal or both. Only ``resume`` may repair it."""
     path, journal = folder / "unfinished.h5", folder / "unfinished.h5.journal"
     way = rng.integers(4)
-    if way == 0:
+    if rng.random() < HOSTILE:
+        if rng.random() < 0.5:  # a hostile file, or a hostile journal of an honest one
+            journal.unlink()
+            change_hostile(rng, hostile.RESULT, path, seen)
+        else:
+            seen.operator = "beside"
+            hostile.beside_result(rng, path, seen.outside)
+    elif way == 0:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
     elif way == 1:
         journal.unlink()
         change_result(rng, path)
-    if way >= 2:
+    else:
         journal.write_bytes(change_bytes(rng, journal.read_bytes()))
-    repaired = (r"^unfinished\.h5$", r"^unfinished\.h5\.journal$")
-    _try_result(path, seen, repaired)
-    seen.python("resume", lambda: recording.resume(path), (*repaired, r"^unfinished\.h5\.checkpoint$"))
+    _try_result(rng, path, seen)
+    seen.python("resume", lambda: recording.resume(path), (_of_run(path),))
 
 
-def _try_result(path: Path, seen: Examination, may_change: tuple[str, ...]) -> None:
-    result = seen.python("load", lambda: store.load(path), may_change)
-    seen.python("load some", lambda: store.load(path, states=[0, -1]), may_change)
-    seen.python("load after", lambda: store.load(path, after=2), may_change)
-    seen.python("stored_case", lambda: recording.stored_case(path), may_change)
-    seen.python("stored_error", lambda: recording.stored_error(path), may_change)
-    seen.python("load_points", lambda: store.load_points(path).size, may_change)
-    seen.python("to_xarray", lambda: export.to_xarray(path), may_change)
+def _of_run(path: Path) -> str:
+    """A pattern of the files that continuing a run may change."""
+    return rf"^{re.escape(path.name)}(\.journal|\.checkpoint)?$"
+
+
+def _try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    result = seen.python("load", lambda: store.load(path))
+    seen.python("load some", lambda: store.load(path, states=[0, -1]))
+    seen.python("load after", lambda: store.load(path, after=2))
+    seen.python("stored_case", lambda: recording.stored_case(path))
+    seen.python("stored_error", lambda: recording.stored_error(path))
+    seen.python("load_points", lambda: store.load_points(path).size)
+    seen.python("to_xarray", lambda: export.to_xarray(path))
     if result is not None:
-        seen.python("repr", lambda: repr(result), may_change)
-        seen.python("to_dataframe", lambda: export.to_dataframe(result), may_change)
-        seen.python("save", lambda: store.save(result, path.with_name("again.h5")), (*may_change, "^again.h5$"))
+        seen.python("repr", lambda: repr(result))
+        seen.python("to_dataframe", lambda: export.to_dataframe(result))
+        seen.python("save", lambda: store.save(result, path.with_name("again.h5")), ("^again.h5$",))
         if result.restart is not None:
-            seen.python("solve", lambda: fastpin.solve(result.problem, [{"P": 1.1}], start=result), may_change)
-    output = ("--json", path.with_name("out.json"), "--plot", path.with_name("out.png"))
-    seen.command("show", path, *output, may_change=(*may_change, r"^out\.(json|png)$"))
-    seen.command("run", path.with_name("case0.toml"), "--start", path, may_change=may_change)
-    continued = r"^" + re.escape(path.name)
-    seen.command("resume", path, may_change=(continued,) if path.name == "unfinished.h5" else may_change)
+            seen.python("solve", lambda: fastpin.solve(result.problem, [{"P": 1.1}], start=result))
+    output: tuple[str | Path, ...] = ("--json", path.with_name("out.json"))
+    if rng.random() < 0.1:  # a figure takes long
+        output = (*output, "--plot", path.with_name("out.png"))
+    seen.command("show", path, *output, may_change=(r"^out\.(json|png)$",))
+    seen.command("run", path.with_name("case0.toml"), "--start", path)
+    seen.command("resume", path, may_change=(_of_run(path),))
 
 
 def examine_index(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change the index of a sweep."""
+    """Change the index of a sweep, or put something beside it."""
     directory = folder / "sweep"
     path = directory / "index.sqlite"
-    if rng.random() < 0.3:
+    if rng.random() < HOSTILE:
+        change_hostile(rng, hostile.INDEX, path, seen)
+    elif rng.random() < 0.3:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
     else:
         change_index(rng, path)
@@ -501,14 +555,35 @@ def examine_index(rng: np.random.Generator, folder: Path, seen: Examination) -> 
     seen.python("rows", lambda: sweep.rows(plan, directory))
     for run in plan.runs:
         seen.python("load of a run", lambda run=run: store.load(directory / "results" / f"{run}.h5"))
-    outputs = ("--table", folder / "out.csv", "--plot", folder / "out.png")
-    written = r"^out\.(csv|png)$"
+    outputs: tuple[str | Path, ...] = ("--table", folder / "out.csv")
+    if rng.random() < 0.1:  # a figure takes long
+        outputs = (*outputs, "--plot", folder / "out.png")
+    written = r"^out\.(csv|png|html)$"
     seen.command("sweep", folder / "plan.toml", "-o", directory, "--status", *outputs, may_change=(written,))
-    whole = ("^whole/", r"^sweep/results/\..*\.h5$")
-    seen.command("merge", "-o", folder / "whole", folder / "part", directory, may_change=whole)
+    seen.command("merge", "-o", folder / "whole", folder / "part", directory, may_change=("^whole(/|$)",))
+    if rng.random() < 0.1:  # a page takes long
+        seen.command("report", directory, "-o", folder / "out.html", may_change=(written,))
     ran = ("^sweep/", written)
     seen.command("sweep", folder / "plan.toml", "-o", directory, *outputs, may_change=ran)
     seen.python("run", lambda: sweep.run(plan, directory, executor=Inline(), retry=True), ran)
+
+
+def examine_plan(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
+    """Change a plan, or name a function in it. Reading runs no function."""
+    path = folder / "plan.toml"
+    if rng.random() < HOSTILE:
+        change_hostile(rng, hostile.PLAN, path, seen)
+    else:
+        _change_text_file(rng, path)
+    if rng.random() < 0.5:
+        shutil.copy(path, folder / "sweep" / "plan.toml")
+    seen.python("read_plan", lambda: plans.read_plan(path))
+    seen.python("read_outcomes", lambda: read_outcomes(path))
+    seen.command("sweep", path, "-o", folder / "sweep", "--status")
+    if rng.random() < 0.2:  # a page takes long
+        seen.command("report", folder / "sweep", "-o", folder / "out.html", may_change=("^out.html$",))
+    if not re.search(r"100000|99999", path.read_text(errors="replace")):
+        seen.command("sweep", path, "-o", folder / "new", may_change=("^new(/|$)", "^ran$", "__pycache__"))
 
 
 KINDS: dict[str, Callable[[np.random.Generator, Path, Examination], None]] = {
@@ -518,15 +593,20 @@ KINDS: dict[str, Callable[[np.random.Generator, Path, Examination], None]] = {
     "unfinished": examine_unfinished,
     "index": examine_index,
     "lug": examine_lug,
+    "plan": examine_plan,
 }
 """The kinds of files."""
 
 
-def examine(kind: str, seed: int, before: Path) -> list[str]:
-    """Change one file in a copy of the folder `before`, try to read it in another process, and return the findings."""
+def examine(kind: str, seed: int, before: Path, operators: Counter[str] | None = None) -> list[str]:
+    """Change one file in a copy of the folder `before`, try to read it in another process, and return the findings.
+
+    `operators` counts the names of the changes.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / "files"
         shutil.copytree(before, folder)
+        hostile.prepare_outside(folder.with_name("outside"))
         report = Path(name) / "findings.json"
         process = os.fork()
         if process == 0:
@@ -535,8 +615,12 @@ def examine(kind: str, seed: int, before: Path) -> list[str]:
         if not report.exists():
             stack = report.with_suffix(".stack").read_text()
             first = re.search(r'File "([^"]+)"', stack)
-            return [f"{kind} {seed}: {IN_LIBRARY if first and '/h5py/' in first[1] else ended}"]
-        return [f"{kind} {seed}: {finding}" for finding in json.loads(report.read_text())]
+            lines = re.findall(r"/(fastpin/.*)", stack)[:1]
+            return [f"{kind} {seed}: {IN_LIBRARY if first and '/h5py/' in first[1] else f'{ended} {lines}'}"]
+        said = json.loads(report.read_text())
+        if operators is not None:
+            operators[said["operator"]] += 1
+        return [f"{kind} {seed}: {said['operator']}: {finding}" for finding in said["findings"]]
 
 
 def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
@@ -554,7 +638,7 @@ def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
         seen = Examination(folder)
         os.chdir(folder)
         KINDS[kind](np.random.default_rng([seed, list(KINDS).index(kind)]), folder, seen)
-        report.write_text(json.dumps(seen.findings))
+        report.write_text(json.dumps({"operator": seen.operator, "findings": seen.findings}))
         code = 0
     except BaseException:
         traceback.print_exc()
@@ -577,10 +661,15 @@ def _wait(process: int) -> str:
             return (
                 f"ended by the signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else f"exit code {status >> 8}"
             )
-        if time.monotonic() - began > LONGEST:
+        times = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+        worked, waited = (
+            int(times[11]) / os.sysconf("SC_CLK_TCK"),
+            time.monotonic() - began,
+        )  # of the user, not the system
+        if worked > LONGEST or waited > LONGEST_WAIT:
             os.kill(process, signal.SIGABRT)  # faulthandler writes where the process is
             os.waitpid(process, 0)
-            return f"no end within {LONGEST:g} s"
+            return f"no end after {worked:.0f} s of work in {waited:.0f} s"
         time.sleep(0.002)
 
 
@@ -596,14 +685,15 @@ def main() -> None:
         prepare(Path(name))
         for kind in options.kinds or KINDS:
             began = time.monotonic()
+            operators: Counter[str] = Counter()
             for seed in range(options.first, options.first + options.count):
-                for finding in examine(kind, seed, Path(name)):
+                for finding in examine(kind, seed, Path(name), operators):
                     if finding.endswith(IN_LIBRARY):
                         in_library += 1
                     else:
                         found += 1
                     print(finding, flush=True)
-            print(f"{kind}: {options.count} files in {time.monotonic() - began:.0f} s", flush=True)
+            print(f"{kind}: {options.count} files in {time.monotonic() - began:.0f} s", dict(operators), flush=True)
     print(f"{found} findings; {in_library} files that the HDF5 library can't survive")
     raise SystemExit(found > 0)
 

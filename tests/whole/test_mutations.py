@@ -33,12 +33,12 @@ def findings(mutations: ModuleType, files: Path, kind: str, seeds: range) -> lis
     return [finding for finding in found if not finding.endswith(mutations.IN_LIBRARY)]
 
 
-@pytest.mark.parametrize("kind", ["case", "csv", "index", "lug"])
+@pytest.mark.parametrize("kind", ["case", "csv", "index", "lug", "plan"])
 def test_some_changed_files_give_one_sentence(mutations, files, kind):
     assert findings(mutations, files, kind, range(8)) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["case", "csv", "result", "unfinished", "index", "lug"])
+@pytest.mark.parametrize("kind", ["case", "csv", "result", "unfinished", "index", "lug", "plan"])
 def test_changed_files_give_one_sentence(mutations, files, kind):
     assert findings(mutations, files, kind, range(1_000, 1_060)) == []
