@@ -19,7 +19,7 @@ from pathlib import Path
 
 import h5py
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, OutputError
 from fastpin.model.checks import file_path
 from fastpin.model.inputs import HDF5_SIGNATURE
 from fastpin.storage.file_objects import Overlay, RestoredFile, WrittenFile, write_all
@@ -109,12 +109,12 @@ class JournaledFile(WrittenFile):
 
         Raises
         ------
-        OSError
+        OutputError
             If some bytes could not be written. The transaction is undone, and the file can only be closed.
         """
         if self.error is not None:
             self.abandon()
-            raise self.error
+            raise OutputError(str(self._path), f"can't be written: {self.error.strerror}")
         if self._abandoned:
             return
         os.ftruncate(self._journal, 0)

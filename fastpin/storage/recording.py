@@ -71,7 +71,7 @@ def record(
         Naming the field that can't be used; also if the file exists, or can't be written.
     SolveError
         See :func:`fastpin.solve`. The earlier states are in the file. ``result`` of the error holds the last of them.
-    OSError
+    OutputError
         If the file can't be written any more, for example because the disk is full. The states in the file stay.
 
     A KeyboardInterrupt ends the file properly, with all earlier states.
@@ -121,7 +121,7 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
     ------
     InputError
         If the file is no result, holds a finished run, or another process is writing to it.
-    SolveError, OSError
+    SolveError, OutputError
         See :func:`record`.
     """
     path = file_path("path", path)

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, OutputError
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.interrupt import deferred_interrupts
 from fastpin.solver.result import Restart
@@ -315,7 +315,7 @@ class FileRecorder:
                 append(self._h5["cycles"], cycle_rows(self._cycles))
             self._h5.flush()
             self._file.commit()
-        except OSError:
+        except OutputError:
             self.abort()
             raise
         self._stored = [max(stored, at) for stored, at in zip(self._stored, self._at, strict=True)]

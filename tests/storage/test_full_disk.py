@@ -29,6 +29,7 @@ for limit in map(int, sys.argv[3:]):
 
 RECORD = """
 import resource, signal, sys
+from fastpin.errors import OutputError
 from fastpin.storage import recording, store, writer
 
 result = store.load(sys.argv[1])
@@ -37,8 +38,8 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]), resource.RLIM_INFIN
 writer.MOST_PENDING = 4
 try:
     recording.record(result.problem, result.history, sys.argv[2], nodes=31, arc=(-3.1, 0.0))
-except OSError as error:
-    print(error.strerror)
+except OutputError as error:
+    print(error)
 """
 
 
@@ -73,6 +74,6 @@ def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, tmp_path, s
     whole = tmp_path / "whole.h5"
     assert output_of(RECORD, source, whole, 1 << 30) == ""
     path = tmp_path / "out.h5"
-    assert output_of(RECORD, source, path, int(share * whole.stat().st_size)) == "File too large\n"
+    assert output_of(RECORD, source, path, int(share * whole.stat().st_size)) == f"{path}: can't be written: File too large\n"
     assert not path.with_name("out.h5.journal").exists()
     assert store.is_unfinished(path) or path.stat().st_size == 0

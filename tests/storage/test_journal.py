@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, OutputError
 from fastpin.storage import journal
 from fastpin.storage.files import check_free
 from fastpin.storage.journal import JournaledFile, journal_of
@@ -162,7 +162,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.M
         h5["array0"].resize(6, axis=0)
         h5["array0"][5] = 1.0
         h5.flush()
-        with pytest.raises(OSError, match="No space"):
+        with pytest.raises(OutputError, match="a.h5: can't be written: No space"):
             file.commit()
         h5.close()
     file.release()

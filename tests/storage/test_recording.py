@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import pytest
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, OutputError
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
@@ -215,7 +215,7 @@ def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
     monkeypatch.setattr(writer, "LONGEST_WAIT", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(journal.os, "pwrite", pwrite)
-        with pytest.raises(OSError, match="No space left"):
+        with pytest.raises(OutputError, match="can't be written: No space left"):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
     assert 1 < store.load_points(path).size < 40
     resume(path)
