@@ -74,6 +74,7 @@ def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, tmp_path, s
     whole = tmp_path / "whole.h5"
     assert output_of(RECORD, source, whole, 1 << 30) == ""
     path = tmp_path / "out.h5"
-    assert output_of(RECORD, source, path, int(share * whole.stat().st_size)) == f"{path}: can't be written: File too large\n"
+    said = output_of(RECORD, source, path, int(share * whole.stat().st_size))
+    assert said == f"{path}: can't be written: File too large\n"
     assert not path.with_name("out.h5.journal").exists()
     assert store.is_unfinished(path) or path.stat().st_size == 0

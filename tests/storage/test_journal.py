@@ -162,7 +162,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.M
         h5["array0"].resize(6, axis=0)
         h5["array0"][5] = 1.0
         h5.flush()
-        with pytest.raises(OutputError, match="a.h5: can't be written: No space"):
+        with pytest.raises(OutputError, match=r"a\.h5: can't be written: No space"):
             file.commit()
         h5.close()
     file.release()
