@@ -317,7 +317,7 @@ class Index:
                 raise
             raise InputError(str(self.path), f"is damaged: {error}") from None
         except (sqlite3.OperationalError, sqlite3.InternalError) as error:
-            if error.sqlite_errorcode & 0xFF in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
+            if _is_of_disk(error):
                 raise OutputError(str(self.path), f"can't be written: {error}") from None
             raise InputError(str(self.path), f"can't be used: {error}") from None
         except sqlite3.DatabaseError as error:
@@ -334,6 +334,8 @@ def lock_directory(directory: Path) -> Iterator[None]:
     ------
     InputError
         If another sweep is running in the directory, or the directory can't be written.
+    OutputError
+        If the disk is full.
     """
     try:
         lock = open_database(directory / "lock", "rwc", timeout=0.0)
@@ -343,6 +345,8 @@ def lock_directory(directory: Path) -> Iterator[None]:
             lock.close()
             raise
     except sqlite3.Error as error:
+        if _is_of_disk(error):
+            raise OutputError(str(directory / "lock"), f"can't be written: {error}") from None
         busy = error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY
         reason = "another sweep is running in this directory" if busy else f"can't be used: {error}"
         raise InputError(str(directory), reason) from None
@@ -350,6 +354,11 @@ def lock_directory(directory: Path) -> Iterator[None]:
         yield
     finally:
         lock.close()
+
+
+def _is_of_disk(error: sqlite3.Error) -> bool:
+    """Whether an error of SQLite says that the disk is full or broken."""
+    return error.sqlite_errorcode & 0xFF in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 
 
 def _check_row(row: dict[str, Any]) -> None:
