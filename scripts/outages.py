@@ -380,11 +380,6 @@ WAYS = {
     "stop": ("record", "sweep", "dask"),
     "share": ("record", "sweep"),
 }
-    "kill": tuple(COMMANDS),
-    "fill": tuple(COMMANDS),
-    "stop": ("record", "sweep", "dask"),
-    "share": ("record", "sweep"),
-}
 """Ways of disturbing, and the commands that each suits. Commands on dask are filled without it."""
 
 
