@@ -10,11 +10,9 @@ from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
 from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_largest, check_loads
+from fastpin.model.history_csv import MAX_ROWS
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
-
-MAX_ROWS = 10_000_000
-"""Largest number of corners of a repeated block. They are held in memory."""
 
 MOST_BLOCKS = 10_000
 """Most [[load]] blocks. A block can hold any number of corners."""

@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from array import array
+from collections.abc import Iterator
 from typing import TextIO
 
 import numpy as np
@@ -17,6 +18,18 @@ from fastpin.model.loads import LOADS, load_index
 LONGEST_LINE = 1_000_000
 """Most characters of a line. A device such as /dev/zero has no end of a line."""
 
+MAX_ROWS = 10_000_000
+"""Most corners of a CSV file or of a repeated block. They are held in memory: 0.7 GB."""
+
+MOST_AROUND, MOST_OF_A_CORNER = 10_000_000, 400
+"""Most characters of a CSV file: so many, and as many for each corner. A corner of all loads needs some 250.
+
+A file of blank lines and comments is refused soon in this way, and any file before 4 GB.
+"""
+
+SHORTEST_LINE = 100
+"""Characters that a line counts at least: reading a line takes as long as some 100 characters."""
+
 MOST_FAULTS = 20
 """Most faulty lines of a CSV file that an error lists."""
 
@@ -27,16 +40,15 @@ def read_corners(file: TextIO, name: str) -> np.ndarray:
     Raises
     ------
     CaseFileError
-        With the first :data:`MOST_FAULTS` faulty lines, or with the fault of the header.
+        With the first :data:`MOST_FAULTS` faulty lines, or with the fault of the header. Also if the file has more than
+        :data:`MAX_ROWS` corners, or too many characters for its corners.
     """
     faults: list[tuple[int, str]] = []
     header: list[int] | None = None
     numbers = array("d")  # grows in place, and becomes the table without a copy
     empty_row = array("d", [math.nan] * len(LOADS))
-    for line_number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE + 1), ""), start=1):
-        if len(line) > LONGEST_LINE:
-            raise CaseFileError(name, [(line_number, f"the line is longer than {LONGEST_LINE:,} characters")])
-        if not line.strip() or line.lstrip().startswith("#"):
+    for line_number, line in _lines(file, name, numbers):
+        if _is_skipped(line):
             continue
         cells = next(csv.reader([line], skipinitialspace=True))
         if header is None:
@@ -72,3 +84,28 @@ def read_corners(file: TextIO, name: str) -> np.ndarray:
     if not numbers:
         raise CaseFileError(name, [(0, "holds no load corners")])
     return np.frombuffer(numbers).reshape(-1, len(LOADS))
+
+
+def _lines(file: TextIO, name: str, numbers: array[float]) -> Iterator[tuple[int, str]]:
+    """Yield the lines with their numbers, as long as the `numbers` that were read from them allow more."""
+    size = allowed = 0
+    for line_number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE + 1), ""), start=1):
+        size += max(len(line), SHORTEST_LINE)
+        fault = ""
+        if size > allowed:
+            corners = len(numbers) // len(LOADS)
+            allowed = MOST_AROUND + MOST_OF_A_CORNER * corners
+            if size > allowed:
+                fault = f"the lines up to here are too long or too many for {corners:,} corners"
+        if len(line) > LONGEST_LINE:
+            fault = f"the line is longer than {LONGEST_LINE:,} characters"
+        elif len(numbers) >= len(LOADS) * MAX_ROWS and not _is_skipped(line):
+            fault = f"more than {MAX_ROWS:,} corners can't be read; repeat a shorter file in a case file"
+        if fault:
+            raise CaseFileError(name, [(line_number, fault)])
+        yield line_number, line
+
+
+def _is_skipped(line: str) -> bool:
+    """Whether a line is blank or a comment."""
+    return not line.strip() or line.lstrip().startswith("#")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 import tracemalloc
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 
 from fastpin.errors import CaseFileError, InputError
+from fastpin.model import history_csv
 from fastpin.model.history import LoadHistory, cycle_length, cycles_after, same_ahead
 from fastpin.model.history_csv import MOST_FAULTS
 from fastpin.model.loads import LOADS, complete_load
@@ -259,3 +262,33 @@ def test_keep() -> None:
     for wrong in ("", "some", "every", "every 0", "every -1", "every x", 3, None):
         with pytest.raises(InputError, match='"every N"'):
             KeepRule.read(wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("line", ["\n", "# " + "x" * 1000 + "\n", " " * 5000 + "\n", "#\r"])
+def test_a_csv_file_without_corners_is_not_read_to_its_end(line: str, tmp_path: Path) -> None:
+    path = tmp_path / "loads.csv"
+    lines = history_csv.MOST_AROUND // max(len(line), history_csv.SHORTEST_LINE) + 10
+    path.write_text("P\n1\n" + line * (2 * lines), newline="")
+    began = time.monotonic()
+    with pytest.raises(CaseFileError, match="the lines up to here are too long or too many for 1 corners") as caught:
+        LoadHistory.from_csv(path)
+    assert time.monotonic() - began < 10.0
+    assert caught.value.problems[0][0] < lines + 10
+
+
+def test_a_csv_file_has_a_limit_of_corners(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history_csv, "MAX_ROWS", 100)
+    path = tmp_path / "loads.csv"
+    path.write_text("P\n" + "1\n" * 100 + "\n# end\n")
+    assert len(LoadHistory.from_csv(path)) == 100
+    path.write_text("P\n" + "1\n" * 100 + "\n# end\n1\n")
+    with pytest.raises(CaseFileError, match="line 104: more than 100 corners can't be read"):
+        LoadHistory.from_csv(path)
+
+
+def test_a_csv_file_of_long_corners_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history_csv, "MOST_AROUND", 1000)
+    cells = ",".join(f"{-math.pi * 10.0 ** -(100 + k):.17g}" for k in range(len(LOADS)))
+    path = tmp_path / "loads.csv"
+    path.write_text(",".join(LOADS) + "\n" + f"{cells}\n# a comment\n" * 1000)
+    assert len(LoadHistory.from_csv(path)) == 1000
