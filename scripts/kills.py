@@ -2,7 +2,7 @@
 
 A process follows a load history into a file, and is killed (SIGKILL) at a random moment. Another process continues, and
 so on. After every kill the file must hold all states that the process had acknowledged before. At the end the file must
-hold the same bits as the file of an undisturbed run.
+hold the same bits of states and cycles as the file of an undisturbed run, except for `solved`.
 
 With ``--sweep RUNS`` the main process of a sweep is killed. After every kill all runs that were finished before must be
 there, with their results. At the end all results must have the bits of a serial solution.

@@ -47,8 +47,7 @@ def record(
 
     A state is safe in the file 0.1 s after it is solved, or when the run reaches the next state or corner, if that is
     later. A killed process does not lose a safe state. Memory does not grow with the history. :func:`resume` continues
-    a run that has ended early, to the same bits as an uninterrupted run. :func:`fastpin.load` reads the file, also
-    during the run.
+    a run that has ended early. :func:`fastpin.load` reads the file, also during the run.
 
     Parameters
     ----------
@@ -109,6 +108,9 @@ def record(
 
 def resume(path: str | Path, progress: Progress | None = None) -> None:
     """Continue the run of a file after a kill, an interrupt or an error.
+
+    States and cycles equal those of an uninterrupted run to the last bit. Only `solved`, `met`, the statistics, the
+    run's id and its date may differ.
 
     Parameters
     ----------
