@@ -248,3 +248,18 @@ def test_a_special_file_is_not_written(whole, tmp_path):
     result = fastpin.load(path)
     with pytest.raises(InputError, match=r"^/dev/full: must be an ordinary file"):
         fastpin.save(result, "/dev/full")
+
+
+def test_zeros_that_are_packed_as_small_as_possible_are_read(tmp_path):
+    """Deflate packs zeros best in large chunks. Rows that were never written are refused all the same."""
+    rows = 10_000
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        packed = file.create_dataset("a", (rows, 401), chunks=(rows, 401), maxshape=(None, 401), dtype=float,
+                                     shuffle=True, compression="gzip", compression_opts=9)  # fmt: skip
+        packed[()] = 0.0
+        file.flush()
+        assert 1000 < packed.nbytes / packed.id.get_storage_size() < hdf5.LARGEST_RATIO
+        assert hdf5.Group(file)["a"][()].shape == (rows, 401)
+        packed.resize(rows * 101 // 100, axis=0)
+        with pytest.raises(ValueError, match="only .* bytes in the file"):
+            hdf5.Group(file)["a"]
