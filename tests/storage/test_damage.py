@@ -261,5 +261,5 @@ def test_zeros_that_are_packed_as_small_as_possible_are_read(tmp_path):
         assert 1000 < packed.nbytes / packed.id.get_storage_size() < hdf5.LARGEST_RATIO
         assert hdf5.Group(file)["a"][()].shape == (rows, 401)
         packed.resize(rows * 101 // 100, axis=0)
-        with pytest.raises(ValueError, match="only .* bytes in the file"):
+        with pytest.raises(ValueError, match=r"only .* bytes in the file"):
             hdf5.Group(file)["a"]
