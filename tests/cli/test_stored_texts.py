@@ -38,6 +38,9 @@ HOSTILE = {
     "surrogate": "a\ud800b",
 }
 
+PLACES = ("solver@title", "problem/pin@name", "@error", "@host")
+"""Attributes of a result that hold texts."""
+
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
@@ -48,18 +51,17 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 @pytest.mark.parametrize("text", HOSTILE.values(), ids=list(HOSTILE))
-@pytest.mark.parametrize(
-    "place",
-    ["solver@title", "problem/pin@name", "@error", "@host"],
-)
 def test_texts_of_a_result_harm_neither_terminal_nor_pages(
-    place: str, text: str, whole: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    text: str, whole: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "a.h5"
     path.write_bytes(whole)
     with h5py.File(path, "r+") as file:
-        part, _, name = place.partition("@")
-        file[part or "/"].attrs[name] = text.encode("utf-8", "surrogatepass")  # h5py reads wrong bytes as surrogates
+        for place in PLACES:
+            part, _, name = place.partition("@")
+            file[part or "/"].attrs[name] = text.encode(
+                "utf-8", "surrogatepass"
+            )  # h5py reads wrong bytes as surrogates
     outputs = {"show": None, "report": tmp_path / "a.html", "plot": tmp_path / "a.svg"}
     for command, output in outputs.items():
         words = [
@@ -68,7 +70,7 @@ def test_texts_of_a_result_harm_neither_terminal_nor_pages(
             *(["tractions"] if command == "plot" else []),
             *(["-o", str(output)] if output else []),
         ]
-        assert main(words) in (0, 2)
+        assert main(words) == 0
         shown = "".join(capsys.readouterr())
         assert all(printable(line) == line for line in shown.split("\n"))
         assert "Traceback" not in shown
