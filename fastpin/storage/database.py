@@ -65,7 +65,10 @@ def open_database(path: Path, mode: Mode, timeout: float = BUSY_SECONDS) -> sqli
     """
     real = Path(os.path.realpath(path))
     note_input(real)
+    if mode != "ro" and path.is_symlink():  # The link of a stranger may lead to any file.
+        raise InputError(str(path), "must be an ordinary file to be written, not a link")
     _check_file(real, path)
+    _check_log(real)
     _check_journal(real, path)
     try:
         return _opened(real, path, mode, timeout)
@@ -127,6 +130,17 @@ def _check_file(real: Path, path: Path) -> None:
         raise InputError(str(path), f"can't be read: {error.strerror}") from None
     if head.startswith(SQLITE_SIGNATURE) and head[_VERSIONS] != _LEGACY:
         raise InputError(str(path), "is no index of a sweep: it has a write-ahead log, which fastpin never makes")
+
+
+def _check_log(real: Path) -> None:
+    """Raise :class:`InputError` if there is a write-ahead log beside a database.
+
+    SQLite uses the log whatever the header says. It writes to the log, also when it reads, and follows links.
+    """
+    for ending in ("-wal", "-shm"):
+        log = real.with_name(f"{real.name}{ending}")
+        if os.path.lexists(log):
+            raise InputError(str(log), "is a write-ahead log, which fastpin never makes; please remove it")
 
 
 def _check_journal(real: Path, path: Path) -> None:

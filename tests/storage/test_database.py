@@ -101,6 +101,37 @@ def test_a_journal_that_is_a_link_is_refused(first: bytes, plan: Plan, directory
     assert victim.read_bytes() == first + b"keep"
 
 
+@pytest.mark.parametrize("ending", ["-wal", "-shm"])
+@pytest.mark.parametrize("name", [INDEX, "lock"])
+def test_a_log_beside_a_database_without_one_is_refused(
+    name: str, ending: str, plan: Plan, directory: Path, tmp_path: Path
+) -> None:
+    """SQLite uses a log although the header of the database has none. As a link it leads out of the directory."""
+    victim = tmp_path / "precious.txt"
+    victim.write_text("keep")
+    (directory / f"{name}{ending}").symlink_to(victim)
+    before = contents(directory)
+    uses = [lambda: sweep.run(plan, directory, workers=1)] if name == "lock" else [lambda: sweep.load(directory)]
+    for use in [*uses, lambda: sweep.run(plan, directory, workers=1)]:
+        with pytest.raises(InputError, match=f"{ending}: is a write-ahead log, which fastpin never makes"):
+            use()
+    assert victim.read_text() == "keep"
+    assert contents(directory).keys() - before.keys() <= {"lock"}
+
+
+@pytest.mark.parametrize("name", [INDEX, "lock"])
+@pytest.mark.parametrize("there", [False, True])
+def test_a_writer_follows_no_link(name: str, there: bool, plan: Plan, directory: Path, tmp_path: Path) -> None:
+    outside = tmp_path / "outside.sqlite"
+    (directory / name).unlink(missing_ok=True)
+    (directory / name).symlink_to(outside)
+    if there:
+        outside.write_bytes(b"")
+    with pytest.raises(InputError, match=f"{name}: must be an ordinary file to be written, not a link"):
+        sweep.run(plan, directory, workers=1)
+    assert (outside.read_bytes() if there else outside.exists()) == (b"" if there else False)
+
+
 KILLED = """
 import os, signal, sqlite3, sys
 database = sqlite3.connect(sys.argv[1], isolation_level=None)
