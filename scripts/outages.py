@@ -25,7 +25,6 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -309,7 +308,7 @@ class Trial:
             return started(folder, *self.command.words), []
         cluster = [sys.executable, "-m", "scripts.outages", "--cluster"]
         process = subprocess.Popen(cluster, stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL)
-        stack.callback(_end_cluster, process, children)
+        stack.callback(_end_cluster, process)
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         words = [address if word == "ADDRESS" else word for word in self.command.words]
@@ -357,9 +356,8 @@ def _end(process: subprocess.Popen[str]) -> None:
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _end_cluster(process: subprocess.Popen[str], of: Callable[[int], list[int]]) -> None:
-    workers = of(process.pid)
-    for found in (process.pid, *workers):
+def _end_cluster(process: subprocess.Popen[str]) -> None:
+    for found in (*children(process.pid), process.pid):
         with suppress(ProcessLookupError):
             os.kill(found, signal.SIGKILL)
     process.wait()
