@@ -22,7 +22,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.storage import store
 from fastpin.storage.packed import INDEX
 from fastpin.studies import run_end, sweep, work, workers
-from fastpin.studies.identity import run_id
+from fastpin.studies.identity import id_of_json
 from fastpin.studies.index import lock_directory
 from fastpin.studies.plan import Plan, parse_plan
 from fastpin.studies.run_end import KEY_FIGURES, key_figures
@@ -184,7 +184,7 @@ def test_a_plan_that_has_grown_runs_what_is_new(plan: Plan, copy: Path) -> None:
 
 
 def test_another_version_runs_everything_again(plan: Plan, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_id, "__defaults__", ("99",))
+    monkeypatch.setattr(id_of_json, "__defaults__", ("99",))
     later = parse_plan(MOMENT)
     assert not set(later.runs) & set(plan.runs)
     assert sweep.status(later, copy) == Summary(0, 6, [])

@@ -334,5 +334,5 @@ def test_a_file_that_cannot_be_written_after_it(only, monkeypatch, capsys, tmp_p
     assert main(["verify", "--json", str(file)]) == 1
     captured = capsys.readouterr()
     assert "0 of 1 within tolerance" in captured.out
-    assert "can't write" in captured.err
+    assert "can't be written" in captured.err
     assert not file.exists()
