@@ -360,7 +360,7 @@ def _end_cluster(process: subprocess.Popen[str]) -> None:
     for found in (*children(process.pid), process.pid):
         with suppress(ProcessLookupError):
             os.kill(found, signal.SIGKILL)
-    process.wait()
+    process.communicate()  # also closes its pipe
 
 
 def cluster() -> None:
