@@ -294,7 +294,12 @@ def _functions(path: Path, text: str) -> dict[str, str]:
         for target in statement.targets:
             if isinstance(target, ast.Name) and isinstance(statement.value, ast.Lambda):
                 found[target.id] = ""
-            elif isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and target.attr == "unit":
+            elif (
+                isinstance(target, ast.Attribute)
+                and target.attr == "unit"
+                and isinstance(target.value, ast.Name)
+                and target.value.id in found  # another object may have a unit too
+            ):
                 found[target.value.id] = _written_unit(path, target.value.id, statement)
     return {name: unit for name, unit in found.items() if not name.startswith("_")}
 

@@ -382,6 +382,13 @@ def loss(result):
 loss.unit = "J"
 if True:
     other = lambda result: 2.0
+
+
+class Scale:
+    pass
+
+
+Scale.unit = "m"
 """
 
 
