@@ -143,12 +143,17 @@ def _check_log(real: Path) -> None:
             raise InputError(str(log), "is a write-ahead log, which fastpin never makes; please remove it")
 
 
+def _journal_of(real: Path) -> Path:
+    """The path at which SQLite keeps the journal of a database."""
+    return real.with_name(f"{real.name}-journal")
+
+
 def _check_journal(real: Path, path: Path) -> None:
     """Raise :class:`InputError` if the journal of a database is a link, or names a super-journal.
 
     SQLite deletes the file that such a name leads to. It writes the name in transactions over several databases only.
     """
-    journal = real.with_name(f"{real.name}-journal")
+    journal = _journal_of(real)
     try:
         file = os.open(journal, os.O_RDONLY | NO_LINK | getattr(os, "O_NONBLOCK", 0))
     except FileNotFoundError:
@@ -171,11 +176,11 @@ def _repaired_copy(real: Path, path: Path) -> sqlite3.Connection:
 
     The copy has no name any more when this function ends. Its bytes go when the database is closed.
     """
-    journal = real.with_name(f"{real.name}-journal")
+    journal = _journal_of(real)
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / real.name
         try:
-            shutil.copyfile(journal, copy.with_name(journal.name), follow_symlinks=False)
+            shutil.copyfile(journal, _journal_of(copy), follow_symlinks=False)
             shutil.copyfile(real, copy)
         except FileNotFoundError:  # Another process has undone the transaction meanwhile.
             return _opened(real, path, "ro", BUSY_SECONDS)

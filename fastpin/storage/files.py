@@ -28,11 +28,11 @@ except ImportError:  # This system has no such locks: no second process may writ
 BESIDE_RESULT = (".journal", ".checkpoint")
 """Endings of the files that a run keeps beside its result."""
 
-BESIDE_INDEX = ("lock", "index.sqlite-journal")
-"""Files that a sweep keeps beside its index."""
-
 INDEX = "index.sqlite"
 """Name of the index in the directory of a sweep."""
+
+BESIDE_INDEX = ("lock", f"{INDEX}-journal")
+"""Files that a sweep keeps beside its index."""
 
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 """Flag of :func:`os.open`: follow no link."""
