@@ -101,7 +101,7 @@ class _Finder(ast.NodeVisitor):
         assert place, (word, gap)
         self.add(start + place.start(), start + place.end(), text)
 
-    # -- what is left alone: annotations, decorators, documentation, texts of messages, names for type checkers
+    # -- unchanged parts: annotations, decorators, documentation, texts of messages, names for type checkers
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
         self.names.append(node.name)

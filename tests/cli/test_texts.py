@@ -12,19 +12,9 @@ import pytest
 
 from fastpin.cli.main import main
 from fastpin.errors import printable
+from tests.support.case_texts import PRESSED
 
-CASE = """
-[pin]
-material = "steel"
-[plate]
-material = "steel"
-[contact]
-hole_radius = 0.01
-clearance = 1e-5
-friction = 0.3
-[[load]]
-P = 1e6
-[[load]]
+CASE = f"""{PRESSED}[[load]]
 Q = [1e5, -1e5]
 repeat = 2
 [solve]

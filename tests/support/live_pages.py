@@ -16,22 +16,12 @@ from fastpin import casefile
 from fastpin.live.contact import LiveContact
 from fastpin.live.protocol import Message, read_message
 from fastpin.live.server import Server
+from tests.support.case_texts import PRESSED
 
 NODES = 61
 """Few nodes: the tests are of the page, not of the numbers."""
 
-FREE = """
-[pin]
-material = "steel"
-[plate]
-material = "steel"
-[contact]
-hole_radius = 0.01
-clearance = 1e-5
-friction = 0.3
-[[load]]
-P = 1e6
-"""
+FREE = PRESSED
 """The text of a case with a free pin."""
 
 

@@ -1,0 +1,17 @@
+"""Texts of small cases."""
+
+from __future__ import annotations
+
+PRESSED = """
+[pin]
+material = "steel"
+[plate]
+material = "steel"
+[contact]
+hole_radius = 0.01
+clearance = 1e-5
+friction = 0.3
+[[load]]
+P = 1e6
+"""
+"""A free steel pin in a steel plate, pressed down."""
