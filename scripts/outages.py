@@ -34,6 +34,7 @@ import numpy as np
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.errors import InputError
 from fastpin.storage import store
+from fastpin.storage.journal import is_empty
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
 from fastpin.studies import sweep
 from fastpin.studies.plan import read_plan
@@ -319,7 +320,7 @@ class Trial:
         output = folder / self.command.output
         again = self.command.again or self.command.words
         if output.suffix == ".h5":
-            if not output.exists() or not output.stat().st_size:
+            if not output.exists() or is_empty(output):
                 again = self.command.words
             elif not store.is_unfinished(output):
                 again = ()

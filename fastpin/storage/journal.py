@@ -240,6 +240,19 @@ def _not_readable(path: Path, start: bytes) -> InputError:
     return InputError(str(path), "is no HDF5 file, and no result")
 
 
+def is_empty(path: Path) -> bool:
+    """Whether a file has no bytes, or had none before the unfinished transaction of a killed process.
+
+    Raises
+    ------
+    InputError
+        If its journal is no ordinary file.
+    """
+    with contextlib.ExitStack() as stack:
+        restored = _restored(path, stack)
+        return not (path.stat().st_size if restored is None else restored.size())
+
+
 def is_being_written(path: Path) -> bool:
     """Return whether another process is writing to a file, as far as its lock tells."""
     return is_locked(file_path("path", path))

@@ -26,7 +26,7 @@ from fastpin.storage import hdf5
 from fastpin.storage.damage import reading
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
-from fastpin.storage.journal import JournaledFile, check_beside, not_readable
+from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
 from fastpin.storage.layout import (
     Rows,
     append,
@@ -149,7 +149,7 @@ class FileRecorder:
         """Raise :class:`InputError` if the file exists and must not be overwritten."""
         if self.path.exists() and not self.path.is_file():
             raise InputError(str(self.path), "must be an ordinary file")
-        if self.overwrite or not self.path.exists() or self.path.stat().st_size == 0:
+        if self.overwrite or not self.path.exists() or is_empty(self.path):
             return
         reason = "holds an unfinished run: resume it, or replace it" if is_unfinished(self.path) else "exists already"
         raise InputError(str(self.path), f"{reason}; the option overwrite replaces it")
@@ -174,6 +174,7 @@ class FileRecorder:
         self._name = uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
         self._h5 = h5py.File(self._file, "w")
+        self._h5.flush()  # The signature goes first: what a killed process leaves is known as a result.
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task, system = self.task, run.system

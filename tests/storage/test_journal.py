@@ -331,6 +331,8 @@ def test_a_file_without_a_transaction_is_empty_again(tmp_path: Path) -> None:
     journal_of(path).write_bytes(kept)
     with pytest.raises(InputError, match="is empty, and no result"):
         rows_in(path)
+    assert journal.is_empty(path)
+    assert path.read_bytes() == b"begun"
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ import pytest
 from fastpin.errors import InputError, OutputError
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.inputs import HDF5_SIGNATURE
 from fastpin.model.problem import Problem
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, NoEquilibriumError
 from fastpin.solver.solving import solve
@@ -203,6 +204,15 @@ def test_a_contact_that_leaves_the_arc_begins_again_on_a_wider_one(similar, path
         resume(tmp_path / "b.h5")
 
 
+def begin_and_die(path: Path) -> None:
+    """Leave a file as a process does that is killed in its first transaction."""
+    path.unlink()
+    file = journal.JournaledFile(path, new=True)
+    file.write_at(memoryview(HDF5_SIGNATURE), 0)
+    os.close(file._journal)
+    os.close(file._file)
+
+
 def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
     written, allowed = os.pwrite, [2_000_000]
 
@@ -341,6 +351,10 @@ def test_an_unfinished_run_is_not_overwritten_by_accident(left, path, problem):
     path.write_text("")
     follow(problem, RANDOM[:4], path, nodes=61)
     assert len(store.load(path)) == 4
+    begin_and_die(path)
+    assert path.read_bytes()
+    follow(problem, RANDOM[:3], path, nodes=61)
+    assert len(store.load(path)) == 3
     with pytest.raises(InputError, match="ordinary file"):
         follow(problem, RANDOM[:4], "/dev/null", nodes=61)
 
