@@ -34,6 +34,7 @@ import numpy as np
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.errors import InputError
 from fastpin.storage import store
+from fastpin.storage.files import BESIDE_RESULT
 from fastpin.storage.journal import is_empty
 from fastpin.storage.layout import NODE_FIELDS, NUMBER_FIELDS
 from fastpin.studies import sweep
@@ -228,7 +229,8 @@ class Trial:
         output = folder / self.command.output
         if not self.command.grows and (output.read_bytes() != old or _names(folder) != before):
             self.findings.append(f"{self.name}: full at {limit} bytes: files are left or changed")
-        if self.command.grows and (extra := _names(folder) - before - {self.command.output}):
+        beside = {self.command.output + ending for ending in BESIDE_RESULT}  # A run needs them to go on.
+        if self.command.grows and (extra := _names(folder) - before - {self.command.output} - beside):
             self.findings.append(f"{self.name}: full at {limit} bytes: {', '.join(sorted(extra))} left")
         self._finish(f"full at {limit} bytes", folder)
 
@@ -332,6 +334,8 @@ class Trial:
                 return
         if content(output) != self._expected:
             self.findings.append(f"{self.name}: after {kind}: other bits")
+        if output.is_file() and (left := _names(folder) - _names(self._before) - {output.name}):
+            self.findings.append(f"{self.name}: after {kind}: {', '.join(sorted(left))} left")
         shutil.rmtree(folder)
 
 
