@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -19,6 +21,18 @@ settings.register_profile(
 )
 settings.register_profile("long", parent=settings.get_profile("gate"), derandomize=False, max_examples=2_000)
 settings.load_profile(os.environ.get("FASTPIN_HYPOTHESIS", "gate"))
+
+gc.disable()  # until all tests are collected
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection() -> Iterator[None]:
+    """Leave the collected tests to the end of the process: collecting garbage among them took a third of this time."""
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture(scope="session")
