@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from tests.support.approx import quicken
 
 settings.register_profile(
     "gate",
@@ -22,6 +23,7 @@ settings.register_profile(
 settings.register_profile("long", parent=settings.get_profile("gate"), derandomize=False, max_examples=2_000)
 settings.load_profile(os.environ.get("FASTPIN_HYPOTHESIS", "gate"))
 
+quicken()
 gc.disable()  # until all tests are collected
 
 
