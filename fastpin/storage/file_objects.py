@@ -2,7 +2,8 @@
 
 The HDF5 library does not survive an error of a write: h5py prints a traceback for each open part of the file. Therefore
 a file object takes every write. After the first error it keeps the bytes in memory, so that the library reads what it
-has written. The error is raised when the library has closed the file.
+has written. The error is raised when the library has closed the file. A file that is not large is
+made in memory, and written at once.
 """
 
 from __future__ import annotations
@@ -179,8 +180,14 @@ class WrittenFile(FileObject):
 
 
 @contextmanager
-def written_h5(path: Path) -> Iterator[h5py.File]:
+def written_h5(path: Path, large: bool = False) -> Iterator[h5py.File]:
     """Write the HDF5 file `path` anew. The file must exist.
+
+    Parameters
+    ----------
+    path : Path
+    large : bool
+        Don't keep the whole file in memory. Each write of the library then calls Python, which takes 10 % more time.
 
     Raises
     ------
@@ -189,6 +196,13 @@ def written_h5(path: Path) -> Iterator[h5py.File]:
     """
     file = os.open(path, os.O_RDWR | os.O_TRUNC)
     try:
+        if not large:
+            with h5py.File(path, "w", driver="core", backing_store=False) as h5:
+                yield h5
+                h5.flush()
+                content = h5.id.get_file_image()
+            write_all(file, content, 0)
+            return
         written = WrittenFile(file)
         with h5py.File(written, "w") as h5:
             yield h5

@@ -61,6 +61,9 @@ from fastpin.storage.restarts import read_restart, write_restart
 ALL = slice(None)
 """All states of a file."""
 
+MOST_IN_MEMORY = 4_000_000
+"""Most values of a node field in a file that is made in memory. Such a file has some 100 MB, and is there twice."""
+
 
 def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
     """Write a result to an HDF5 file, whole or not at all. Error bars are not written.
@@ -95,7 +98,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
         raise InputError("result", "all states must be on the grid of the result")
     if path.exists() and not path.is_file():
         raise InputError(str(path), "must be an ordinary file")
-    with replacing(path, result=True) as temporary, written_h5(temporary) as file:
+    large = len(result) * result.grid.size > MOST_IN_MEMORY
+    with replacing(path, result=True) as temporary, written_h5(temporary, large) as file:
         _write(file, result, error)
         if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)

@@ -18,8 +18,9 @@ from fastpin.errors import OutputError
 from fastpin.storage import store
 
 result = store.load(sys.argv[1])
+store.MOST_IN_MEMORY = int(sys.argv[3])
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-for limit in map(int, sys.argv[3:]):
+for limit in map(int, sys.argv[4:]):
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
     try:
         store.save(result, sys.argv[2])
@@ -58,12 +59,13 @@ def output_of(program: str, *words: object) -> str:
     return ended.stdout
 
 
-def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
+@pytest.mark.parametrize("most_in_memory", [store.MOST_IN_MEMORY, 0])
+def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path, most_in_memory):
     size = source.stat().st_size
     path = tmp_path / "out.h5"
     path.write_bytes(source.read_bytes())
     limits = [0, 100, 3000, size // 3, size // 2, size - 1000]
-    said = output_of(SAVE, source, path, *limits).splitlines()
+    said = output_of(SAVE, source, path, most_in_memory, *limits).splitlines()
     assert said == [f"{path}: can't be written: File too large"] * len(limits)
     assert path.read_bytes() == source.read_bytes()
     assert sorted(found.name for found in tmp_path.iterdir()) == ["out.h5", "source.h5"]
