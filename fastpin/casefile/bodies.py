@@ -96,6 +96,8 @@ def read_bodies(
     dict
         The arguments ``pin_body`` and ``plate_body`` of a :class:`Problem`.
     """
+    if not source.root.table.keys() & BODY_KINDS:
+        return {"pin_body": Disk(), "plate_body": Plate()}
     pin = _pin_body(source.section("pin_body"))
     plate = _plate_body(source, folder, materials)
     if radius is None or (pair is None and isinstance(plate, Compliance)):

@@ -146,10 +146,10 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
     Case or None
         None if the problem or the history is unusable.
     """
-    _check_keys(source)
+    shared, tables = shared or Shared(), source.root.table
+    shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
     title = source.root.checked("title", string) or ""
-    materials, shared = known_materials(source, folder), shared or Shared()
-    tables = source.root.table
+    materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
     problem = _problem(source, folder, pair, materials)
     loads = repr([tables.get(name) for name in ("load", "history")])
@@ -166,6 +166,19 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
     if history is not None:
         _check_together(source, lambda: check_keep(history, options))
     return Case(problem, history, options, title) if problem is not None and history is not None else None
+
+
+def _keys_of(tables: Mapping[str, Any]) -> object:
+    """All keys of the sections of a case."""
+    found: list[object] = [*tables]
+    for value in tables.values():
+        if isinstance(value, dict):
+            found.append([*value])
+        elif isinstance(value, list):
+            found.append([[*block] for block in value if isinstance(block, dict)])
+        else:
+            found.append(None)
+    return found
 
 
 def _given_of_pair(tables: Mapping[str, Any], materials: Mapping[str, Material]) -> object:

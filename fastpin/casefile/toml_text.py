@@ -7,7 +7,6 @@ lines of all keys itself, and parses again without a faulty line.
 from __future__ import annotations
 
 import contextlib
-import copy
 import re
 import tomllib
 from collections.abc import Callable, Mapping
@@ -194,7 +193,8 @@ class CaseText:
 
     def with_tables(self, tables: dict[str, Any]) -> CaseText:
         """A copy of this text with other tables and no faults. Their faults get the lines of this text."""
-        other = copy.copy(self)
+        other = CaseText.__new__(CaseText)
+        other.__dict__.update(self.__dict__)
         other.faults, other.placed = [], []
         other.root = Section(other, (), tables)
         return other

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import operator
 import warnings
 from collections.abc import Iterable, Iterator
 
@@ -96,14 +97,14 @@ def doubts(
     problem: Problem, history: LoadHistory | None = None, options: SolveOptions | None = None
 ) -> list[InputWarning]:
     """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
-    found = [*_of_contact(problem)]
+    found, has_units = [*_of_contact(problem)], _has_units(problem)
     for name, material in _materials(problem):
-        found += _of_material(name, material, _has_units(problem))
+        found += _of_material(name, material, has_units)
     if options is not None and options.arc is not None:
         angle = max(options.arc, key=abs)
         if abs(angle) > MOST_ANGLE:
             found.append(InputWarning("arc", f"{angle:g} rad is more than two turns; angles are in rad"))
-    if _has_units(problem):
+    if has_units:
         found += _of_sizes(problem)
         by_loads = [] if history is None else [*_of_loads(problem, history)]
         found += by_loads
@@ -264,7 +265,8 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
 
 def _of_moduli(problem: Problem) -> Iterator[InputWarning]:
     """Doubts about moduli that do not fit together."""
-    soft, stiff = _softest(problem), _stiffest(problem)
+    moduli = _moduli(problem)
+    soft, stiff = min(moduli, key=_modulus), max(moduli, key=_modulus)
     if stiff[1] > STIFFEST and SOFTEST <= soft[1] <= STIFFEST:
         yield InputWarning(
             "E",
@@ -284,12 +286,15 @@ def _moduli(problem: Problem) -> list[tuple[str, float]]:
     return [(name, material.E) for name, material in _materials(problem) if not material.is_rigid]
 
 
+_modulus = operator.itemgetter(1)
+
+
 def _softest(problem: Problem) -> tuple[str, float]:
-    return min(_moduli(problem), key=lambda pair: pair[1])
+    return min(_moduli(problem), key=_modulus)
 
 
 def _stiffest(problem: Problem) -> tuple[str, float]:
-    return max(_moduli(problem), key=lambda pair: pair[1])
+    return max(_moduli(problem), key=_modulus)
 
 
 def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:

@@ -341,7 +341,7 @@ class MaterialPair:
         """Composite constant alpha* of Eq. (32), 1/Pa."""
         return (self.plate_kolosov - 1.0) * self.plate_compliance - (self.pin_kolosov - 1.0) * self.pin_compliance
 
-    @property
+    @cached_property
     def beta_star(self) -> float:
         """Composite compliance beta* of Eq. (32), 1/Pa."""
         plate = (self.plate_kolosov + 1.0) * self.plate_compliance

@@ -32,6 +32,8 @@ _LATER_FIELDS = ("hub_stiffness", "drive", "gauge_radius")
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
 
+_ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), allow_nan=False)
+
 _KNOWN_LOADS: WeakKeyDictionary[LoadHistory, dict[str, Any]] = WeakKeyDictionary()
 
 
@@ -74,7 +76,7 @@ def id_of_json(text: str, version: str = __version__) -> str:
 
 def canonical_json(document: dict[str, Any]) -> str:
     """Return a dict as JSON with sorted keys. A number has the fewest digits that give it back exactly."""
-    return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return _ENCODER.encode(document)
 
 
 def _number(value: float) -> float:

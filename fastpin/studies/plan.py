@@ -437,15 +437,15 @@ def _points(
         if progress is not None:
             progress(count, total)
         values = {name: value for name, (_, value) in row.items()} | dict(zip(axes, combination, strict=True))
-        sites = places | {name: place for name, (place, _) in row.items()}
         count += 1
         pair = conflict(values)
         if pair:
+            sites = _sites(places, row)
             faults.setdefault((sites[pair[1]], f"{pair[1]}: can't be given together with {pair[0]}"), []).append(values)
             continue
         text, case = base.vary(values)
         for place, message in text.placed:
-            faults.setdefault(_locate_fault(base, sites, values, place, message), []).append(values)
+            faults.setdefault(_locate_fault(base, _sites(places, row), values, place, message), []).append(values)
         if case is not None and not text.placed:
             for doubt in doubts(case.problem, case.history, case.options):
                 doubted.setdefault(doubt.field, (doubt, []))[1].append(values)
@@ -459,6 +459,11 @@ def _points(
         source.report(f"and {len(faults) - MAX_FAULTS:,} more faults in the runs")
     doubtful += [InputWarning(name, f"{doubt.reason}{_which(runs, count)}") for name, (doubt, runs) in doubted.items()]
     return points
+
+
+def _sites(places: dict[str, Place], row: Row) -> dict[str, Place]:
+    """The places of the fields of a run. `places` are those of the first one of every field."""
+    return places | {name: place for name, (place, _) in row.items()}
 
 
 def _locate_fault(

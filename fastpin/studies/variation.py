@@ -93,7 +93,11 @@ def with_values(
 
     `materials` are those with a name.
     """
-    new = {name: _copied(table) for name, table in tables.items()}
+    # Only loads change blocks.
+    blocks_change = any(name.startswith("load.") for name in values)
+    new = {
+        name: _copied(table) if blocks_change or isinstance(table, dict) else table for name, table in tables.items()
+    }
     for name, value in values.items():
         _make_room(new, name, value, materials)
     for name, value in values.items():
