@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
-from fastpin.model.inputs import HDF5_SIGNATURE, note_input
+from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.synonyms import meant
 
 MOST_BYTES = 4_000_000
@@ -60,8 +60,7 @@ def read_text(path: Path, most: int = MOST_BYTES) -> str:
         If the file can't be read, is larger, or is not UTF-8 text.
     """
     try:
-        with path.open("rb") as file:
-            note_input(path)
+        with open_input(path) as file:
             raw = file.read(most + 1)
     except (OSError, ValueError) as error:
         raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None

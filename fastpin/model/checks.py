@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from fastpin.errors import FastpinError, InputError, printable
+from fastpin.model.inputs import SpecialFileError
 from fastpin.model.synonyms import closest
 
 if TYPE_CHECKING:
@@ -150,6 +151,8 @@ def why_unreadable(error: Exception) -> str:
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
         return "is a directory, a file is needed"
+    if isinstance(error, SpecialFileError):
+        return "must be an ordinary file, not a pipe or a device"
     if isinstance(error, UnicodeDecodeError):
         return "is not UTF-8 text"
     return f"can't be read: {getattr(error, 'strerror', None) or error}"

@@ -26,7 +26,7 @@ import numpy as np
 
 from fastpin.errors import InputError, printable
 from fastpin.model.checks import as_toml, choice, file_path, number, numbers, positive, string, why_unreadable
-from fastpin.model.inputs import note_input
+from fastpin.model.inputs import open_input
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import PLANES, Plane
 
@@ -165,8 +165,7 @@ class Compliance:
         """
         place = file_path("file", path)
         try:
-            with place.open("rb") as file:
-                note_input(place)
+            with open_input(place) as file:
                 raw = file.read(MOST_BYTES + 1)
         except OSError as error:
             raise InputError("file", f"{place}: {why_unreadable(error)}") from None

@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from io import TextIOWrapper
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +34,7 @@ from fastpin.model.checks import (
 )
 from fastpin.model.compliance import Compliance
 from fastpin.model.history_csv import read_corners
-from fastpin.model.inputs import note_input
+from fastpin.model.inputs import open_input
 from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
@@ -313,8 +314,7 @@ class LoadHistory:
         """
         path = file_path("path", path)
         try:
-            with path.open(encoding="utf-8-sig", newline="") as file:
-                note_input(path)
+            with TextIOWrapper(open_input(path), encoding="utf-8-sig", newline="") as file:
                 return cls.of_blocks([_plain(read_corners(file, str(path)))])
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None

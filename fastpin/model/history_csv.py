@@ -16,7 +16,7 @@ from fastpin.model.checks import as_toml, number
 from fastpin.model.loads import LOADS, load_index
 
 LONGEST_LINE = 1_000_000
-"""Most characters of a line. A device such as /dev/zero has no end of a line."""
+"""Most characters of a line. A pipe of the shell may have no end of a line."""
 
 MAX_ROWS = 10_000_000
 """Most corners of a CSV file or of a repeated block. They are held in memory: 0.7 GB."""

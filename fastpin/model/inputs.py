@@ -1,4 +1,4 @@
-"""The files that a command has read: none of its outputs may replace one of them.
+"""The files that a command reads: ordinary files only, and none of its outputs may replace one of them.
 
 Every function that opens a file of the user notes it here. The command line remembers the notes while a command runs.
 Python programs may read a file and write it again: without :func:`remembered_inputs` nothing is remembered.
@@ -7,11 +7,13 @@ Python programs may read a file and write it again: without :func:`remembered_in
 from __future__ import annotations
 
 import contextlib
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from os import stat_result
 from pathlib import Path
+from typing import BinaryIO
 
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """The first bytes of an HDF5 file."""
@@ -19,7 +21,14 @@ HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 SQLITE_SIGNATURE = b"SQLite format 3\0"
 """The first bytes of an SQLite file."""
 
+HANDED_OVER = Path("/dev/stdin"), Path("/dev/fd")
+"""Standard input, and the folder of the files that the shell hands over open: `fastpin run <(sed ...)`."""
+
 _READ: ContextVar[set[tuple[int, int]] | None] = ContextVar("_READ", default=None)
+
+
+class SpecialFileError(OSError):
+    """A file that is neither an ordinary file nor a directory."""
 
 
 @contextmanager
@@ -30,6 +39,26 @@ def remembered_inputs() -> Iterator[None]:
         yield
     finally:
         _READ.reset(token)
+
+
+def open_input(path: Path) -> BinaryIO:
+    """Open a file of the user to read its bytes, and note it as read.
+
+    Its name may stand in a file of a stranger. Nothing may ever be written to a pipe, and a device may have no end.
+
+    Raises
+    ------
+    SpecialFileError
+        If the file is a pipe, a device or a socket, and not handed over to this process.
+    OSError
+        If the file can't be opened.
+    """
+    mode = path.stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or HANDED_OVER[0] == path or HANDED_OVER[1] == path.parent):
+        raise SpecialFileError
+    file = path.open("rb")
+    note_input(path)
+    return file
 
 
 def note_input(path: Path) -> None:

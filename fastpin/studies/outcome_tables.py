@@ -235,9 +235,6 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
     if not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
         section.report(f"{name}: {file}: is a link that leads out of the folder of the plan", "function")
         return None
-    if path.exists() and not path.is_file():  # Nothing may ever be written to a pipe.
-        section.report(f"{name}: {file}: must be an ordinary file", "function")
-        return None
     try:
         text = read_text(path)
         functions = _functions(path, text)

@@ -319,6 +319,8 @@ def _now(index: Index, points: Iterable[str], results: Path) -> dict[str, tuple[
 
 def _is_hdf5(path: Path) -> bool:
     """Whether a file begins with the signature of HDF5."""
+    if not path.is_file():  # Nothing may ever be written to a pipe.
+        return False
     try:
         with path.open("rb") as file:
             return file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
@@ -348,14 +350,19 @@ def _is_of(plan: Plan, name: str, value: OutcomeValue) -> bool:
 def _check_plan_copy(directory: Path, text: str = "") -> None:
     """Raise :class:`InputError` if the copy of the plan would overwrite another file of the user."""
     path = directory / PLAN
-    if path.exists() and not (directory / INDEX).exists() and path.read_bytes() != text.encode():
+    if path.exists() and not (directory / INDEX).exists() and not _holds(path, text):
         raise InputError(str(directory), f"holds another {PLAN}, but no sweep; choose another directory")
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a path is an ordinary file with this text."""
+    return path.is_file() and path.read_bytes() == text.encode()
 
 
 def _keep_plan(directory: Path, text: str) -> None:
     """Write the copy of the plan, unless it is there: the copy itself may have been read as the plan."""
     path = directory / PLAN
-    if path.is_file() and path.read_bytes() == text.encode():
+    if _holds(path, text):
         return
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

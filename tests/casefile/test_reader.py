@@ -396,10 +396,10 @@ def test_a_pair_with_names_keeps_them() -> None:
     assert math.isclose(pair.pin.E, 210e9)
 
 
-@pytest.mark.parametrize("path", ["/dev/zero", "endless"])
-def test_a_file_without_an_end_is_refused(path, tmp_path):
-    (tmp_path / "endless").write_text("#" * (MOST_BYTES + 1))
+def test_a_file_of_one_endless_line_is_refused(tmp_path):
+    path = tmp_path / "endless"
+    path.write_text("#" * (MOST_BYTES + 1))
     with pytest.raises(CaseFileError, match=f"is larger than {MOST_BYTES:,} bytes"):
-        read_case(tmp_path / path)
-    with pytest.raises(CaseFileError, match=r"is longer than 1,000,000 characters|holds no load corners"):
-        LoadHistory.from_csv(tmp_path / path)
+        read_case(path)
+    with pytest.raises(CaseFileError, match=r"is longer than 1,000,000 characters"):
+        LoadHistory.from_csv(path)

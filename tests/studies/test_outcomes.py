@@ -441,7 +441,7 @@ def test_a_file_that_can_not_be_run_is_found_before_the_work(text: str, words: s
     ("file", "fault"),
     [
         ("pipe.py", "w: pipe.py: must be an ordinary file"),
-        ("folder.py", "w: folder.py: must be an ordinary file"),
+        ("folder.py", "w: folder.py: is a directory, a file is needed"),
         ("loop.py", "w: loop.py: "),
         (r"\u0000.py", "w: function: must be FILE.py:NAME"),
         (r"\u001b[31m.py", "w: function: must be FILE.py:NAME"),
