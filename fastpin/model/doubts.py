@@ -189,6 +189,12 @@ def _short(value: float) -> str:
     return f"{value / 10.0**power:.6g}" + (f"e{power}" if power else "")
 
 
+def _meant(value: float, unit: str, factor: float) -> str:
+    """The question whether a number was meant in another unit. It is rounded as one would write it."""
+    rounded = float(f"{value:.3g}")
+    return f"did you mean {_short(rounded)} {unit}, which is {_short(factor * rounded)}?"
+
+
 def _mega(stress: float) -> str:
     return f"{stress / 1e6:.4g} MPa"
 
@@ -196,10 +202,11 @@ def _mega(stress: float) -> str:
 def _of_contact(problem: Problem) -> Iterator[InputWarning]:
     friction = problem.friction
     if MOST_FRICTION < friction <= PERCENT:
+        percent = float(f"{friction:.2g}")
         yield InputWarning(
             "friction",
             f"{friction:g} is above {MOST_FRICTION:g}, more than dry metals have; "
-            f"{friction:g} % is {_short(friction / 100)}",
+            f"did you mean {percent:g} %, which is {percent / 100:g}?",
         )
     if not problem.dimensionless and problem.clearance > LOOSEST * problem.hole_radius:
         yield InputWarning(
@@ -223,8 +230,7 @@ def _of_material(name: str, material: Material, has_units: bool) -> Iterator[Inp
         if value < LEAST_STRENGTH * material.E:
             yield InputWarning(
                 field,
-                f"{_short(value)} Pa of the {name} is very small; stresses are in Pa: "
-                f"{_short(value)} MPa is {_short(1e6 * value)}",
+                f"{_short(value)} Pa of the {name} is very small; stresses are in Pa; {_meant(value, 'MPa', 1e6)}",
             )
 
 
@@ -241,8 +247,7 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
     if radius > LARGEST_HOLE and all(modulus >= STIFF for _, modulus in moduli):
         yield InputWarning(
             "hole_radius",
-            f"{_short(radius)} m is larger than any pin; lengths are in m: "
-            f"{_short(radius)} mm is {_short(radius / 1e3)}",
+            f"{_short(radius)} m is larger than any pin; lengths are in m; {_meant(radius, 'mm', 1e-3)}",
         )
     if problem.thickness is not None and problem.thickness > THICKEST * radius:
         yield InputWarning(
@@ -258,8 +263,8 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
     if isinstance(body, Bushing) and body.interference > TIGHTEST * body.outer_radius:
         yield InputWarning(
             "interference",
-            f"the one of the bush is {100.0 * body.interference / body.outer_radius:.3g} % of its outer radius; "
-            "metals yield at 0.5 %",
+            f"{_short(body.interference)} m is {100.0 * body.interference / body.outer_radius:.3g} % of the outer radius "
+            "of the bush; metals yield at 0.5 %",
         )
 
 
@@ -331,8 +336,8 @@ def _too_large(problem: Problem, name: str, load: float, strain: float) -> Input
         unit, factor = ("GPa", 1e9) if modulus < IN_GPA else ("MPa", 1e6)
         return InputWarning(
             "E",
-            f"{_short(modulus)} Pa of the {body} is softer than rubber; "
-            f"moduli are in Pa: {_short(modulus)} {unit} is {_short(modulus * factor)}",
+            f"{_short(modulus)} Pa of the {body} is softer than rubber; moduli are in Pa; "
+            f"{_meant(modulus, unit, factor)}",
         )
     kind = LOAD_KIND[name]
     factor, unit = printed_unit(problem, kind)
@@ -372,8 +377,7 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
         if 0.0 < stress < LEAST_STRESS and stress != 1.0:
             yield InputWarning(
                 name,
-                f"{_short(largest[name])} Pa is very small; stresses are in Pa: "
-                f"{_short(largest[name])} MPa is {_short(1e6 * largest[name])}",
+                f"{_short(largest[name])} Pa is very small; stresses are in Pa; {_meant(largest[name], 'MPa', 1e6)}",
             )
 
 

@@ -522,8 +522,8 @@ def test_values_that_are_not_in_si_units_are_doubted(tmp_path: Path, capsys: pyt
     path = tmp_path / "gigapascals.toml"
     path.write_text(EXAMPLE.replace('material = "Ti-6Al-4V"', "E = 116.0\nnu = 0.32"))
     assert main(["run", str(path), "--nodes", "41"]) == 0
-    sentence = "fastpin: warning: E: 116 Pa of the pin is softer than rubber; moduli are in Pa: 116 GPa is 116e9\n"
-    assert capsys.readouterr().err == sentence
+    sentence = "E: 116 Pa of the pin is softer than rubber; moduli are in Pa; did you mean 116 GPa, which is 116e9?"
+    assert capsys.readouterr().err == f"fastpin: warning: {sentence}\n"
     assert main(["run", "--nodes", "41"]) == 0
     assert capsys.readouterr().err == ""
 

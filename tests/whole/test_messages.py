@@ -245,10 +245,11 @@ def test_every_name_with_synonyms_is_a_name_of_fastpin() -> None:
 
 ONLY_P = "P = 2.42e6\n\n[[load]]\nQ = [7.26e5, -7.26e5, 7.26e5]"
 SMALL_E = "softer than rubber; moduli are in Pa"
+ALUMINIUM = "did you mean 69000 MPa, which is 69e9?"
 
 DOUBTFUL: list[tuple[str, str, str]] = [
-    ("E  = 69e9", "E = 69", f"E: 69 Pa of the plate is {SMALL_E}: 69 GPa is 69e9"),
-    ("E  = 69e9", "E = 69e3", f"E: 69000 Pa of the plate is {SMALL_E}: 69000 MPa is 69e9"),
+    ("E  = 69e9", "E = 69", f"E: 69 Pa of the plate is {SMALL_E}; did you mean 69 GPa, which is 69e9?"),
+    ("E  = 69e9", "E = 69e3", f"E: 69000 Pa of the plate is {SMALL_E}; {ALUMINIUM}"),
     (
         "E  = 69e9",
         "E = 69e15",
@@ -260,17 +261,18 @@ DOUBTFUL: list[tuple[str, str, str]] = [
     (
         "nu = 0.33",
         "nu = 0.33\nyield_strength = 345",
-        "yield_strength: 345 Pa of the plate is very small; stresses are in Pa: 345 MPa is 345e6",
+        "yield_strength: 345 Pa of the plate is very small; stresses are in Pa; did you mean 345 MPa, which is 345e6?",
     ),
     (
         "nu = 0.33",
         "nu = 0.33\nfatigue = { fatigue_strength = 1100, strength_exponent = -0.124 }",
-        "fatigue_strength: 1100 Pa of the plate is very small; stresses are in Pa: 1100 MPa is 1.1e9",
+        "fatigue_strength: 1100 Pa of the plate is very small; stresses are in Pa; did you mean 1100 MPa, which is "
+        "1.1e9?",
     ),
     (
         "hole_radius = 10e-3",
         "hole_radius = 10",
-        "hole_radius: 10 m is larger than any pin; lengths are in m: 10 mm is 10e-3",
+        "hole_radius: 10 m is larger than any pin; lengths are in m; did you mean 10 mm, which is 10e-3?",
     ),
     (
         "clearance = 20e-6",
@@ -283,7 +285,16 @@ DOUBTFUL: list[tuple[str, str, str]] = [
         "clearance = -2e-3",
         "clearance: the interference is 20 % of the hole radius; metals yield at 0.5 %",
     ),
-    ("friction = 0.4", "friction = 40", "friction: 40 is above 2, more than dry metals have; 40 % is 0.4"),
+    (
+        "friction = 0.4",
+        "friction = 40",
+        "friction: 40 is above 2, more than dry metals have; did you mean 40 %, which is 0.4?",
+    ),
+    (
+        "friction = 0.4",
+        "friction = 2.72647",
+        "friction: 2.72647 is above 2, more than dry metals have; did you mean 2.7 %, which is 0.027?",
+    ),
     (
         ONLY_P,
         "P = 12.1e3",
@@ -295,7 +306,11 @@ DOUBTFUL: list[tuple[str, str, str]] = [
         "P = 2.42e9",
         "P: 2.42e9 N/m strains the bodies by 10, far beyond linear elasticity; forces are per thickness, in N/m",
     ),
-    ("P = 2.42e6", "P = 2.42e6\nsxx = 80", "sxx: 80 Pa is very small; stresses are in Pa: 80 MPa is 80e6"),
+    (
+        "P = 2.42e6",
+        "P = 2.42e6\nsxx = 80.1234",
+        "sxx: 80.1234 Pa is very small; stresses are in Pa; did you mean 80.1 MPa, which is 80.1e6?",
+    ),
     (
         "P = 2.42e6",
         "P = 2.42e6\nsyy = -80e9",
@@ -358,7 +373,7 @@ BUSH = fastpin.model.Bushing(fastpin.Material(110e9, 0.34), 12e-3, 1e-3)
         ),
         (
             PAIR, 0.01, 1.1e-3, BUSH,
-            "interference: the one of the bush is 8.33 % of its outer radius; metals yield at 0.5 %",
+            "interference: 1e-3 m is 8.33 % of the outer radius of the bush; metals yield at 0.5 %",
         ),
     ],
 )  # fmt: skip
@@ -373,7 +388,7 @@ def test_a_doubtful_body_gets_one_sentence(
 
 
 HARD = EXAMPLE.replace("friction = 0.4", "friction = 40").replace("nodes = 401", "nodes = 51")
-FRICTION = "friction: 40 is above 2, more than dry metals have; 40 % is 0.4"
+FRICTION = "friction: 40 is above 2, more than dry metals have; did you mean 40 %, which is 0.4?"
 
 
 @pytest.mark.parametrize(
@@ -412,7 +427,7 @@ def test_a_plan_names_the_runs_in_doubt(tmp_path: Path) -> None:
         plan = read_plan(path)
     (warning,) = given
     assert str(warning.message) == (
-        "friction: 30 is above 2, more than dry metals have; 30 % is 0.3 "
+        "friction: 30 is above 2, more than dry metals have; did you mean 30 %, which is 0.3? "
         "(in 4 runs, first contact.friction = 30, contact.clearance = 0)"
     )
     assert warning.filename == __file__
