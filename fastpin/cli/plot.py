@@ -21,7 +21,7 @@ from fastpin.states.cycles import Cycle
 Made = tuple[Callable[[Path], object], Callable[[Path], object]]
 """Two functions that write a file: the figure, and its numbers."""
 
-NO_CYCLE = "the history has no cycle that has ended; a load block with repeat = 2 has two"
+NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a figure of a cycle."""
 
 

@@ -201,7 +201,7 @@ class Source:
         if found is None:
             first = self._closing_corner()
             if not first:
-                return "the history has no cycle that has ended"
+                return "no cycle of the history has ended"
         begin, end = (first, self.reached) if found is None else (found.corner + 1 - found.length, found.corner + 1)
         places = np.flatnonzero((self.points >= begin) & (self.points <= end))
         part = replace(self.result, states=self.read(places.tolist()))

@@ -346,11 +346,10 @@ def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
     text = f"{where}, {last.number:,} cycle{'s' if last.number > 1 else ''} of {corners}: {state}"
     if len(cycles) == 1:
         return f"{text}; dissipated {dissipation[0]}, turned {turned[0]}"
-    change = max(last.pressure_change, last.shear_change)
+    changes = [f"{max(cycle.pressure_change, cycle.shear_change):.2g}" for cycle in (first, last)]
     return (
-        f"{text}; tractions changed by {max(first.pressure_change, first.shear_change):.2g} (first) and {change:.2g} "
-        f"(last) of the peak pressure, dissipated {dissipation[0]} and {dissipation[1]}, "
-        f"turned {turned[0]} and {turned[1]}"
+        f"{text}; first cycle: tractions changed by {changes[0]} of the peak pressure, dissipated {dissipation[0]}, "
+        f"turned {turned[0]}; last: changed by {changes[1]}, dissipated {dissipation[1]}, turned {turned[1]}"
     )
 
 

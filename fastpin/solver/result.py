@@ -138,7 +138,7 @@ class Result(Sequence[State]):
             begin = whole_number("first", first, 1, max(len(self.history) - 1, 1))
             return LoadCycle(self._between(begin, whole_number("last", last, begin + 1, len(self.history))))
         if not self.cycles:
-            raise InputError("cycle", "the history has no cycle that has ended; give the corners first and last")
+            raise InputError("cycle", "no cycle of the history has ended; give the corners first and last")
         cycle = self.cycles[whole_number("place", place, -len(self.cycles), len(self.cycles) - 1)]
         begin, end = span_of(cycle)
         if begin < 1:

@@ -369,7 +369,7 @@ class Run:
     def _slip_since_kept(self) -> np.ndarray:
         """Slip tally (4, n) of each node since the latest kept state, dimensionless.
 
-        The extremes count since the latest kept corner: they can't be subtracted.
+        The extremes cover the time since the latest kept corner: they can't be subtracted.
         """
         since = slip_tally_with(self.now)
         since[:2] -= self._counted[:2]

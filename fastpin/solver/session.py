@@ -217,8 +217,8 @@ class Session(InTurns):
     def change(self, *, replay: Replay = "history", new_arc: bool = False, **changes: Any) -> State | None:
         """Change fields of the problem, follow the loads again, and return the state.
 
-        A contact has a memory, and no path leads from one friction or clearance to another under load. So a changed
-        problem begins with no load. Friction and clearance need no new matrices.
+        A contact has a memory, so a change of friction or clearance restarts the history. The changed problem begins
+        with no load. Friction and clearance need no new matrices.
 
         Parameters
         ----------

@@ -35,7 +35,7 @@ WORDS = ("last", "cycle", "all")
 
 _NUMBERS = (int, float, np.number)
 
-NO_CYCLE = "the history has no cycle that has ended; a load block with repeat = 2 has two"
+NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
 """Refusal of a cycle where there is none."""
 
 

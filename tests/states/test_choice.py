@@ -59,7 +59,7 @@ def test_faults(chosen, message):
 def test_there_must_be_states_and_cycles():
     with pytest.raises(InputError, match="there is no state to plot"):
         chosen_places(np.zeros(0), (), None)
-    with pytest.raises(InputError, match="the history has no cycle that has ended"):
+    with pytest.raises(InputError, match="no cycle of the history has ended"):
         chosen_places(POINTS, (), "cycle")
     with pytest.raises(InputError, match="the states of the last cycle were not kept"):
         chosen_places(POINTS[:2], CYCLES, "cycle")

@@ -111,7 +111,7 @@ def test_wrong_arguments_are_named(result: Result, arguments: dict[str, Any], wo
 
 def test_histories_without_an_ended_cycle() -> None:
     plain = solve(HELD, [{"P": 1.0}, {"Q": 0.1}], nodes=41)
-    with pytest.raises(InputError, match="no cycle that has ended"):
+    with pytest.raises(InputError, match="no cycle of the history has ended"):
         plain.cycle()
     first = solve(HELD, LoadHistory([{"P": 1.0}, {"P": 0.5}]).repeated(2), nodes=41)
     with pytest.raises(InputError, match="the cycle to corner 2 begins without load"):
