@@ -389,7 +389,7 @@ class State(ReadOnly):
 
     @property
     def displacement(self) -> dict[str, float]:
-        """The displacement of the hub over the gauge circle, "ux" and "uy" in m, (T29).
+        """The displacement of the hub relative to the gauge circle, "ux" and "uy" in m, (T29).
 
         It counts as dx and dy do. Where it is prescribed, it is the load of the same name.
         """
