@@ -1,8 +1,8 @@
 """Prescribed displacements of the pin in place of forces, in dimensionless form.
 
-Along a driven axis the displacement of the hub relative to the gauge circle is prescribed, (T29): D = c + g F - k J. c is the
-displacement of the pin's rim relative to the hole, F the reaction, J an integral of the tractions. The reaction takes the
-place of c among the unknown motion of the pin. With the column m of the motion and the w terms of the force, gap and
+Along a driven axis the displacement of the hub relative to the gauge circle is prescribed, (T29): D = c + g F -
+k J. c is the displacement of the pin's rim relative to the hole, F the reaction, J an integral of the tractions. The
+reaction takes the place of c among the unknown motion of the pin. With the column m of the motion and the w terms of the force, gap and
 slip are
 
     c m + F w = D m + F (w - g m) + k J m.
@@ -63,7 +63,7 @@ class Drive:
         return np.where(self.axes, motion[:2], load[list(FORCES)] * SIGNS)
 
     def position(self, tractions: np.ndarray, motion: np.ndarray, load: np.ndarray, rest: np.ndarray) -> np.ndarray:
-        """displacement c of the pin's rim relative to the hole, from the concentric position, shape (2,).
+        """Displacement c of the pin's rim relative to the hole, from the concentric position, shape (2,).
 
         `rest` (2,) is the position from which the motion along the other axis counts. `tractions` has the shape (2n,).
         """

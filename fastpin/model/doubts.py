@@ -263,8 +263,8 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
     if isinstance(body, Bushing) and body.interference > TIGHTEST * body.outer_radius:
         yield InputWarning(
             "interference",
-            f"{_short(body.interference)} m is {100.0 * body.interference / body.outer_radius:.3g} % of the outer radius "
-            "of the bush; metals yield at 0.5 %",
+            f"{_short(body.interference)} m is {100.0 * body.interference / body.outer_radius:.3g} % of the outer "
+            "radius of the bush; metals yield at 0.5 %",
         )
 
 

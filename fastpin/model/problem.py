@@ -344,8 +344,8 @@ class Problem:
     def drive_compliances(self) -> tuple[float, float]:
         """The compliances g and k of a prescribed displacement, in units of beta*; docs/theory.md (T29).
 
-        The displacement of the hub relative to the gauge circle is c + g F - k (int of the tractions), where c is the mean
-        displacement of the pin's rim over that of the hole, and F the force on the pin.
+        The displacement of the hub relative to the gauge circle is c + g F - k (int of the tractions). c is the mean
+        displacement of the pin's rim relative to the hole, and F the force on the pin.
         """
         radii = (None if r is None else r / self.hole_radius for r in (self.hub_radius, self.gauge_radius))
         return self.joint.displacement_compliances(*radii)

@@ -54,9 +54,9 @@ class Loop(ReadOnly):
     load : ndarray, shape (states,)
         P and Q in N/m, M in N, remote stresses in Pa.
     displacement : ndarray, shape (states,)
-        For Q, along +x, and for P, downwards: displacement of the pin where its force acts, relative to the hole, m. For M:
-        the rotation, rad. For a remote stress: the integral of the tractions times the displacement of the hole per
-        unit of the stress, m^2. Terms that depend on the loads alone are left out, see docs/theory.md, section 6.
+        For Q, along +x, and for P, downwards: displacement of the pin where its force acts, relative to the hole, m.
+        For M: the rotation, rad. For a remote stress: the integral of the tractions times the displacement of the hole
+        per unit of the stress, m^2. Terms that depend on the loads alone are left out, see docs/theory.md, section 6.
     """
 
     load: np.ndarray
