@@ -1,9 +1,9 @@
 """Prescribed displacements of the pin in place of forces, in dimensionless form.
 
-Along a driven axis the displacement of the hub relative to the gauge circle is prescribed, (T29): D = c + g F -
-k J. c is the displacement of the pin's rim relative to the hole, F the reaction, J an integral of the tractions. The
-reaction takes the place of c among the unknown motion of the pin. With the column m of the motion and the w terms of the force, gap and
-slip are
+Along a driven axis the displacement of the hub relative to the gauge circle is prescribed, (T29): D = c + g F - k J.
+c is the displacement of the pin's rim relative to the hole, F the reaction, J an integral of the tractions. The
+reaction takes the place of c among the unknown motion of the pin. With the column m of the motion and the w terms of
+the force, gap and slip are
 
     c m + F w = D m + F (w - g m) + k J m.
 
