@@ -1,4 +1,6 @@
-"""The tables and the figure of docs/accuracy.md: errors against finer grids, closed forms, finite elements, increments.
+"""The tables of docs/accuracy-tables.md and the figure of docs/accuracy.md.
+
+The errors are against finer grids, closed forms, finite elements and increments.
 
 ``python scripts/accuracy.py`` prints the tables as Markdown. It takes some minutes. ``--figure FILE`` draws the errors
 of the reference cases, ``--quick`` uses small grids, ``--only NAME`` makes one part.

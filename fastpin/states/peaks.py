@@ -34,7 +34,7 @@ STEEPEST_RISE = 1.25
 
 The unit is the larger of two drops, from the largest node to its neighbour and on to the next node. On the side where
 the drop is smaller the traction is smooth. It goes on from there to the cusp at most this many node distances: 1.1 in
-the reference cases of docs/accuracy.md.
+the reference cases of docs/accuracy-tables.md.
 """
 
 BORDER_DOUBT = 0.01

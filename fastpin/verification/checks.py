@@ -1,6 +1,6 @@
 """The checks of an installation: the solver against closed forms, other methods and exact properties.
 
-:func:`verify` takes seconds. docs/accuracy.md explains each check and the source of its tolerance.
+:func:`verify` takes seconds. docs/accuracy-tables.md explains each check and the source of its tolerance.
 """
 
 from __future__ import annotations

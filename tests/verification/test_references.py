@@ -167,7 +167,7 @@ def test_finite_elements_monotonic():
 
 
 def test_finite_elements_fretting():
-    """The stated errors are 5e-4, 2e-3 and 1.5e-4; docs/accuracy.md says where the rest comes from."""
+    """The stated errors are 5e-4, 2e-3 and 1.5e-4; docs/accuracy-tables.md says where the rest comes from."""
     model, states, differences, peaks = against("fretting_fixed_rotation")
     for k, (state, difference) in enumerate(zip(states, differences, strict=True)):
         assert difference.normal < (8e-4 if k == 2 else 5e-4)
