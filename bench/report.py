@@ -3,10 +3,10 @@
     pytest bench --benchmark-json=bench/results/NAME.json
     python bench/report.py                       tables of the newest file in bench/results
     python bench/report.py FILE.json --figure docs/figures/performance.png
-    python bench/report.py --write               tables into docs/performance.md, and the figure
+    python bench/report.py --write               tables into both pages docs/performance*.md, and the figure
 
-``--write`` replaces the text between ``<!-- benchmark: NAME -->`` and ``<!-- /benchmark -->``. NAME is machine, sizes,
-limits, others, start-up or slopes. All ratios are of times from one file. Times are of the fastest round.
+``--write`` replaces the text between ``<!-- benchmark: NAME -->`` and ``<!-- /benchmark -->``. NAME is machine, times,
+ratios, limits, others, start-up or slopes. All ratios are of times from one file. Times are of the fastest round.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from fastpin.figures import style
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = Path(__file__).resolve().parent / "results"
-DOCUMENTS = (ROOT / "docs" / "performance.md",)
+DOCUMENTS = (ROOT / "docs" / "performance.md", ROOT / "docs" / "performance-history.md")
 FIGURE = ROOT / "docs" / "figures" / "performance.png"
 
 FIT_FROM = 401
@@ -127,21 +127,29 @@ def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def sizes_table(stored: Stored) -> str:
-    """Return the table of the times that a user waits, beside the time of one dense solve."""
+def times_table(stored: Stored) -> str:
+    """Return the table of the times that a user waits, and of the memory."""
+    return table(
+        {
+            "first load, s": seconds(stored, "first load"),
+            "cycle, s": seconds(stored, "cycle"),
+            "memory, MB": recorded(stored, "memory", "peak_mb"),
+            "above the libraries, MB": recorded(stored, "memory", "above_mb"),
+        }
+    )
+
+
+def ratios_table(stored: Stored) -> str:
+    """Return the table of times in parts of one dense solve, of its rate, and of the time to write the matrices."""
     cycle = seconds(stored, "cycle")
     fill, write = seconds(stored, "fill", grid="uniform"), seconds(stored, "write", memory="fresh")
     return table(
         {
-            "first load, s": seconds(stored, "first load"),
-            "cycle, s": cycle,
             "cycle / solve, 1 thread": ratio(cycle, reference(stored, 1)),
             "2 threads": ratio(cycle, reference(stored, 2)),
             "share of LU rate, %": scaled(ratio(update_rate(stored), flop_rate(stored, "LAPACK solve", 1)), 100.0),
             "fill, ms": scaled(fill, 1e3),
             "fill / write": ratio(fill, write),
-            "memory, MB": recorded(stored, "memory", "peak_mb"),
-            "above the libraries, MB": recorded(stored, "memory", "above_mb"),
         }
     )
 
@@ -256,7 +264,8 @@ def draw(stored: Stored) -> Any:
 
 BLOCKS: dict[str, Callable[[Stored], str]] = {
     "machine": machine_text,
-    "sizes": sizes_table,
+    "times": times_table,
+    "ratios": ratios_table,
     "limits": limits_table,
     "others": others_table,
     "start-up": start_up_table,
