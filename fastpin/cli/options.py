@@ -17,8 +17,8 @@ from fastpin.model.synonyms import closest, meant
 from fastpin.version import __version__
 
 EXIT_CODES = (
-    "Exit codes: 0; 1 if loads could not be followed to their end, a run or a check failed, or a file could not be "
-    "written; 2 for wrong input; 130 after Ctrl-C."
+    "Exit codes: 0 for success; 1 if loads could not be followed to their end, a run or a check failed, or a file "
+    "could not be written; 2 for wrong input; 130 after Ctrl-C."
 )
 
 DEFAULT_KEY_FIGURE = "peak_pressure"
@@ -139,8 +139,10 @@ def literal(text: str) -> int | float | str:
 
 
 def _command(commands: Any, name: str, file: str, function: str, text: str) -> argparse.ArgumentParser:
-    """Add a command that `function` of `file` carries out. `text` is its help."""
-    command: argparse.ArgumentParser = commands.add_parser(name, help=text, allow_abbrev=False)
+    """Add a command that `function` of `file` carries out. `text` is its help, and the first line of its own help."""
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=text, description=f"{text[0].upper()}{text[1:]}.", allow_abbrev=False
+    )
     command.set_defaults(command=(file, function))
     return command
 
@@ -158,7 +160,11 @@ def add_run(commands: Any) -> None:
     run.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
     _add_outputs(run)
     run.add_argument(
-        "-o", "--output", metavar="FILE", type=Path, help="write each kept state to an HDF5 file when it is solved"
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=Path,
+        help="write each kept state to an HDF5 file as soon as it is solved",
     )
     run.add_argument("--overwrite", action="store_true", help="with -o: replace a file that exists")
     _add_solver_options(run)
@@ -190,7 +196,7 @@ def add_plot(commands: Any) -> None:
     """Add ``plot``."""
     plot = _command(commands, "plot", "plot", "run", "draw a stored result: stresses, slip, loops, fatigue")
     plot.add_argument(
-        "result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE), or for a sketch a case file (TOML)"
+        "result", metavar="FILE", type=Path, help="HDF5 file (run -o FILE); for a sketch also a case file (TOML)"
     )
     plot.add_argument(
         "kind",
@@ -210,20 +216,16 @@ def add_plot(commands: Any) -> None:
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
     plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
-    plot.add_argument(
-        "--sketch", action="store_const", const=True, help="of tractions: with a small sketch of the joint"
-    )
-    plot.add_argument("--rate", metavar="N", type=literal, help="of an animation: states a second (default 4)")
+    plot.add_argument("--sketch", action="store_const", const=True, help="tractions: add a small sketch of the joint")
+    plot.add_argument("--rate", metavar="N", type=literal, help="animation: states a second (default 4)")
     plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
-    plot.add_argument("--component", help="of a map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
-    plot.add_argument("--extent", metavar="RADII", type=literal, help="outer radius of a map (default 2)")
-    plot.add_argument(
-        "--angle", metavar="DEG", type=literal, help="place of a profile (default: the largest hoop stress)"
-    )
+    plot.add_argument("--component", help="map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
+    plot.add_argument("--extent", metavar="RADII", type=literal, help="map: outer radius (default 2)")
+    plot.add_argument("--angle", metavar="DEG", type=literal, help="profile: place (default: the largest hoop stress)")
     plot.add_argument(
         "--depth", metavar="D", type=literal, help="profile: largest depth, in radii; fatigue: depth of the points, m"
     )
-    plot.add_argument("--criterion", help="of fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
+    plot.add_argument("--criterion", help="fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
 
 
 def add_report(commands: Any) -> None:
@@ -233,28 +235,30 @@ def add_report(commands: Any) -> None:
         "source",
         metavar="FILE_OR_DIR",
         type=Path,
-        help="HDF5 file (run -o FILE), case file (TOML), which is solved first, or directory of a sweep",
+        help="HDF5 file (run -o FILE); case file (TOML), which is solved first; or directory of a sweep",
     )
     report.add_argument(
         "-o", "--output", metavar="PAGE", type=Path, help="the page (html; default: the source's name with .html)"
     )
     report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
     report.add_argument("--case", metavar="FILE", type=Path, help="case file of an HDF5 file; the page shows its text")
-    report.add_argument("--plan", metavar="FILE", type=Path, help="plan of a sweep (default: its copy there)")
+    report.add_argument(
+        "--plan", metavar="FILE", type=Path, help="plan of a sweep (default: the copy in its directory)"
+    )
     report.add_argument(
         "--error-bars",
         action="store_true",
         default=None,
-        help="of a case file: solve a second time on a grid with half the intervals, for error bars",
+        help="with a case file: solve a second time on a grid with half the intervals, for error bars",
     )
 
 
 def add_live(commands: Any) -> None:
     """Add ``live``."""
-    live = _command(commands, "live", "live", "run", "lead a contact with the mouse, on a page in the browser")
+    live = _command(commands, "live", "live", "run", "open a page in the browser: drag the load with the mouse")
     live.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
     live.add_argument("--nodes", metavar="N", help="number of nodes round the hole, 5 to 1601 (default 201)")
-    live.add_argument("--port", metavar="N", default="0", help="port of this machine (default: any free one)")
+    live.add_argument("--port", metavar="N", default="0", help="port of the page (default: a free one)")
     live.add_argument(
         "--no-browser", dest="browser", action="store_false", help="print the address, and open no browser"
     )
@@ -292,7 +296,7 @@ def add_converge(commands: Any) -> None:
 
 def add_sweep(commands: Any) -> None:
     """Add ``sweep`` and ``merge``."""
-    sweep = _command(commands, "sweep", "sweep", "run", "run all cases of a plan that are not finished")
+    sweep = _command(commands, "sweep", "sweep", "run", "solve all runs of a plan that are not finished")
     sweep.add_argument("plan", type=Path, help="plan (TOML): a case, and the fields that are varied")
     sweep.add_argument(
         "-o", "--output", metavar="DIR", type=Path, help="directory of index and results (default: the plan's name)"
@@ -381,7 +385,7 @@ def add_benchmarks(commands: Any) -> None:
         "--format",
         metavar="FORMAT",
         action="append",
-        help="of -o: png, pdf or svg (repeat the option for several formats; default: png)",
+        help="with -o: png, pdf or svg (repeat the option for several formats; default: png)",
     )
     _add_json(benchmarks, "write the numbers as JSON")
 
@@ -405,10 +409,10 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
         type=Path,
         help="write a figure of the tractions (png, pdf or svg; default tractions.png)",
     )
-    command.add_argument("--states", metavar="WHICH", help=f"of --plot: {STATES_HELP}")
+    command.add_argument("--states", metavar="WHICH", help=f"states in --plot: {STATES_HELP}")
     command.add_argument("--cycles", metavar="FILE", type=Path, help="write a figure of the changes in each cycle")
     command.add_argument(
-        "--record", metavar="FILE", type=Path, help="write a page (html) that replays the states; more with --between"
+        "--record", metavar="FILE", type=Path, help="write a page (html) that replays the states; --between adds states"
     )
     command.add_argument(
         "--cycle-csv", metavar="FILE", type=Path, help="write slip, tractions and friction energy in the last cycle"
