@@ -27,7 +27,7 @@ QUANTITY_WORDS = {
     "joint_ux": "displacement of the joint to the right",
     "joint_uy": "displacement of the joint upwards",
     "bush_open_margin": "least pressure between bush and plate",
-    "bush_slip_margin": "least pressure between bush and plate beyond what holds the bush by friction",
+    "bush_slip_margin": "least pressure between bush and plate, minus shear over friction",
 }
 """Words for :data:`fastpin.states.QUANTITIES`."""
 
