@@ -66,7 +66,7 @@ def check_outputs(
     for name, path in chosen.items():
         if path.suffix == ".toml":  # "fastpin run --json case.toml" takes the case file for the output.
             raise InputError(
-                name, f"won't overwrite {path}, a case file or plan by its name; write it before the options"
+                name, f"won't overwrite {path}: by its name it is a case file or plan; write it before the options"
             )
         if name in figures:
             check_figure(name, path)

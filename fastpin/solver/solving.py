@@ -152,7 +152,9 @@ def _check_halves(task: Task, start: Result | None) -> None:
         size = task.options.nodes if task.grid is None else task.grid.size
         if (size + 1) // 2 < LEAST_COARSE:
             least = 2 * LEAST_COARSE - 1
-            raise InputError("nodes", f"must be at least {least} for error bars, which half as many take, not {size}")
+            raise InputError(
+                "nodes", f"must be at least {least} for error bars, not {size}: a second run takes half of them"
+            )
 
 
 def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:

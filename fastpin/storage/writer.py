@@ -152,7 +152,7 @@ class FileRecorder:
         if self.overwrite or not self.path.exists() or is_empty(self.path):
             return
         reason = "holds an unfinished run: resume it, or replace it" if is_unfinished(self.path) else "exists already"
-        raise InputError(str(self.path), f"{reason}; the option overwrite replaces it")
+        raise InputError(str(self.path), f"{reason}; overwrite=True (--overwrite) replaces it")
 
     # -- calls of the run ----------------------------------------------------------------------------------------
 

@@ -105,7 +105,7 @@ def test_json_goes_to_standard_output_alone(case: Path, capsys: pytest.CaptureFi
         (["--plot", "a.docx"], "--plot: must be the name of a figure, which ends in"),
         (["--csv", "a.csv", "--json", "a.csv"], "writes the same file as"),
         (["--csv", "no/such/place.csv"], "does not exist"),
-        (["--csv", "a.toml"], "won't overwrite a.toml, a case file"),
+        (["--csv", "a.toml"], "won't overwrite a.toml: by its name it is a case file"),
     ],
 )
 def test_options_are_checked_before_the_work(

@@ -142,7 +142,7 @@ def test_points_that_share_a_run_are_counted(tmp_path: Path, capsys: pytest.Capt
         (["--plot", "a.png", "--x", "contact.frict"], '--x: the plan does not vary "contact.frict", did you mean'),
         (["--plot", "a.png", "--x", "contact.pin_load"], "--x: the values of contact.pin_load are not all numbers"),
         (["--plot", "none/a.png"], "the directory none does not exist"),
-        (["--table", "moment.toml"], "--table: won't overwrite moment.toml, a case file or plan by its name"),
+        (["--table", "moment.toml"], "--table: won't overwrite moment.toml: by its name it is a case file or plan"),
         (["--dask", "tcp://127.0.0.1:9"], "--dask: there is no scheduler at tcp://127.0.0.1:9"),
         (["-o", "moment.toml"], "moment.toml: can't be made: File exists"),
     ],
