@@ -82,7 +82,10 @@ def test_a_doubtful_result_has_a_note(
     ("arguments", "message"),
     [
         ([], "fastpin: lug: the lug file is missing; start with: fastpin compliance --example > lug.toml"),
-        (["LUG", "-o", "other.toml"], "fastpin: --output: won't overwrite other.toml: by its name it is a case file or plan"),
+        (
+            ["LUG", "-o", "other.toml"],
+            "fastpin: --output: won't overwrite other.toml: by its name it is a case file or plan",
+        ),
         (
             ["LUG", "--plot", "lug.doc"],
             "fastpin: --plot: must be the name of a figure, which ends in .png, .pdf or .svg",
