@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
+from fastpin.errors import OutputError
 from fastpin.pages.content import Picture
 
 MOST_SVG = 250_000
@@ -52,20 +53,28 @@ class Album:
         ------
         InputError
             As `draw`.
+        OutputError
+            If the directory of temporary files has no room for the figure.
         """
+        try:
+            markup = self._markup(draw, words, bitmap)
+        except OutputError as error:
+            reason = f"a figure of the page {error.reason}; set TMPDIR to another directory"
+            raise OutputError(tempfile.gettempdir(), reason) from None
+        self._count += 1
+        return Picture(markup, caption, self._count)
+
+    def _markup(self, draw: Callable[[Path], object], words: str, bitmap: bool) -> str:
         with tempfile.TemporaryDirectory(prefix="fastpin-") as folder:
-            path, text = Path(folder) / "figure.svg", ""
+            path = Path(folder) / "figure.svg"
             if not bitmap:
                 draw(path)
                 text = path.read_text(encoding="utf-8")
-            if bitmap or len(text) > MOST_SVG:
-                path = path.with_suffix(".png")
-                draw(path)
-                markup = _png(path.read_bytes(), words)
-            else:
-                markup = _svg(text, words, f"f{self._count + 1}-")
-        self._count += 1
-        return Picture(markup, caption, self._count)
+                if len(text) <= MOST_SVG:
+                    return _svg(text, words, f"f{self._count + 1}-")
+            path = path.with_suffix(".png")
+            draw(path)
+            return _png(path.read_bytes(), words)
 
 
 def _png(content: bytes, words: str) -> str:

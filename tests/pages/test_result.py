@@ -6,12 +6,13 @@ import base64
 import dataclasses
 import pickle
 import re
+import tempfile
 from pathlib import Path
 
 import pytest
 
 import fastpin
-from fastpin.errors import InputError
+from fastpin.errors import InputError, OutputError
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.pages import album, write_report
@@ -349,3 +350,16 @@ def test_the_result_is_never_overwritten(stored: Path) -> None:
     with pytest.raises(InputError, match="is a stored result, which only a result replaces"):
         write_report(odd, odd)
     assert odd.read_bytes() == stored.read_bytes()
+
+
+def test_a_full_directory_of_temporary_files_is_named(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def draw(path: Path) -> None:
+        raise OutputError(str(path), "can't be written: No space left on device")
+
+    with pytest.raises(OutputError) as caught:
+        Album().picture(draw, "words", "caption")
+    words = "a figure of the page can't be written: No space left on device; set TMPDIR to another directory"
+    assert str(caught.value) == f"{tmp_path}: {words}"
+    assert not [*tmp_path.iterdir()]
