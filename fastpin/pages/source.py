@@ -27,6 +27,7 @@ from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.storage.layout import versions
+from fastpin.storage.packed import packed_result
 
 CRITERION: Any = "smith-watson-topper"
 """The criterion of fatigue of a page. It finds the hot spot without constants of the material."""
@@ -99,7 +100,11 @@ class Source:
         known = storage.provenance(path)
         origin = [("solved by", _named_versions(known))]
         origin += [(words, known[name]) for name, words in _PLACES.items() if name in known]
-        origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
+        content = packed_result(path)
+        if content is None:
+            origin += [("file", path.name), ("SHA-256 of the file", _digest(path))]
+        else:
+            origin += [("run in the index", path.stem), ("SHA-256 of the result", hashlib.sha256(content).hexdigest())]
 
         def read(places: Sequence[int]) -> list[State]:
             return storage.load(path, states=list(places)).states

@@ -73,9 +73,14 @@ def open_database(path: Path, mode: Mode, timeout: float = BUSY_SECONDS) -> sqli
     try:
         return _opened(real, path, mode, timeout)
     except sqlite3.OperationalError as error:
-        if mode != "ro" or error.sqlite_errorname != "SQLITE_READONLY_ROLLBACK":
+        if mode != "ro" or error_name(error) != "SQLITE_READONLY_ROLLBACK":
             raise
     return _repaired_copy(real, path)
+
+
+def error_name(error: sqlite3.Error) -> str:
+    """Return SQLite's name of an error. Python's own errors have none, such as that of a text that is not UTF-8."""
+    return getattr(error, "sqlite_errorname", "")
 
 
 def limited(cursor: sqlite3.Cursor) -> Iterator[Any]:

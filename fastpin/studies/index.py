@@ -17,7 +17,7 @@ from typing import Any, get_args
 
 from fastpin.errors import InputError, OutputError, printable
 from fastpin.model.checks import any_text, as_toml, choice, instance, number, whole_number
-from fastpin.storage.database import Mode, limited, open_database
+from fastpin.storage.database import Mode, error_name, limited, open_database
 from fastpin.storage.files import INDEX
 from fastpin.storage.packed import TABLE
 from fastpin.studies.identity import ID_LENGTH
@@ -347,7 +347,7 @@ def lock_directory(directory: Path) -> Iterator[None]:
     except sqlite3.Error as error:
         if _is_of_disk(error):
             raise OutputError(str(directory / "lock"), f"can't be written: {error}") from None
-        busy = error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY
+        busy = error_name(error).startswith("SQLITE_BUSY")
         reason = "another sweep is running in this directory" if busy else f"can't be used: {error}"
         raise InputError(str(directory), reason) from None
     try:
@@ -358,7 +358,7 @@ def lock_directory(directory: Path) -> Iterator[None]:
 
 def _is_of_disk(error: sqlite3.Error) -> bool:
     """Whether an error of SQLite says that the disk is full or broken."""
-    return error.sqlite_errorcode & 0xFF in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+    return error_name(error).startswith(("SQLITE_FULL", "SQLITE_IOERR"))
 
 
 def _check_row(row: dict[str, Any]) -> None:
