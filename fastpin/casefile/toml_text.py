@@ -13,8 +13,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import as_toml, choice, instance, number, why_unreadable
+from fastpin.errors import CaseFileError, InputError, printable
+from fastpin.model.checks import as_toml, choice, instance, number, shortened, why_unreadable
 from fastpin.model.inputs import HDF5_SIGNATURE, open_input
 from fastpin.model.synonyms import meant
 
@@ -29,6 +29,9 @@ MOST_BYTES_OF_PLAN = 8_000_000
 
 MOST_PARSED = 32_000_000
 """Characters that are parsed in all, where the text is parsed again without faulty lines."""
+
+LONGEST_FAULT = 500
+"""Most characters of a fault of a file. Sentences without words of the file are shorter."""
 
 MOST_FAULTS = 100
 """Most faults that are listed. Reading ends there: each fault costs a search for what was meant."""
@@ -199,6 +202,8 @@ class CaseText:
         return other
 
     def _add(self, line: int, message: str) -> None:
+        shown = printable(message)  # a word of the file may be as long as the file
+        message = shown if len(shown) <= LONGEST_FAULT else f"{shown[: LONGEST_FAULT - 3]}..."
         if (line, message) not in self.faults:
             self.faults.append((line, message))
 
@@ -413,23 +418,24 @@ def _syntax_message(message: str, lines: list[str]) -> tuple[str, int]:
     reason = message[: found.start()]
     if twice := re.match(r"Cannot declare \((.*?),?\) twice", reason):
         name = twice[1].replace("'", "").replace(", ", ".")
-        return f"the section [{name}] appears twice{_block_hint(name)}", line
+        return f"the section [{shortened(name)}] appears twice{_block_hint(name)}", line
     key = _KEY_LINE.match(lines[line - 1])
     if reason.startswith("Cannot overwrite"):
         header = _HEADER.match(lines[line - 1])
         name = header[2] if header else key[1] if key else ""
-        return f'"{name}" is given twice{_block_hint(name)}', line
-    value = key[2].split("#")[0].strip() if key else ""
+        return f'"{shortened(name)}" is given twice{_block_hint(name)}', line
+    value = shortened(key[2].split("#")[0]) if key else ""
+    label = shortened(key[1]) if key else ""
     if key and reason.startswith("Expected newline"):
-        return f"{key[1]}: {_behind_value(value)}", line
+        return f"{label}: {_behind_value(value)}", line
     if key and reason.startswith("Invalid value"):
         if not value:
-            return f"{key[1]}: its value is missing", line
+            return f"{label}: its value is missing", line
         if re.fullmatch(r"[A-Za-z][A-Za-z0-9 .-]*", value):
-            return f'{key[1]}: text must stand in quotes, "{value}"', line
+            return f'{label}: text must stand in quotes, "{value}"', line
         if re.fullmatch(r"[+-]?\.\d.*", value):
-            return f"{key[1]}: a number needs a digit before its point, {value.replace('.', '0.', 1)}", line
-        return f'{key[1]}: must be a number, true, false, a [list] or "text in quotes"', line
+            return f"{label}: a number needs a digit before its point, {value.replace('.', '0.', 1)}", line
+        return f'{label}: must be a number, true, false, a [list] or "text in quotes"', line
     if reason.startswith("Expected '='"):
         return 'not of the form "key = value"', line
     return f"not TOML: {reason[0].lower()}{reason[1:]}", line

@@ -267,11 +267,11 @@ def _as_toml(value: object, depth: int) -> str:
             return "a list"
         return f"[{', '.join(_as_toml(item, depth + 1) for item in value)}]"
     if isinstance(value, str):
-        return f'"{_cut(value)}"'
+        return f'"{shortened(value)}"'
     if isinstance(value, int) and abs(value) >= 10**18:
         return "a number of more than 18 digits"
     try:
-        return _cut(str(value))
+        return shortened(str(value))
     except Exception:  # The class of the value may be anyone's.
         return f"a {type(value).__name__}"
 
@@ -297,7 +297,7 @@ def _is_unicode(text: str) -> bool:
     return not any("\ud800" <= character <= "\udfff" for character in text)
 
 
-def _cut(words: str) -> str:
+def shortened(words: str) -> str:
     """Words on one line that can be printed, at most :data:`LONGEST_TEXT` characters."""
     shown = printable(" ".join(words[: 2 * LONGEST_TEXT].split()))
     return shown if len(shown) < LONGEST_TEXT else f"{shown[: LONGEST_TEXT - 4]}..."

@@ -36,6 +36,16 @@ def test_a_hostile_text_ends_in_few_sentences(text: str) -> None:
     assert len(str(caught.value)) < 100_000
 
 
+@pytest.mark.parametrize(
+    "line",
+    ["k = 1 {}", "k = {}", "{} = 1 2", "{} =", "k = .5{}", "[{}]\n[{}]", "x.{}=1\nx.{}=2", "{}", "[pin]\n{} = 1"],
+)
+def test_a_long_word_is_not_repeated(line: str) -> None:
+    with pytest.raises(CaseFileError) as caught:
+        casefile.parse_case(line.replace("{}", "a" * 100_000))
+    assert max(map(len, str(caught.value).split("\n"))) < 600
+
+
 @pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "x = {{ {} = 1 }}"])
 @pytest.mark.parametrize("part", ["a", '"a"', "'a'", "a "])
 def test_a_key_has_as_many_parts_as_the_message_says(form: str, part: str) -> None:
