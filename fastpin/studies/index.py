@@ -236,9 +236,9 @@ class Index:
             for row in rows:
                 _check_row(row)
                 for name in fields:
-                    row[name] = _value(name, row[name])
+                    row[name] = _shown(_value(name, row[name]))
                 for name in ("versions", "input"):
-                    row[name] = _table(row[name])
+                    row[name] = _shown(_table(row[name]))
             return rows
 
     def absorb(self, other: Index, ids: Sequence[str]) -> None:
@@ -387,6 +387,15 @@ def _status(value: Any) -> str:
 def _text(name: str, value: Any) -> str | None:
     """Return a text on one line that can be printed: the index may be anybody's, or of an earlier version."""
     return None if value is None else printable(any_text(name, value))
+
+
+def _shown(value: Any) -> Any:
+    """Return a value of JSON with texts on one line that can be printed, as :func:`_text`."""
+    if isinstance(value, dict):
+        return {printable(name): _shown(part) for name, part in value.items()}
+    if isinstance(value, list):
+        return [_shown(part) for part in value]
+    return printable(value) if isinstance(value, str) else value
 
 
 def _table(text: Any) -> dict[str, Any]:

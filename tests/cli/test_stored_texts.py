@@ -3,73 +3,196 @@
 from __future__ import annotations
 
 import csv
+import json
+import sqlite3
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import h5py
+import numpy as np
 import pytest
 
+import fastpin
+from fastpin import storage
 from fastpin.casefile import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import printable
-from fastpin.storage import record
+from fastpin.figures.words import caption
+from fastpin.model.compliance import Compliance
+from fastpin.solver.result import Result
+from fastpin.storage import packed, store
+from fastpin.storage.files import INDEX
+from fastpin.studies import read_plan, sweep
+from fastpin.studies.index import Index
+from fastpin.studies.run_end import RunEnd, key_figures
 from tests.support.case_texts import PRESSED
 
 CASE = f"""{PRESSED}[[load]]
 Q = [1e5, -1e5]
 """
 
-HOSTILE = {
-    "escape": "a\x1b[31mb",
-    "direction": "a\u202eb",
-    "markup": "<script>alert(1)</script>&<b",
-    "line end": "a\nb",
-    "control": "a\x08\x07\x9bb",
-    "surrogate": "a\ud800b",
-}
+SIGNS = "=HYPERLINK(1)\x1b[31m\x08\x07\x9b\u202e\n\r</script><script>alert(1)</script>&<b"
+"""A formula, an escape sequence, control characters, a mark that turns the direction, line ends and markup."""
 
-PLACES = ("solver@title", "problem/pin@name", "@error", "@host")
+HOSTILE = f"{SIGNS}\ud800"
+"""The same with half a character, which SQLite can't hold, but HDF5 and JSON can."""
+
+PLACES = ("solver@title", "problem/pin@name", "problem/plate@name", "problem/plate_body@made_by", "@error", "@host")
 """Attributes of a result that hold texts."""
+
+PLAN = 'title = "a"\n[grid]\n"contact.friction" = [0.1, 0.2]\n"solve.nodes" = [21]\n'
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The bytes of a good result."""
-    path, case = tmp_path_factory.mktemp("whole") / "a.h5", parse_case(CASE)
-    record(case.problem, case.history, path, nodes=41)
-    return path.read_bytes()
+def result() -> Result:
+    """A result with all bodies that have texts."""
+    plate = Compliance(0.3, "strain", 0.01, np.zeros((10, 10)), {}, "a")
+    problem = parse_case(CASE).problem
+    return fastpin.solve(fastpin.Problem(problem.pair, 0.01, 1e-5, 0.3, plate_body=plate), [{"P": 1e6}], nodes=41)
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=list(HOSTILE))
-def test_texts_of_a_result_harm_neither_terminal_nor_pages(
-    text: str, whole: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "a.h5"
-    path.write_bytes(whole)
-    with h5py.File(path, "r+") as file:
-        for place in PLACES:
-            part, _, name = place.partition("@")
-            file[part or "/"].attrs[name] = text.encode(
-                "utf-8", "surrogatepass"
-            )  # h5py reads wrong bytes as surrogates
-    outputs = {"show": None, "report": tmp_path / "a.html", "plot": tmp_path / "a.svg"}
-    for command, output in outputs.items():
-        words = [
-            command,
-            str(path),
-            *(["tractions"] if command == "plot" else []),
-            *(["-o", str(output)] if output else []),
-        ]
-        assert main(words) == 0
-        shown = "".join(capsys.readouterr())
-        assert all(printable(line) == line for line in shown.split("\n"))
-        assert "Traceback" not in shown
-        if output is not None and output.exists():
-            written = output.read_text(encoding="utf-8")
-            assert not any(sign in written for sign in "\x1b\x08\x07\x9b\u202e")
-            assert "<script>alert" not in written
-            if command == "plot":
-                ET.fromstring(written)
+@pytest.fixture(params=["file", "packed"])
+def path(request: pytest.FixtureRequest, result: Result, tmp_path: Path) -> Path:
+    """A result with hostile texts, in a file of its own or in the index of a sweep."""
+    place = tmp_path / "results" / "abc.h5"
+    place.parent.mkdir()
+    if request.param == "file":
+        fastpin.save(result, place)
+        with h5py.File(place, "r+") as file:
+            set_texts(file, HOSTILE.encode("utf-8", "surrogatepass"))
+        return place
+    content = packed.from_bytes(store.pack(result, None, 10**6) or b"")
+    set_texts(content, HOSTILE)
+    with closing(sqlite3.connect(tmp_path / INDEX)) as database:
+        database.execute(packed.TABLE)
+        database.execute("INSERT INTO results VALUES ('abc', ?)", [packed.to_bytes(content)])
+        database.commit()
+    return place
+
+
+def set_texts(file: Any, text: Any) -> None:
+    """Write a text into all places of a result."""
+    for place in PLACES:
+        part, _, name = place.partition("@")
+        (file[part] if part else file).attrs[name] = text
+
+
+def texts_of(value: Any) -> Iterator[str]:
+    """All texts of a JSON document or a row."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for name, item in value.items():
+            yield from (name, *texts_of(item))
+    elif isinstance(value, list):
+        for item in value:
+            yield from texts_of(item)
+
+
+def is_printable(value: Any) -> bool:
+    """Whether all texts of a value can be printed as they are."""
+    return all(printable(text) == text for text in texts_of(value))
+
+
+def run(capsys: pytest.CaptureFixture[str], *words: object, code: int = 0) -> str:
+    """Run a command. Everything that it prints can be printed."""
+    found = main([str(word) for word in words])
+    shown = "".join(capsys.readouterr())
+    assert found == code, shown
+    assert is_printable(shown.split("\n"))
+    assert "Traceback" not in shown
+    return shown
+
+
+def check_file(path: Path) -> str:
+    """Check that a file harms no program which reads it, and return its text."""
+    text = path.read_text(encoding="utf-8")
+    assert is_printable(text.replace("\t", "").split("\n"))
+    if path.suffix == ".csv":
+        with path.open(newline="", encoding="utf-8") as file:
+            cells = [cell for row in csv.reader(file) for cell in row]
+        assert not any(cell.startswith(("=", "@", "\t", "\r")) for cell in cells)
+    elif path.suffix == ".json":
+        assert is_printable(json.loads(text))
+    else:
+        assert "<script>alert" not in text
+    if path.suffix == ".svg":
+        ET.fromstring(text)
+    return text
+
+
+def test_texts_of_a_result_harm_no_reader(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = {name: tmp_path / name for name in ("a.json", "a.html", "a.svg", "a.csv", "page.html")}
+    run(capsys, "show", path, "--json", files["a.json"], "--record", files["a.html"])
+    run(capsys, "plot", path, "tractions", "-o", files["a.svg"], "--csv", files["a.csv"])
+    if path.exists():  # a page takes long, and shows the same texts
+        del files["page.html"]
+    else:
+        run(capsys, "report", path, "-o", files["page.html"])
+    for file in files.values():
+        assert ("HYPERLINK" in check_file(file)) == (file.suffix != ".csv")
+    found = storage.load(path)
+    values = [repr(found), repr(found.problem), storage.stored_error(path), storage.provenance(path)]
+    assert is_printable([*repr(values).split("\n"), dict(storage.to_xarray(path).attrs)])
+
+
+def test_texts_of_an_index_harm_no_reader(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source, folder = tmp_path / "plan.toml", tmp_path / "runs"
+    source.write_text(PLAN)
+    folder.mkdir()
+    (folder / sweep.PLAN).write_text(PLAN)
+    plan = read_plan(source)
+    case = plan.case(plan.points[0])
+    solved = fastpin.solve(case.problem, case.history, nodes=21)
+    first, second = (point.id for point in plan.points)
+    with Index(folder, write=True) as index:
+        index.expect(plan, plan.points)
+        content, versions = store.pack(solved, None, 10**6), {SIGNS: HOSTILE}
+        index.record([
+            RunEnd(first, None, key_figures(solved), 0.5, SIGNS, SIGNS, versions, content=content),
+            RunEnd(second, SIGNS, {}, 0.5, SIGNS, SIGNS, versions),
+        ])  # fmt: skip
+    with closing(sqlite3.connect(folder / INDEX)) as database:
+        database.execute("UPDATE sweep SET value = ? WHERE name IN ('title', 'text')", [SIGNS])
+        database.execute('UPDATE runs SET "contact.friction" = ?', [json.dumps([HOSTILE])])
+        database.execute("INSERT INTO outcomes VALUES (?, ?, ?, NULL, ?)", [first, SIGNS, SIGNS, SIGNS])
+        database.commit()
+    table, page = tmp_path / "a.csv", tmp_path / "a.html"
+    shown = run(capsys, "sweep", source, "-o", folder, "--status", "--table", table)
+    assert f"failed: {second}" in shown
+    assert "HYPERLINK" in shown
+    run(capsys, "sweep", source, "-o", folder, "--status", "--table")
+    run(capsys, "report", folder, "-o", page)
+    run(capsys, "merge", folder, "-o", tmp_path / "whole")
+    for file in (table, page):
+        assert "HYPERLINK" in check_file(file)
+    assert is_printable(sweep.rows(plan, folder))
+
+
+@pytest.mark.parametrize("name", ["made_by", "plane", "columns", "version", "format", "nu"])
+def test_texts_of_a_compliance_harm_no_reader(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The origin is any text. Another text, or the name of a column, is a fault, and a sentence tells it."""
+    document = Compliance(0.3, "strain", 0.01, np.zeros((10, 10)), {}).document()
+    (tmp_path / "lug.json").write_text(json.dumps(document | {name: {HOSTILE: 1} if name == "columns" else HOSTILE}))
+    case = tmp_path / "case.toml"
+    case.write_text(f'{CASE}[plate_body]\nkind = "compliance"\nfile = "lug.json"\n')
+    code = 0 if name == "made_by" else 2
+    assert ("HYPERLINK" in run(capsys, "check", case, code=code)) == (name != "format")
+    assert main(["run", str(case), "--nodes", "21", "--json", str(tmp_path / "a.json")]) == code
+    assert code or "HYPERLINK" in check_file(tmp_path / "a.json")
+    capsys.readouterr()
+    if not code:
+        assert is_printable(repr(Compliance.from_file(tmp_path / "lug.json")))
+
+
+def test_a_long_name_is_cut_in_figures() -> None:
+    """Matplotlib needs minutes for it, and has no room left for the figure."""
+    steel = fastpin.Material(2.1e11, 0.3, "x" * 100_000)
+    problem = fastpin.Problem(fastpin.MaterialPair(steel, steel), 0.01, 1e-5, 0.3)
+    assert len(caption(problem)) < 300
 
 
 def test_the_table_of_a_sweep_has_no_formulas(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -220,6 +220,7 @@ def test_an_index_that_is_about_to_be_made_is_none_yet(tmp_path: Path) -> None:
         ("UPDATE runs SET status = 'fine'", 'status: must be "waiting", "done" or "failed"'),
         ("UPDATE runs SET peak_pressure = 'high'", 'peak_pressure: must be a number, not "high"'),
         ("UPDATE runs SET input = '{'", "is damaged"),
+        ("UPDATE runs SET reason = CAST(x'eda080' AS TEXT)", "can't be used: Could not decode to UTF-8"),
         ('ALTER TABLE runs RENAME COLUMN "contact.friction" TO "other"', "is damaged"),
     ],
 )
