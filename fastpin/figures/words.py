@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.model.checks import shortened
 from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
@@ -146,7 +147,7 @@ def _material(material: Material, problem: Problem) -> str:
     if material.is_rigid:
         return "rigid"
     if material.name:
-        return material.name
+        return shortened(material.name)
     modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, "Pa")
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"
 
