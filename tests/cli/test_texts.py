@@ -50,65 +50,34 @@ def test_texts_become_escapes_where_the_terminal_has_ascii_only(tmp_path: Path) 
     assert (code, "Gr\\xf6\\xdfe.toml" in trouble) == (2, True)
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a case, a result and a damaged result, all with hostile names."""
-    place = tmp_path_factory.mktemp("hostile")
-    (place / f"{HOSTILE}.toml").write_text(CASE, encoding="utf-8")
-    (place / f"{HOSTILE}-bad.toml").write_text("[contact]\nfriction = 7\n", encoding="utf-8")
-    (place / f"{HOSTILE}-plan.toml").write_text('[grid]\n"contact.friction" = [0.1]\n', encoding="utf-8")
-    (place / f"{HOSTILE}-bad.h5").write_text("no result", encoding="utf-8")
-    assert main(["run", str(place / f"{HOSTILE}.toml"), "-o", str(place / f"{HOSTILE}.h5"), "--nodes", "41"]) == 0
-    return place
-
-
-COMMANDS = [
-    "run HOSTILE.toml --json HOSTILE.json --plot HOSTILE.svg --cycle-csv HOSTILE.csv --record HOSTILE.html",
-    "run HOSTILE.toml --json HOSTILE.toml",
-    "run HOSTILE-bad.toml",
-    "check HOSTILE.toml",
-    "check HOSTILE-bad.toml",
-    "check HOSTILE-plan.toml",
-    "check HOSTILE-none.toml",
-    "show HOSTILE.h5",
-    "show HOSTILE-bad.h5",
-    "resume HOSTILE.h5",
-    "run HOSTILE.toml -o HOSTILE.h5",
-    "run HOSTILE.toml -o HOSTILE-2.h5 --start HOSTILE.h5 -v",
-    "plot HOSTILE.h5 hoop -o HOSTILE.svg --csv HOSTILE-hoop.csv",
-    "plot HOSTILE.h5 hoop -o HOSTILE",
-    "report HOSTILE.h5 -o HOSTILE.html --case HOSTILE.toml",
-    "report HOSTILE.toml -o HOSTILE-case.html",
-    "sweep HOSTILE-plan.toml -o HOSTILE-sweep --workers 1 --table HOSTILE-table.csv --plot HOSTILE-sweep.svg",
-    "sweep HOSTILE-plan.toml -o HOSTILE-sweep --status",
-    "report HOSTILE-sweep -o HOSTILE-sweep.html",
-    "merge HOSTILE-sweep -o HOSTILE-whole",
-    "show HOSTILE.h5 HOSTILE",
-    "compliance HOSTILE-plan.toml",
-]
+COMMANDS = {
+    "sweep HOSTILE-plan.toml -o HOSTILE --status": (0, "1 runs in NAME: 0 done"),  # a line of a command
+    "show HOSTILE.h5 HOSTILE": (2, "error: unrecognized arguments: NAME"),  # a message of the parser
+    "show HOSTILE.h5": (2, "fastpin: NAME.h5: is no HDF5 file"),  # an error
+    "check HOSTILE.toml": (2, "\nNAME.toml, line 1: [contact]: hole_radius is missing"),  # one of many faults
+}
+"""A command for each way of a file's name to the terminal, its exit code, and what it prints."""
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_names_of_files_never_steer_the_terminal(
-    folder: Path, command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(folder)
+    monkeypatch.chdir(tmp_path)
+    Path(f"{HOSTILE}.toml").write_text("[contact]\nfriction = 7\n", encoding="utf-8")
+    Path(f"{HOSTILE}-plan.toml").write_text('[grid]\n"contact.friction" = [0.1]\n', encoding="utf-8")
+    Path(f"{HOSTILE}.h5").write_text("no result", encoding="utf-8")
     try:
         code = main([word.replace("HOSTILE", HOSTILE) for word in command.split()])
     except SystemExit as end:
         code = int(end.code or 0)
-    out, err = capsys.readouterr()
-    assert code in (0, 1, 2)
-    assert out or err
-    assert is_shown(out)
-    assert is_shown(err)
-    assert "Traceback" not in err
-    assert not any(
-        line.startswith("b") for line in (out + err).split("\n")
-    )  # the line end in a name does not end a line
+    shown = "".join(capsys.readouterr())
+    expected, words = COMMANDS[command]
+    assert (code, is_shown(shown)) == (expected, True)
+    assert words.replace("NAME", printable(HOSTILE)) in shown
 
 
-@pytest.mark.parametrize("command", ["check", "show", "sweep"])
+@pytest.mark.parametrize("command", ["check", "sweep"])
 def test_names_of_files_that_are_no_text_are_shown(
     command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
