@@ -34,6 +34,9 @@ READERS = {
     "materials of a case": lambda path: parse_case(f'materials = "{path}"\n{PRESSED}'),
     "compliance of a case": lambda path: parse_case(f'{PRESSED}[plate_body]\nkind = "compliance"\nfile = "{path}"\n'),
     "case of a plan": lambda path: parse_plan(f'case = "{path}"\n{GRID}'),
+    "function of a plan": lambda path: parse_plan(
+        f'{GRID}[outcomes]\nw = {{ function = "{path.with_suffix(".py").name}:f" }}\n', folder=path.parent
+    ),
 }
 
 
@@ -42,6 +45,7 @@ def pipe(tmp_path: Path) -> Iterator[Path]:
     """A pipe to which nothing is written. A reader that waits for it is stopped."""
     path = tmp_path / "pipe.toml"
     os.mkfifo(path)
+    (tmp_path / "pipe.py").symlink_to(path)
 
     def stop(*_: object) -> None:
         raise AssertionError("the reader waits for ever")

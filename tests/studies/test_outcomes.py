@@ -440,7 +440,6 @@ def test_a_file_that_can_not_be_run_is_found_before_the_work(text: str, words: s
 @pytest.mark.parametrize(
     ("file", "fault"),
     [
-        ("pipe.py", "w: pipe.py: must be an ordinary file"),
         ("folder.py", "w: folder.py: is a directory, a file is needed"),
         ("loop.py", "w: loop.py: "),
         (r"\u0000.py", "w: function: must be FILE.py:NAME"),
@@ -448,7 +447,6 @@ def test_a_file_that_can_not_be_run_is_found_before_the_work(text: str, words: s
     ],
 )
 def test_a_function_of_no_ordinary_file_is_a_fault(tmp_path: Path, file: str, fault: str) -> None:
-    os.mkfifo(tmp_path / "pipe.py")
     (tmp_path / "folder.py").mkdir()
     (tmp_path / "loop.py").symlink_to("loop.py")
     with pytest.raises(CaseFileError) as caught:
