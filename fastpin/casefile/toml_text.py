@@ -7,9 +7,11 @@ lines of all keys itself, and parses again without a faulty line.
 from __future__ import annotations
 
 import contextlib
+import gc
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,8 +29,8 @@ The worst text of this size takes some ten seconds and 0.9 GB. Long histories st
 MOST_BYTES_OF_PLAN = 8_000_000
 """Most bytes of a plan. 100,000 [[list]] blocks of two fields have 6 MB."""
 
-MOST_PARSED = 32_000_000
-"""Characters that are parsed in all, where the text is parsed again without faulty lines."""
+MOST_PARSED = 12_000_000
+"""Characters that are parsed in all, where the text is parsed again without faulty lines. Some ten seconds at worst."""
 
 LONGEST_FAULT = 500
 """Most characters of a fault of a file. Sentences without words of the file are shorter."""
@@ -36,7 +38,7 @@ LONGEST_FAULT = 500
 MOST_FAULTS = 100
 """Most faults that are listed. Reading ends there: each fault costs a search for what was meant."""
 
-MOST_PARTS = 16
+MOST_PARTS = 8
 """Most parts of a dotted key. The parser takes a time that grows with the square of their number. Four are in use."""
 
 KINDS = {
@@ -142,22 +144,23 @@ class CaseText:
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
         lines = text.replace("\r\n", "\n").split("\n")
-        if _LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)):
+        if _has_long_key(text, lines):
             self.readable = False
-            self._lines: dict[Place, int] = {}
+            self._lines = _Lines([])
             self._add(0, f"a key has more than {MOST_PARTS} parts, joined by points")
             self.root = Section(self, (), {})
             return
-        self._lines, keys, starts = _locate(lines)
-        self.root = Section(self, (), self._parse(lines, keys, starts))
+        self._lines = _Lines(lines.copy())
+        self.root = Section(self, (), self._parse(lines))
 
-    def _parse(self, lines: list[str], keys: dict[int, Place], starts: dict[int, int]) -> dict[str, Any]:
+    def _parse(self, lines: list[str]) -> dict[str, Any]:
         """Parse the lines. Blank a faulty ``key = value`` line and parse again, to report the other faults as well."""
         faulty: list[Place] = []
         size = sum(map(len, lines)) + len(lines)
         while True:
             try:
-                tables = tomllib.loads("\n".join(lines))
+                with _uncollected():
+                    tables = tomllib.loads("\n".join(lines))
                 break
             except RecursionError:
                 self._add(0, "values are nested too deeply")
@@ -165,6 +168,7 @@ class CaseText:
                 return {}
             except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
                 message, line = _syntax_message(str(error), lines)
+                _, keys, starts = self._lines.located
                 start = starts.get(line, line)
                 if line != start:
                     message = f"the value that begins here is not closed, or wrong in line {line}"
@@ -190,8 +194,9 @@ class CaseText:
 
     def line(self, *place: str | int) -> int:
         """Line (from 1) of the value at `place`, or of the smallest table around it; 0 if neither is in the text."""
+        places = self._lines.located[0]
         around = (place[:length] for length in range(len(place), 0, -1))
-        return next((self._lines[part] for part in around if part in self._lines), 0)
+        return next((places[part] for part in around if part in places), 0)
 
     def with_tables(self, tables: dict[str, Any]) -> CaseText:
         """A copy of this text with other tables and no faults. Their faults get the lines of this text."""
@@ -345,6 +350,40 @@ _STRING_OR_COMMENT = re.compile(
 )
 
 
+@contextlib.contextmanager
+def _uncollected() -> Iterator[None]:
+    """Let Python look for no unreachable objects: a parser makes many tables and no such objects.
+
+    The search takes two fifths of the time of a text of 2 MB.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+class _Lines:
+    """The lines of a text. Places in them are looked up for a fault only."""
+
+    def __init__(self, lines: list[str]) -> None:
+        self._all = lines
+
+    @cached_property
+    def located(self) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
+        """The lines of all headers and keys, see :func:`_locate`."""
+        with _uncollected():
+            return _locate(self._all)
+
+
+def _has_long_key(text: str, lines: list[str]) -> bool:
+    """Whether a key has more than :data:`MOST_PARTS` parts. Such a key stands on one line."""
+    most_points = max(line.count(".") for line in lines)
+    return most_points >= MOST_PARTS and bool(_LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)))
+
+
 def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
     """The lines of all headers and keys.
 
@@ -364,7 +403,8 @@ def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[
     section: Place = ()
     begin, depth = 0, 0
     for line_number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
-        header, key = _HEADER.match(line), _KEY_LINE.match(line)
+        header = _HEADER.match(line)
+        key = None if header else _KEY_LINE.match(line)
         if depth > 0:
             starts[line_number] = begin
             depth = max(depth + change, 0)
@@ -383,6 +423,8 @@ def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[
 
 
 def _parts(dotted: str) -> Place:
+    if '"' not in dotted and "'" not in dotted:
+        return tuple(map(str.strip, dotted.split(".")))
     return tuple(part[0].strip("\"'") for part in re.finditer(_KEY, dotted))
 
 
