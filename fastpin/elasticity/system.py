@@ -26,6 +26,9 @@ from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
 
+_ACTING_FORCES = min(DISPLACEMENTS) if max(DISPLACEMENTS) == len(LOADS) - 1 else len(LOADS)
+"""Number of loads in products under forces. The displacements, where they stand last, are left out: zeros cost bits."""
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -199,9 +202,8 @@ class System:
 
     @property
     def _acting(self) -> int:
-        """Number of loads in products. Under forces the displacements, at the end, are left out: zeros cost bits."""
-        stand_last = max(DISPLACEMENTS) == len(LOADS) - 1
-        return min(DISPLACEMENTS) if self.drive is None and stand_last else len(LOADS)
+        """Number of loads in products."""
+        return _ACTING_FORCES if self.drive is None else len(LOADS)
 
     @property
     def translation(self) -> np.ndarray:

@@ -74,7 +74,7 @@ def check_corner(field: str, loads: Corner) -> dict[str, float]:
 
 def named_load(vector: np.ndarray) -> dict[str, float]:
     """A load vector, shape (loads,), as a dict from load name to value."""
-    return {name: float(value) for name, value in zip(LOADS, vector, strict=True)}
+    return dict(zip(LOADS, vector.tolist(), strict=True))
 
 
 def complete_load(given: np.ndarray, last: np.ndarray) -> np.ndarray:
