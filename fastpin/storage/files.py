@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -175,7 +174,7 @@ def replacing(path: str | Path, result: bool = False) -> Iterator[Path]:
         target = Path(os.path.realpath(path))
         check_replaceable(target, result)
         # The suffix stays: writers choose their format by it.
-        temporary = target.with_name(f".{target.stem}.{secrets.token_hex(_TOKEN_BYTES)}{target.suffix}")
+        temporary = target.with_name(f".{target.stem}.{os.urandom(_TOKEN_BYTES).hex()}{target.suffix}")
         file = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | NO_LINK, 0o666)
         try:
             yield temporary
