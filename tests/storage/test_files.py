@@ -66,7 +66,7 @@ def test_a_link_under_the_name_of_a_temporary_file_is_not_followed(
 ) -> None:
     victim = tmp_path / "precious.txt"
     victim.write_text("keep")
-    monkeypatch.setattr("secrets.token_hex", lambda _: "0123")
+    monkeypatch.setattr("os.urandom", lambda _: b"\x01\x23")
     for name in (".o.0123.txt", f".o.{os.getpid()}.txt"):
         (tmp_path / name).symlink_to(victim)
     with pytest.raises(OutputError, match="can't be written: File exists"), replacing(tmp_path / "o.txt") as temporary:
