@@ -1,7 +1,11 @@
-"""The lowest and the highest slip of each node while closed, exact along every piece of a history."""
+"""The lowest and the highest slip of each node while closed, exact along every piece of a history.
+
+The sums of slip are compared with many states here too: both comparisons share the states.
+"""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,7 +18,7 @@ from fastpin.model.grid import Grid
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from scripts.histories import random_case
-from tests.support.programs import EXTREMES, RANDOM, P, q
+from tests.support.programs import EXTREMES, RANDOM, SLIP, P, q
 from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
 
 PATHS = ["unlike bodies", "normal unloading", "neat fit", "interference", "remote stress", "driven"]
@@ -68,17 +72,43 @@ def test_extremes_of_random_histories_contain_the_states(seed: int) -> None:
     assert_contains(list(solve(problem, history, nodes=81, slip_sums=True, between=2)))
 
 
-@pytest.mark.parametrize("name", PATHS)
-def test_readings_from_states_converge_to_the_exact_extremes(name: str) -> None:
+@pytest.fixture(scope="module")
+def finer(request: pytest.FixtureRequest) -> list[list[State]]:
+    """The states of a case with more and more stops inside its steps."""
+    return [solved(request.param, between=between) for between in (15, 127, 1023)]
+
+
+@pytest.mark.parametrize("finer", PATHS, indirect=True)
+def test_readings_from_states_converge_to_the_exact_extremes(finer: list[list[State]]) -> None:
     missed = []
-    for between in (15, 127, 1023):
-        states = solved(name, between=between)
+    for states in finer:
         exact, found = extremes(states), read(states)
         missed.append(float(np.nanmax(np.abs(found - exact))) / size_of(states))
     assert missed[1] < 0.3 * missed[0]
     assert missed[2] < 0.3 * missed[1]
     assert missed[2] < 2e-3
     assert np.array_equal(np.isnan(found), np.isnan(exact))
+
+
+def naive(states: Sequence[State]) -> np.ndarray:
+    """Slip distance and friction energy summed from state to state, shape (2, n)."""
+    sums = np.zeros((2, states[0].grid.size))
+    for before, after in itertools.pairwise(states):
+        both = (before.status != OPEN) & (after.status != OPEN)
+        slid = np.where(both, after.slip - before.slip, 0.0)
+        sums += [np.abs(slid), -0.5 * slid * (before.shear + after.shear)]
+    return sums
+
+
+@pytest.mark.parametrize("finer", ["unlike bodies", "remote stress", "much friction", "driven"], indirect=True)
+def test_sums_from_state_to_state_converge_to_the_exact_sums(finer: list[list[State]]) -> None:
+    errors = []
+    for states in finer:
+        exact = np.array([np.sum([getattr(state, field) for state in states[1:]], axis=0) for field in SLIP])
+        errors.append(np.abs(naive(states) - exact).max(axis=1) / exact.max(axis=1))
+    assert np.all(errors[1] < 0.4 * errors[0])
+    assert np.all(errors[2] < 0.4 * errors[1])
+    assert np.all(errors[2] < 8e-3)  # measured: 5.8e-3, and 6e-4 with 8,191 states a step
 
 
 @pytest.mark.parametrize("name", ["snap", "snap under a moment"])
