@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.pages.album import Album
+from fastpin.pages.content import Picture
 from tests.support.approx import quicken
 
 settings.register_profile(
@@ -47,3 +50,15 @@ def similar() -> MaterialPair:
 def titanium_in_aluminium() -> MaterialPair:
     """The paper's dissimilar pair."""
     return MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages without figures, for tests of everything else: a figure takes some tenths of a second."""
+
+    def picture(
+        album: Album, draw: Callable[[Path], object], words: str, caption: str, bitmap: bool = False
+    ) -> Picture:
+        return Picture("", caption, 1)
+
+    monkeypatch.setattr(Album, "picture", picture)

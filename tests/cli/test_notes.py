@@ -37,6 +37,7 @@ def case(tmp_path):
     return path
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_show_says_that_a_run_is_unfinished(case, tmp_path, capsys):
     from fastpin.casefile.reader import read_case
 
@@ -76,6 +77,7 @@ def test_a_run_that_goes_on_is_told(case, tmp_path, capsys, monkeypatch):
     assert captured.err == f"fastpin: {path}: another run is writing to it\n"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_that_no_equilibrium_ended_is_not_to_be_resumed(case, tmp_path, capsys):
     path = tmp_path / "a.h5"
     case.write_text(case.read_text().replace("nodes = 61", "nodes = 41") + "\n[[load]]\nM = 1e6\n")

@@ -162,7 +162,7 @@ def test_lengths_and_modulus_do_not_matter(made):
 def test_a_turned_plate_turns_its_matrix():
     lug = plate((-2.0, 3.0), (-2.0, 2.5))
     turned = tuple(Part(part.name, 1j * part.start, 1j * part.end) for part in lug.outline)
-    one, other = (plate_compliance(each, 6).compliance.matrix for each in (lug, plate(outline=turned)))
+    one, other = (respond(each, 6, COARSE, nothing).projected() for each in (lug, plate(outline=turned)))
     # by a right angle: cos n(theta - pi/2), and sin, in cos and sin n theta
     turn = np.eye(26)
     for n in range(1, 7):
@@ -178,18 +178,21 @@ def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole():
 
 
 def test_harmonics_are_taken_until_they_have_decayed():
-    made = plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0)))
+    lug = plate((-4.0, 4.0), (-4.0, 4.0))
+    made = plate_compliance(lug)
     sizes = plates.harmonic_sizes(made.compliance.matrix)
     assert sizes[-1] > KEPT
     assert 5 <= made.compliance.order <= 16
-    longer = plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0)), made.compliance.order + 2).compliance.matrix
+    order = made.compliance.order + 2
+    longer = respond(lug, order, COARSE, nothing).projected() - hole_compliance(order, lug.kolosov)
     assert plates.harmonic_sizes(longer)[-1] < KEPT
 
 
 def test_more_harmonics_are_tried_near_an_edge(monkeypatch):
     make_coarse(monkeypatch)
     monkeypatch.setattr(plates, "FIRST_TRIED", 4)
-    assert plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0))).compliance.order > 4
+    monkeypatch.setattr(plates, "KEPT", 1e-4)  # above the errors of few nodes, which never decay
+    assert 4 < plate_compliance(plate((-4.0, 4.0), (-4.0, 4.0))).compliance.order <= 8
 
 
 def test_progress_goes_from_zero_to_one(monkeypatch):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 
@@ -103,6 +104,12 @@ def test_narrow_hats_tend_to_point_loads_with_order_two(body, pin_load):
 # --- many digits ----------------------------------------------------------------------------------------------
 
 
+@functools.cache
+def dilogarithm(w):
+    """Li_2(w) with the digits of the first call; the two loads of the pin share the arguments."""
+    return mpmath.polylog(2, w)
+
+
 def exact(body, pin_load, tractions, theta, depth):
     """(T30) to (T32) with 50 digits, by dilogarithms at all nodes."""
     mp = mpmath
@@ -120,7 +127,7 @@ def exact(body, pin_load, tractions, theta, depth):
             t, shear = mp.expj(node[0]), after[1] - before[1]
             both = after[0] - before[0] - 1j * shear
             w = t / zeta if outside else zeta / t
-            sign, li = 1 if outside else -1, mp.polylog(2, w)
+            sign, li = 1 if outside else -1, dilogarithm(w)
             whole, of_shear = whole + sign * both * li, of_shear + sign * shear * li
             slope += both * mp.log(1 - w)
             first -= both * t  # the force is the coefficient -1 of p

@@ -10,6 +10,7 @@ import matplotlib.image
 import matplotlib.text
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
@@ -37,6 +38,11 @@ DRAWN = {
 @cache
 def computed(name: str) -> list[Curve]:
     return catalog.script(name).compute(NODES)
+
+
+@cache
+def drawn(name: str) -> Figure:
+    return catalog.script(name).draw(computed(name))
 
 
 def one(curves: list[Curve], **parameters: object) -> Curve:
@@ -70,7 +76,7 @@ def test_tractions_are_in_equilibrium_and_within_coulombs_cone(name: str) -> Non
 
 @pytest.mark.parametrize("name", catalog.PAPER)
 def test_drawn_with_all_lines_and_a_legend_inside(name: str) -> None:
-    figure = catalog.script(name).draw(computed(name))
+    figure = drawn(name)
     lines = [line for panel in figure.axes for line in panel.lines if len(line.get_xdata()) > 2]
     assert (len(figure.axes), len(lines)) == DRAWN[name]
     figure.draw_without_rendering()
@@ -110,7 +116,7 @@ WORDS = {
 
 @pytest.mark.parametrize("name", catalog.PAPER)
 def test_figures_name_their_parameters(name: str) -> None:
-    figure = catalog.script(name).draw(computed(name))
+    figure = drawn(name)
     text = " ".join(item.get_text().replace("\n", " ") for item in figure.findobj(matplotlib.text.Text))
     assert [words for words in WORDS[name] if words not in text] == []
     for panel in figure.axes:
@@ -119,7 +125,7 @@ def test_figures_name_their_parameters(name: str) -> None:
 
 @pytest.mark.parametrize("name", catalog.PAPER)
 def test_lines_of_a_panel_differ_without_colours(name: str) -> None:
-    figure = catalog.script(name).draw(computed(name))
+    figure = drawn(name)
     for panel in figure.axes:
         lines = [line for line in panel.lines if len(line.get_xdata()) > 2]
         looks = {str((line._dash_pattern, line.get_marker(), line.get_linewidth())) for line in lines}
