@@ -120,8 +120,8 @@ class Joint:
     def displacement_compliances(self, hub: float | None, gauge: float | None) -> tuple[float, float]:
         """The compliances g and k of the hub's displacement relative to the gauge circle, in units of beta*; (T29).
 
-        The displacement is c + g F - k J. c is the mean displacement of the pin's rim over that of the hole, F the
-        force on the pin and J an integral of the tractions.
+        The displacement is c + g F - k J. c is the mean displacement of the pin's rim relative to the hole,
+        F the force on the pin and J an integral of the tractions.
 
         Parameters
         ----------

@@ -78,8 +78,8 @@ class State(ReadOnly):
     dx, dy, rotation : float
         Rigid motion of the pin along +x, +y (m) and counter-clockwise (rad) from its first resting position.
         In the paper's symbols: C_0x, -Delta and C_omega, also if a hub of another radius is held. (dx, dy) is the mean
-        displacement of the pin's rim over that of the hole. It counts from the concentric position if a displacement
-        is prescribed.
+        displacement of the pin's rim relative to the rim of the hole. It counts from the concentric position if a
+        displacement is prescribed.
     dissipation, work, energy : float
         Energy dissipated by friction so far, work of the loads so far and elastic energy now, J/m. Work and energy
         leave out the part that depends on the load alone (infinite for a load at a point), so they may be negative.
@@ -104,9 +104,9 @@ class State(ReadOnly):
         count since the state before in the result, and since the beginning of the history for the first state. None
         unless ``solve(..., slip_sums=True)``.
     slip_lowest, slip_highest : ndarray, shape (n,), or None
-        Lowest and highest slip of each node while it was closed, m; NaN where it was not. They count from the latest
-        corner before this state whose state is in the result, that corner included, or from the beginning of the
-        history. None as ``slip_distance``.
+        Lowest and highest slip of each node while it was closed, m; NaN where it was not. They cover the time since the
+        last kept corner before this state, that corner included, or since the beginning of the history. None as
+        ``slip_distance``.
     """
 
     step: int
@@ -420,10 +420,10 @@ class State(ReadOnly):
     def joint_displacement(
         self, hub_radius: float | None = None, gauge_radius: float | None = None
     ) -> dict[str, float]:
-        """The mean displacement of a circle in the pin over a circle in the plate, "ux" and "uy" in m, (T29).
+        """The mean displacement of a circle in the pin relative to a circle in the plate, "ux" and "uy" in m, (T29).
 
-        It is the displacement that a gauge on the joint measures. It counts as dx and dy do. The difference of two
-        states over the difference of their forces is the compliance of the joint.
+        It is the displacement that a gauge on the joint measures. It counts as dx and dy do. The compliance of
+        the joint is the difference of this displacement between two states, divided by the difference of their forces.
 
         Parameters
         ----------
