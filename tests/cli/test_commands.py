@@ -197,10 +197,12 @@ def test_public_names_are_imported_when_they_are_asked_for() -> None:
         _ = fastpin.nothing
 
 
-def test_help_names_the_default_of_the_figures(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_says_what_a_command_does_and_names_its_defaults(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["paper", "--help"])
-    assert f"number of nodes (default {catalog.NODES})" in " ".join(capsys.readouterr().out.split())
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Compute and draw the figures of the paper. options:" in printed
+    assert f"number of nodes (default {catalog.NODES})" in printed
 
 
 def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: pytest.CaptureFixture[str]) -> None:
@@ -550,6 +552,7 @@ def test_cycles_are_told_stored_and_drawn(cyclic: Path, tmp_path: Path, capsys: 
     assert main(["show", stored]) == 0
     out = capsys.readouterr().out
     assert re.search(r"to corner 37, 12 cycles of 3 corners: (not yet periodic|periodic from)", out)
+    assert re.search(r"; first cycle: tractions changed by \S+ of the peak pressure, dissipated .*; last: changed", out)
     assert len([line for line in out.splitlines() if line.endswith(("e-15", "e-16"))]) == 3
     assert "... 13 to 37: repeat load point 10, 9 times ..." in out
     assert main(["show", stored, "--json", str(tmp_path / "a.json")]) == 0
