@@ -49,7 +49,7 @@ PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that answers a word that is not allowed with the one that is meant."""
+    """A parser that names the meant word if a word is not allowed."""
 
     def error(self, message: str) -> NoReturn:
         """Print the usage and a message, and end the program."""

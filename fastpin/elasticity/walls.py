@@ -179,7 +179,7 @@ def _first_amplitudes(first: First, t: np.ndarray) -> np.ndarray:
 
 
 def _first_change(first: First, known: First, t: np.ndarray) -> np.ndarray:
-    """Amplitudes of a first harmonic less those of a `known` one."""
+    """Amplitudes of a first harmonic, minus the amplitudes of a `known` one."""
     return _first_amplitudes(first, t) - _first_amplitudes(known, t)
 
 

@@ -184,7 +184,7 @@ _FIRST_OWNERS = ("Problem", "Material", "MaterialPair", "SolveOptions")
 
 
 def explains_keywords(made: T) -> T:
-    """Make a class or function answer an unknown keyword with the one that is meant, in a :class:`TypeError`."""
+    """Make a class or function name the meant keyword in the :class:`TypeError` of an unknown one."""
     if isinstance(made, type):
         setattr(made, "__init__", _explaining(made.__name__, getattr(made, "__init__")))  # noqa: B009, B010 - for mypy
         return made

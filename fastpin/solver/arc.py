@@ -133,7 +133,7 @@ def _reach(places: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The places without those that lie on a narrower one."""
+    """The places, without each place that lies on a narrower place."""
     kept: list[tuple[float, float]] = []
     for angle, width in sorted(places, key=lambda place: place[1]):
         if not any(abs(float(angle_between(angle, other))) < 0.25 * narrower for other, narrower in kept):
