@@ -28,6 +28,7 @@ import resource
 import shutil
 import sys
 import tempfile
+import time
 import traceback
 import warnings
 import zlib
@@ -38,6 +39,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+import psutil
 
 import fastpin
 from fastpin.errors import FastpinError, InputError
@@ -45,7 +47,10 @@ from scripts import odd_values, valid_values
 from scripts.valid_values import Valid
 
 LONGEST = 10.0
-"""Seconds for one call."""
+"""Seconds of the processor for one call."""
+
+LONGEST_WAIT = 90.0
+"""Seconds of the clock for the same. The machine may be busy with other work."""
 
 MOST_MEMORY = 3 << 30
 """Bytes of address space that the calls may take, beyond the process before."""
@@ -323,8 +328,8 @@ def endings(caller: Caller, todo: list[Attempt], folder: Path) -> Iterator[tuple
         try:
             while place < len(todo):
                 ours.recv()
-                if not ours.poll(LONGEST):
-                    yield todo[place], Ending("slow", f"no end within {LONGEST:g} s")
+                if slow := _too_slow(ours, worker.pid):
+                    yield todo[place], Ending("slow", f"no end within {slow}")
                     break
                 ending = ours.recv()
                 place += 1
@@ -340,6 +345,25 @@ def endings(caller: Caller, todo: list[Attempt], folder: Path) -> Iterator[tuple
                 worker.kill()
                 worker.join()
         place += 1
+
+
+def _too_slow(pipe: Connection, process: int | None) -> str:
+    """Wait for the end of a call in a process. Return the limit that it exceeds, or an empty text."""
+    began, used = time.monotonic(), _cpu_seconds(process)
+    while not pipe.poll(0.1 * LONGEST):
+        if _cpu_seconds(process) - used > LONGEST:
+            return f"{LONGEST:g} s of the processor"
+        if time.monotonic() - began > LONGEST_WAIT:
+            return f"{LONGEST_WAIT:g} s"
+    return ""
+
+
+def _cpu_seconds(process: int | None) -> float:
+    """Seconds of the processor that a process and its ended children have taken; 0 if it has ended."""
+    try:
+        return sum(psutil.Process(process).cpu_times()[:4])
+    except psutil.NoSuchProcess:
+        return 0.0
 
 
 def examine(names: Iterable[str], choose: Callable[[dict[str, Target], list[str]], list[Attempt]]) -> Iterator[Any]:

@@ -39,28 +39,37 @@ def test_the_sample_has_each_parameter_of_each_public_callable(sample):
 
 
 def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
-    monkeypatch.setattr(calls, "LONGEST", 0.5)
+    monkeypatch.setattr(calls, "LONGEST", 0.1)
+    monkeypatch.setattr(calls, "LONGEST_WAIT", 5.0)
 
     def call(kind: str) -> None:
         if kind == "raw":
             raise AttributeError("shape")
         if kind == "slow":
-            time.sleep(30.0)
+            while True:
+                pass
+        if kind == "asleep":
+            time.sleep(60.0)
         if kind == "crash":
             os._exit(3)
 
-    kinds = ("raw", "slow", "crash", "fine")
+    kinds = ("raw", "slow", "asleep", "crash", "fine")
     target = calls.Target("fastpin.call", None, call, (calls.Parameter("kind", "str", False, True),))
     monkeypatch.setattr(calls, "public_targets", lambda: {target.name: target})
     monkeypatch.setitem(calls.odd_values.VALUES, "raw", lambda: "raw")
     monkeypatch.setitem(calls.odd_values.VALUES, "slow", lambda: "slow")
+    monkeypatch.setitem(calls.odd_values.VALUES, "asleep", lambda: "asleep")
     monkeypatch.setitem(calls.odd_values.VALUES, "crash", lambda: "crash")
     monkeypatch.setitem(calls.odd_values.VALUES, "fine", lambda: "fine")
     todo = [calls.Attempt(target.name, (("kind", kind),)) for kind in kinds]
     made = list(calls.examine((), lambda *_: todo))
-    assert [ending.kind for _, ending in made] == ["raw", "slow", "raw", "accepted"]
+    assert [ending.kind for _, ending in made] == ["raw", "slow", "slow", "raw", "accepted"]
     assert made[0][1].words.startswith("AttributeError: shape")
-    assert "exit code 3" in made[2][1].words
+    assert [ending.words for _, ending in made[1:3]] == [
+        "no end within 0.1 s of the processor",
+        "no end within 5 s",
+    ]
+    assert "exit code 3" in made[3][1].words
 
 
 @pytest.mark.slow
