@@ -16,6 +16,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.read_only import ReadOnlyDict
+from fastpin.model.units import named_loads
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
@@ -157,7 +158,7 @@ class Run:
 
     def _begin_at(self, start: Restart) -> None:
         """Take the place of a restart."""
-        self.load = start.load
+        self.load = self.target = start.load
         self.dissipation, self.work = start.dissipation, start.work
         self.repeats, self.corner = start.repeats, start.corner
         self.slip_tally = start.slip_tally if start.slip_tally.shape == self._no_slip.shape else self._no_slip
@@ -245,7 +246,7 @@ class Run:
         """
         step, scales, position = self.corner, self.system.scales, self.position
         target, before = load / scales.loads, self.now.load
-        position.reached = 0.0
+        self.target, position.reached = load, 0.0
         self.corner_log.begin_step()
         try:
             for piece in pieces(before, target):
@@ -262,8 +263,8 @@ class Run:
             self.stepper.leave(position)
             reached = (before + position.reached * (target - before)) * scales.loads
             error.step, error.fraction, error.load = step, position.reached, named_load(reached)
-            place = ", ".join(f"{name} = {value:.6g}" for name, value in error.load.items() if value != 0.0)
-            where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place or 'no load'})"
+            place = named_loads(self.system.problem, error.load)
+            where = f"step {step + 1}, at {100.0 * error.fraction:.4g} % ({place})"
             error.args = (f"{where}: {error}",)
             raise
         return known
@@ -483,6 +484,8 @@ class Run:
         if system.drive is not None:
             moved = system.drive.position(np.r_[now.pressure, now.shear], now.motion, load, now.rest)
             load = system.drive.with_reactions(now.motion, load)
+        # Division by a scale and multiplication lose the last bit. A load that the history gives comes back as given.
+        is_given = (load == now.load) & ((self.target == self.load) | (fraction == 1.0))
         status = now.status.copy()
         if system.problem.frictionless:
             status = np.where(now.closed, SLIP_POSITIVE, OPEN).astype(np.int8)
@@ -499,7 +502,7 @@ class Run:
             **nodal,
             step=step,
             fraction=fraction,
-            load=named_load(load * scales.loads),
+            load=named_load(np.where(is_given, self.target, load * scales.loads)),
             theta=system.grid.theta,
             dx=float(moved[0]) * scales.displacement,
             dy=float(moved[1]) * scales.displacement,
