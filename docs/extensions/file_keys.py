@@ -12,14 +12,14 @@ import fastpin
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
 from fastpin.model import Bushing, Compliance, FatigueConstants, Plate, Ring, Tube
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import units
+from fastpin.model.units import units_per_thickness
 from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS
 from fastpin.states import QUANTITIES
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.run_end import KEY_FIGURES
 
 KINDS_OF_UNITS = {"angle": "rad", "width": "rad"}
-"""Units of the kinds of quantities that :func:`fastpin.model.units.units` leaves out."""
+"""Units of the kinds of quantities that :func:`fastpin.model.units.units_per_thickness` leaves out."""
 
 CLASSES: dict[str, tuple[type, ...]] = {
     "pin": (fastpin.Material,),
@@ -117,7 +117,7 @@ def unit(kind: str) -> str:
     """The SI unit of a kind of quantity."""
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"])
     problem = fastpin.Problem(pair, hole_radius=0.01, clearance=0.0, friction=0.3)
-    return KINDS_OF_UNITS.get(kind) or units(problem).get(kind, "") or "1"
+    return KINDS_OF_UNITS.get(kind) or units_per_thickness(problem).get(kind, "") or "1"
 
 
 def plan_fields() -> str:

@@ -194,9 +194,8 @@ def _result(options: argparse.Namespace) -> solver.Result:
 
 def _cycles(options: argparse.Namespace, title: str) -> Made:
     result = _with_cycles(options.result)
-    fields = [name for name in result.cycles[0]._fields if name != "solved"]
-    columns = {name: np.array([getattr(cycle, name) for cycle in result.cycles], dtype=float) for name in fields}
-    return lambda path: figures.plot_cycles(result, path, title=title), _curves([Curve({}, columns)])
+    curve = report.cycle.cycles_curve(result.problem, result.cycles)
+    return lambda path: figures.plot_cycles(result, path, title=title), _curves([curve])
 
 
 def _slip(options: argparse.Namespace, title: str) -> Made:
@@ -207,7 +206,7 @@ def _slip(options: argparse.Namespace, title: str) -> Made:
 def _loops(options: argparse.Namespace, title: str) -> Made:
     cycle = _result(options).cycle()
     figures.load_cycle.check_loops(cycle)
-    return lambda path: figures.plot_loops(cycle, path, title), _curves(report.cycle.loop_curves(cycle))
+    return lambda path: figures.plot_loops(cycle, path, title), _curves([report.cycle.loop_curve(cycle)])
 
 
 def _fatigue(options: argparse.Namespace, title: str) -> Made:

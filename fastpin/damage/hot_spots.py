@@ -20,7 +20,7 @@ from fastpin.model.materials import Material
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.units import units
+from fastpin.model.units import units_per_thickness
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
@@ -102,7 +102,7 @@ class Fatigue(ReadOnly):
     @property
     def unit(self) -> str:
         """Unit of the parameter: "rad", "Pa", or "F/R" in a dimensionless problem."""
-        return "rad" if self.criterion == "fatemi-socie" else units(self.problem)["traction"]
+        return "rad" if self.criterion == "fatemi-socie" else units_per_thickness(self.problem)["traction"]
 
     @property
     def margin(self) -> np.ndarray | None:

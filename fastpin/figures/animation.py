@@ -24,7 +24,7 @@ from fastpin.figures.style import COLOURS, STYLE, line, new_figure
 from fastpin.figures.words import ANGLE, CAPTION_SIZE, caption, load_text, point_text, quantity, wrapped_parts
 from fastpin.kernels.status import STICK
 from fastpin.model.checks import check_callable, file_path, number
-from fastpin.model.units import acting_loads, scaled, units
+from fastpin.model.units import acting_loads, units
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
@@ -148,7 +148,7 @@ class _Scene:
         small = "\n".join(wrapped_parts(caption(states[0].problem, states), SIZE[0] - 0.4))
         self.figure.text(0.02, 0.905, small, fontsize=CAPTION_SIZE, color="0.25", va="top", parse_math=False)
         self.names = acting_loads([state.load for state in states])
-        self.factor, unit = scaled([state.peak_pressure for state in states], units(states[0].problem)["traction"])
+        self.factor, unit = units(states[0].problem)["traction"].scale([state.peak_pressure for state in states])
         self.largest = self.factor * max(state.peak_pressure for state in states)
         words = ("pressure N", "shear traction T")
         self.force = max(abs(state.load[name]) for state in states for name in ("P", "Q"))

@@ -19,7 +19,7 @@ from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
 from fastpin.model.checks import instance
-from fastpin.model.units import printed_scale, scaled, units
+from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 
@@ -91,9 +91,9 @@ def _draw_cycles(result: Result, look: Look) -> Sheet:
     sheet.grid()
     kind, cycles = units(result.problem), result.cycles
     lengths = sorted({cycle.length for cycle in cycles})[:MAX_NAMED]
-    energy, unit = printed_scale(result.problem, "energy", [cycle.dissipation for cycle in cycles])
+    energy, unit = units(result.problem)["energy"].scale([cycle.dissipation for cycle in cycles])
     turns = _turned(cycles)
-    angle, unit_of_angle = scaled(np.concatenate(list(turns.values())).tolist(), kind["rotation"])
+    angle, unit_of_angle = kind["rotation"].scale(np.concatenate(list(turns.values())).tolist())
     changes = [np.array([getattr(cycle, name) for cycle in cycles]) for name in CHANGES]
     floors = [_floor(np.concatenate(changes)), _floor(energy * np.array([cycle.dissipation for cycle in cycles]))]
     for kind_of_length, length in enumerate(lengths):

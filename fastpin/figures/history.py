@@ -19,7 +19,7 @@ from fastpin.model.checks import instance, number_array
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.units import printed_scale
+from fastpin.model.units import units
 
 MOST_MARKED = 60
 """Most corners that are marked by dots. More dots would hide the lines."""
@@ -91,7 +91,7 @@ def _draw(problem: Problem, folded: Folded, look: Look) -> Sheet:
     for kind, panel in zip(kinds, axes[:, 0], strict=True):
         names = [name for name in acting if LOAD_KIND[name] == kind]
         columns = {name: loads[:, LOADS.index(name)] for name in names}
-        factor, label = printed_scale(problem, kind, np.concatenate(list(columns.values())).tolist())
+        factor, label = units(problem)[kind].scale(np.concatenate(list(columns.values())).tolist())
         for name in names:
             style = line(len(entries) % MAX_NAMED, len(entries) % MAX_NAMED)
             dots = {"marker": "o", "markersize": 2.2} if len(loads) <= MOST_MARKED else {}

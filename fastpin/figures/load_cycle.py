@@ -30,20 +30,13 @@ from fastpin.figures.words import (
 )
 from fastpin.model.checks import instance
 from fastpin.model.loads import LOAD_KIND
-from fastpin.model.units import printed_scale, printed_unit, scaled, units
-from fastpin.report.cycle import natural_sizes
+from fastpin.model.units import Unit, units
+from fastpin.report.cycle import CONJUGATES, natural_sizes
 from fastpin.solver.result import Result
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 
 SHADES = {NodeBehaviour.SLIPS: ("0.80", "slips at some time"), NodeBehaviour.OPENS: ("0.92", "opens at some time")}
 """Shades of the nodes that do not stick all the time, and their names."""
-
-CONJUGATES = {
-    "force": ("displacement", "displacement"),
-    "moment": ("rotation", "rotation"),
-    "traction": ("conjugate displacement", ""),
-}
-"""By kind of load: the name of the displacement on which it does work, and its kind of quantity."""
 
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line. Its area tells nothing then."""
@@ -110,7 +103,7 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     named = {"slip range": cycle.slip_range, **({"slip distance": cycle.slip_distance} if known else {})}
     curves = {name: without_rounding(np.asarray(each), sizes["displacement"]) for name, each in named.items()}
     slips = any(each.any() for each in curves.values())
-    factor, label = scaled([float(each.max()) for each in curves.values()], unit["displacement"])
+    factor, label = unit["displacement"].scale([float(each.max()) for each in curves.values()])
     for k, each in enumerate(curves.values()):
         upper.plot(angle, factor * each[order], **line(k, k))
     upper.set_ylabel(quantity("slip", label))
@@ -118,7 +111,7 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     if cycle.friction_energy is not None:
         words, kind, values = "friction energy", "energy density", cycle.friction_energy
     values = without_rounding(values, sizes[kind])
-    factor, label = scaled([float(values.max())], unit[kind])
+    factor, label = unit[kind].scale([float(values.max())])
     lower.plot(angle, factor * values[order], **line(2, 2))
     lower.set_ylabel(quantity(words, label))
     _shade(lower, cycle, frame, slips)
@@ -231,9 +224,9 @@ def _draw_loops(cycle: LoadCycle, look: Look) -> Sheet:
         panel.set_visible(False)
     for name, panel in zip(names, axes.flat, strict=False):
         loop, kind = cycle.loops[name], LOAD_KIND[name]
-        load, load_unit = printed_scale(cycle.states[0].problem, kind, loop.load.tolist())
+        load, load_unit = unit[kind].scale(loop.load.tolist())
         words, conjugate = CONJUGATES[kind]
-        moved, moved_unit = _displacement_scale(loop.displacement, unit.get(conjugate, ""))
+        moved, moved_unit = _displacement_scale(loop.displacement, unit[conjugate])
         if kind == "traction":  # of a square unit, which has no prefixes
             moved = 1.0 / max(float(np.abs(loop.displacement).max()), 1e-300)
             moved_unit = "largest is 1"
@@ -247,9 +240,9 @@ def _draw_loops(cycle: LoadCycle, look: Look) -> Sheet:
     return sheet
 
 
-def _displacement_scale(values: np.ndarray, unit: str) -> tuple[float, str]:
-    """As :func:`fastpin.model.units.scaled`; a unit without prefixes gets a power of ten for small values."""
-    factor, label = scaled(values.tolist(), unit)
+def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:
+    """As :meth:`fastpin.model.units.Unit.scale`; a unit without prefixes gets a power of ten for small values."""
+    factor, label = unit.scale(values.tolist())
     largest = factor * float(np.abs(values).max())
     if not 0.0 < largest < SMALL:
         return factor, label
@@ -261,5 +254,5 @@ def _area(cycle: LoadCycle, name: str, work: float) -> str:
     """The area of a loop as text: 0 where it is rounding beside load times displacement."""
     loop = cycle.loops[name]
     size = float(np.abs(loop.load).max() * np.abs(loop.displacement).max())
-    factor, unit = printed_unit(cycle.states[0].problem, "energy")
-    return f"area {short(factor * work, unit)}" if abs(work) > ROUNDING * size else "area 0"
+    unit = units(cycle.states[0].problem)["energy"]
+    return f"area {short(work, unit)}" if abs(work) > ROUNDING * size else "area 0"

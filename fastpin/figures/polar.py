@@ -17,7 +17,7 @@ from matplotlib.patheffects import withStroke
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
 from fastpin.figures.words import quantity, shown_unit
-from fastpin.model.units import scaled, units
+from fastpin.model.units import units
 from fastpin.states.choice import StateChoice
 from fastpin.states.state import State
 
@@ -79,7 +79,7 @@ def draw_polar(states: DrawnStates, look: Look) -> Sheet:
     for kind, panel in enumerate(sheet.axes[0]):
         values = [curve[1 + kind] for curve in curves]
         largest = max(float(np.nanmax(np.abs(each), initial=0.0)) for each in values)
-        factor, label = scaled([largest], unit)
+        factor, label = unit.scale([largest])
         height = HEIGHT / (factor * largest) if largest > 0.0 else 0.0
         if kind == 1:
             height *= 0.6  # the shear needs room inwards too

@@ -23,7 +23,7 @@ from fastpin.model.checks import as_toml, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
-from fastpin.model.units import printed_scale
+from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.state import State
 
@@ -271,7 +271,7 @@ def _words(problem: Problem, name: str, span: Range) -> str:
     """The value of a load, or the range of its values, with the unit."""
     if span[0] == span[1]:
         return f"{name} = {short_load(problem, name, span[0])}"
-    factor, unit = printed_scale(problem, LOAD_KIND[name], span)
+    factor, unit = units(problem)[LOAD_KIND[name]].scale(span)
     low, high = (f"{factor * value:.3g}".replace("-", "−") for value in span)
     return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 

@@ -22,7 +22,7 @@ from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quanti
 from fastpin.model.bodies import Disk
 from fastpin.model.checks import instance
 from fastpin.model.points import Body
-from fastpin.model.units import scaled, units
+from fastpin.model.units import units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
@@ -85,8 +85,8 @@ def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
     axes = sheet.axes
     sheet.grid()
     unit, lines = units(states[0].problem)["traction"], state_lines(states)
-    column = f"hoop stress [{unit}]"
-    factor, label = scaled([float(np.abs(curve[column]).max()) for curve in curves], unit)
+    column = f"hoop stress [{unit.name}]"
+    factor, label = unit.scale([float(np.abs(curve[column]).max()) for curve in curves])
     open_dots = False
     for body, panel in zip(bodies, axes[:, 0], strict=True):
         mine = [curve for curve in curves if curve.parameters["body"] == body]
@@ -158,7 +158,7 @@ def draw_profile(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
     radius = states[0].problem.hole_radius
     depth, *columns = curves[0].columns
     unit = units(states[0].problem)["traction"]
-    factor, label = scaled([float(np.abs(curve[name]).max()) for curve in curves for name in columns], unit)
+    factor, label = unit.scale([float(np.abs(curve[name]).max()) for curve in curves for name in columns])
     for name, panel in zip(columns, axes.flat, strict=True):
         for curve, style in zip(curves, state_lines(states), strict=True):
             panel.plot(curve[depth] / radius, factor * curve[name], **style)
@@ -224,7 +224,7 @@ def draw_field(state: State, curves: list[Curve], component: str, look: Look) ->
     nearest = SINGULAR * radius if state.problem.pin_body == Disk() and state.problem.pin_load == "centre" else 0.0
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
-    factor, label = scaled([low, high], unit)
+    factor, label = unit.scale([low, high])
     signed = low < -0.02 * max(high, -low)
     levels = _levels(factor * low, factor * high)
     beyond = "both" if factor * min(float(curve[value].min()) for curve in curves) < levels[0] else "max"

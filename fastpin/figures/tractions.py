@@ -19,7 +19,7 @@ from fastpin.figures.style import Line
 from fastpin.figures.words import ANGLE, point_text, quantity
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.checks import true_or_false
-from fastpin.model.units import scaled, units
+from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.states.choice import StateChoice
 from fastpin.states.quantities import load_point
@@ -133,7 +133,7 @@ def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> She
 def _draw_curves(axes: Sequence[Axes], states: DrawnStates, lines: Sequence[Line], frame: Frame) -> None:
     """Draw the pressure and, with friction, the shear traction of all states."""
     problem = states[0].problem
-    factor, unit = scaled([float(state.pressure.max()) for state in states], units(problem)["traction"])
+    factor, unit = units(problem)["traction"].scale([float(state.pressure.max()) for state in states])
     for state, style in zip(states, lines, strict=True):
         angle, pressure, shear = frame.curves(state)
         axes[0].plot(angle, factor * pressure, **style)
@@ -155,7 +155,7 @@ def traction_curves(states: DrawnStates) -> list[Curve]:
     Columns: the angle in degrees from the bottom, increasing, pressure and shear traction in Pa or F/R. The values
     follow the fits at edges and borders; the nodal values are in the result.
     """
-    unit, frame, curves = units(states[0].problem)["traction"], Frame(states), []
+    unit, frame, curves = units(states[0].problem)["traction"].name, Frame(states), []
     for state in states:
         columns = zip(("angle [deg]", f"pressure [{unit}]", f"shear [{unit}]"), frame.curves(state), strict=True)
         curves.append(Curve({"load point": load_point(state)}, dict(columns)))

@@ -14,7 +14,7 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.units import acting_loads, printed_scale, printed_unit, units, with_unit
+from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
@@ -62,7 +62,7 @@ def point_text(state: State) -> str:
 def load_text(states: Sequence[State], index: int, name: str) -> str:
     """A load of one of the states with its unit as text. All loads of one kind have the same unit."""
     same_kind = [state.load[other] for state in states for other in LOADS if LOAD_KIND[other] == LOAD_KIND[name]]
-    factor, unit = printed_scale(states[0].problem, LOAD_KIND[name], same_kind)
+    factor, unit = units(states[0].problem)[LOAD_KIND[name]].scale(same_kind)
     load = states[index].load[name]
     if abs(load) <= ROUNDING * max(map(abs, same_kind)):
         return f"{name} = 0"
@@ -117,22 +117,20 @@ def wrapped_parts(text: str, width: float, size: float = CAPTION_SIZE) -> list[s
 
 def short_load(problem: Problem, name: str, value: float) -> str:
     """A load with its unit as a caption shows it; forces and moments are in N and N m if there is a thickness."""
-    factor, unit = printed_unit(problem, LOAD_KIND[name])
-    return short(factor * value, unit)
+    return short(value, units(problem)[LOAD_KIND[name]])
 
 
 def loads_text(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, with their units, as a heading shows them."""
     parts = []
     for name in acting_loads([load]):
-        factor, unit = printed_unit(problem, LOAD_KIND[name])
-        parts.append(f"{name} = {short(factor * load[name], unit, LOAD_DIGITS)}")
+        parts.append(f"{name} = {short(load[name], units(problem)[LOAD_KIND[name]], LOAD_DIGITS)}")
     return ", ".join(parts) or "no load"
 
 
-def short(value: float, unit: str, digits: int = DIGITS) -> str:
+def short(value: float, unit: Unit, digits: int = DIGITS) -> str:
     """A value with its unit as a caption shows it, rounded to so many significant digits."""
-    number, _, label = with_unit(value, unit, digits).partition(" ")
+    number, _, label = unit.text(value, digits).partition(" ")
     return f"{number.replace('-', '−')}\N{NO-BREAK SPACE}{shown_unit(label)}".strip()
 
 
@@ -148,7 +146,7 @@ def _material(material: Material, problem: Problem) -> str:
         return "rigid"
     if material.name:
         return shortened(material.name)
-    modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, "Pa")
+    modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"
 
 

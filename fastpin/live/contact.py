@@ -10,7 +10,7 @@ import math
 import threading
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -391,7 +391,7 @@ def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
     lug, bush = problem.joint.lug, problem.plate_body
     return {
         "title": title,
-        "units": units(problem),
+        "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
         "dimensionless": problem.dimensionless,
         "friction": problem.friction,
         "radius": problem.hole_radius,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from fastpin.errors import InputError
@@ -16,10 +16,13 @@ from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
-from fastpin.model.units import units
+from fastpin.model.units import PASCAL, Unit, units
 
 OWN = "other"
 """The choice of a material that is not in :data:`fastpin.MATERIALS`: its E and nu are given."""
+
+NUMBER = Unit(1.0, "")
+"""The unit of a plain number."""
 
 RIGID = "rigid"
 """The choice of a rigid material."""
@@ -76,17 +79,17 @@ def load_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
             check_loads(problem, LoadHistory([{name: scales.of_load(name)}]))
         except InputError:
             continue
-        found.append({"name": name, "unit": unit[kind], "size": scales.of_load(name)})
+        found.append({"name": name, "unit": asdict(unit[kind]), "size": scales.of_load(name)})
     return found
 
 
 def problem_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
     """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
-    unit = units(problem) | {"modulus": "1/beta*" if problem.dimensionless else "Pa"}
+    unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
     misfit = MISFITS * scales.misfit
     plate = problem.plate_body
     found = [
-        _slider("contact", "friction", problem.friction, "", 0.0, MOST_FRICTION),
+        _slider("contact", "friction", problem.friction, NUMBER, 0.0, MOST_FRICTION),
         _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
         _chooser("contact", "plane", problem.pair.plane, PLANES),
         *_material("pin", problem.pair.pin, unit["modulus"]),
@@ -160,8 +163,8 @@ NAMES = (
 """Names of all controls of problems."""
 
 
-def _slider(group: str, name: str, value: float | None, unit: str, least: float, most: float) -> dict[str, Any]:
-    return {"group": group, "name": name, "value": value, "unit": unit, "least": least, "most": most}
+def _slider(group: str, name: str, value: float | None, unit: Unit, least: float, most: float) -> dict[str, Any]:
+    return {"group": group, "name": name, "value": value, "unit": asdict(unit), "least": least, "most": most}
 
 
 def _chooser(group: str, name: str, value: str, choices: Mapping[str, str] | tuple[str, ...]) -> dict[str, Any]:
@@ -169,14 +172,14 @@ def _chooser(group: str, name: str, value: str, choices: Mapping[str, str] | tup
     return {"group": group, "name": name, "value": value, "choices": names}
 
 
-def _material(body: str, material: Material, unit: str) -> list[dict[str, Any]]:
+def _material(body: str, material: Material, unit: Unit) -> list[dict[str, Any]]:
     known = MATERIALS.get(material.name)
     alike = known is not None and (known.E, known.nu) == (material.E, material.nu)
     chosen = RIGID if material.is_rigid else material.name if alike else OWN
     found = [_chooser(body, f"{body}_material", chosen, (*MATERIALS, *([RIGID] * (body != "bush")), OWN))]
     if not material.is_rigid:
         found.append(_slider(body, f"{body}_E", material.E, unit, 0.1 * material.E, 3.0 * material.E))
-        found.append(_slider(body, f"{body}_nu", material.nu, "", 0.0, 0.5))
+        found.append(_slider(body, f"{body}_nu", material.nu, NUMBER, 0.0, 0.5))
     return found
 
 
@@ -194,7 +197,7 @@ def _changed_material(material: Material, body: str, changes: Mapping[str, Any])
     return Material(changes.get(modulus, material.E), changes.get(ratio, material.nu))
 
 
-def _pin(problem: Problem, length: str) -> list[dict[str, Any]]:
+def _pin(problem: Problem, length: Unit) -> list[dict[str, Any]]:
     body, radius = problem.pin_body, problem.hole_radius
     bore = body.bore_radius if isinstance(body, Tube) else 0.0
     found = [_slider("pin", "pin_bore", bore, length, 0.0, 0.9 * radius)]
@@ -215,7 +218,7 @@ def _changed_pin(problem: Problem, changes: Mapping[str, Any]) -> Disk | Tube:
     return Tube(bore, changes.get("bore_load", body.load if isinstance(body, Tube) else "uniform"))
 
 
-def _plate(problem: Problem, unit: dict[str, str]) -> list[dict[str, Any]]:
+def _plate(problem: Problem, unit: dict[str, Unit]) -> list[dict[str, Any]]:
     body, radius = problem.plate_body, problem.hole_radius
     found = [_chooser("plate", "plate_body", kind_of(body), PLATES)]
     if isinstance(body, (Ring, Bushing)):

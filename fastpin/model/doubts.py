@@ -25,7 +25,7 @@ from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.model.units import printed_unit
+from fastpin.model.units import units
 
 MOST_FRICTION, PERCENT = 2.0, 200.0
 """Friction above the first is rare: clean metals reach 1.5. The second is as much in percent.
@@ -340,12 +340,14 @@ def _too_large(problem: Problem, name: str, load: float, strain: float) -> Input
             f"{_meant(modulus, unit, factor)}",
         )
     kind = LOAD_KIND[name]
-    factor, unit = printed_unit(problem, kind)
-    hint = f"{kind}s are in {unit}" if problem.thickness else f"{kind}s are per thickness, in {unit}"
+    printed = units(problem)[kind]
+    hint = f"{kind}s are in {printed.name}" if problem.thickness else f"{kind}s are per thickness, in {printed.name}"
     if kind == "traction":
         hint = "stresses are in Pa"
     return InputWarning(
-        name, f"{_short(factor * load)} {unit} strains the bodies by {strain:.2g}, far beyond linear elasticity; {hint}"
+        name,
+        f"{_short(printed.factor * load)} {printed.name} strains the bodies by {strain:.2g}, "
+        f"far beyond linear elasticity; {hint}",
     )
 
 
@@ -362,14 +364,14 @@ def _too_small(problem: Problem, largest: dict[str, float], strains: dict[str, f
         and radius <= LARGEST_HOLE
         and force != 1.0
     ):
-        factor, unit = printed_unit(problem, "force")
+        unit, bearing = units(problem)["force"], _mega(force / (2.0 * radius))
         hint = (
             "forces are per thickness, in N/m: 1 N/mm is 1e3; divide a force in N by the thickness in m, or give the "
             "thickness"
         )
         yield InputWarning(
             name,
-            f"{_short(factor * largest[name])} {unit} is a bearing stress of {_mega(force / (2.0 * radius))} only; "
+            f"{_short(unit.factor * largest[name])} {unit.name} is a bearing stress of {bearing} only; "
             + (hint if problem.thickness is None else "forces are in N: 1 kN is 1e3"),
         )
     for name in ("sxx", "syy", "sxy"):

@@ -96,7 +96,7 @@ class Problem:
         An infinite plate, a ring lug, a bush in either of them, or any finite plate.
     thickness : float, optional
         Thickness of pin and plate, m. It changes no state. Printed texts then have forces in N, moments in N m and
-        energies in J. Loads and results in Python, JSON, CSV and HDF5 stay per thickness:
+        energies in J. Loads and results in Python and HDF5 stay per thickness:
         :meth:`fastpin.LoadHistory.per_thickness` converts loads. In case files loads are in N and N m then. Not for a
         dimensionless problem.
 

@@ -1,9 +1,15 @@
-"""Units of every kind of quantity, and SI prefixes."""
+"""Units of every kind of quantity, and SI prefixes.
+
+Everything that is printed, drawn or written as text takes its units from :func:`units`. With a thickness these are N,
+N m, J and N m/rad, and a factor goes with each. :func:`units_per_thickness` names the units of numbers in Python, HDF5
+files and indexes of sweeps. Outputs do not import it, see ``tests/project/test_layout.py``.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.problem import Problem
@@ -21,12 +27,13 @@ _SI = {
     "energy density": "J/m^2",
     "stress times strain": "Pa",
     "life": "cycles",
+    "work per stress": "m^2",
 }
 
-_WITH_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J"}
-"""Units of the kinds that are per thickness elsewhere, in printed texts of a problem with a thickness."""
+PER_THICKNESS = {"force": "N", "moment": "N m", "stiffness": "N m/rad", "energy": "J", "work per stress": "m^3"}
+"""The kinds that are per thickness in Python, and their units in printed texts of a problem with a thickness."""
 
-_WITH_PREFIX = frozenset({*_SI.values(), *_WITH_THICKNESS.values(), "s"} - {"", "cycles"})
+_WITH_PREFIX = frozenset({*_SI.values(), *PER_THICKNESS.values(), "s"} - {"", "cycles", "m^2", "m^3"})
 """Units that may get an SI prefix."""
 
 _DIMENSIONLESS = {
@@ -42,28 +49,58 @@ _DIMENSIONLESS = {
     "energy density": "F^2 beta*/R",
     "stress times strain": "F^2 beta*/R^2",
     "life": "cycles",
+    "work per stress": "F R beta*",
 }
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p"}
 
 
-def units(problem: Problem) -> dict[str, str]:
-    """The unit of every kind of quantity: SI, or the paper's units for a dimensionless problem."""
+@dataclass(frozen=True)
+class Unit:
+    """The unit in which values of a kind are printed.
+
+    Attributes
+    ----------
+    factor : float
+        A value in Python times this factor is in the unit.
+    name : str
+    """
+
+    factor: float
+    name: str
+
+    def __str__(self) -> str:
+        raise TypeError("a unit is printed by text or scale, which convert the value, or by its name")
+
+    def scale(self, values: Sequence[float]) -> tuple[float, str]:
+        """As :func:`scaled`, for values in Python: the factor converts them to the unit, too."""
+        factor, label = scaled([self.factor * value for value in values], self.name)
+        return self.factor * factor, label
+
+    def text(self, value: float, digits: int = 6) -> str:
+        """A value in Python as text in this unit with an SI prefix, to so many significant `digits`."""
+        factor, label = self.scale([value])
+        return f"{value * factor:.{digits}g} {label}"
+
+
+PASCAL = Unit(1.0, "Pa")
+"""The unit of moduli and strengths, which are never dimensionless."""
+
+DEGREE = Unit(1.0, "deg")
+"""The unit of angles and widths that are in degrees already."""
+
+
+def units(problem: Problem) -> dict[str, Unit]:
+    """The unit of every kind of quantity in printed texts: with the thickness of the problem, if it has one."""
+    found = {kind: Unit(1.0, name) for kind, name in units_per_thickness(problem).items()}
+    if problem.thickness is not None:
+        found |= {kind: Unit(problem.thickness, name) for kind, name in PER_THICKNESS.items()}
+    return found
+
+
+def units_per_thickness(problem: Problem) -> dict[str, str]:
+    """The unit of every kind of quantity in Python: SI, or the paper's units for a dimensionless problem."""
     return dict(_DIMENSIONLESS if problem.dimensionless else _SI)
-
-
-def printed_unit(problem: Problem, kind: str) -> tuple[float, str]:
-    """The factor and the unit of a kind of quantity in printed texts: in N, not in N/m, if there is a thickness."""
-    if problem.thickness is not None and kind in _WITH_THICKNESS:
-        return problem.thickness, _WITH_THICKNESS[kind]
-    return 1.0, units(problem)[kind]
-
-
-def printed_scale(problem: Problem, kind: str, values: Sequence[float]) -> tuple[float, str]:
-    """As :func:`scaled`, for values of a kind of quantity in printed texts of a problem."""
-    whole, unit = printed_unit(problem, kind)
-    factor, label = scaled([whole * value for value in values], unit)
-    return whole * factor, label
 
 
 def scaled(values: Sequence[float], unit: str) -> tuple[float, str]:
@@ -87,14 +124,7 @@ def acting_loads(loads: Sequence[Mapping[str, float]]) -> list[str]:
 
 def named_loads(problem: Problem, load: Mapping[str, float]) -> str:
     """The loads that are not zero, as text with their units."""
-    parts = []
-    for name in acting_loads([load]):
-        factor, unit = printed_unit(problem, LOAD_KIND[name])
-        parts.append(f"{name} = {with_unit(factor * load[name], unit, 5)}")
-    return ", ".join(parts) or "no load"
-
-
-def with_unit(value: float, unit: str, digits: int = 6) -> str:
-    """A value as text in its unit with an SI prefix, to so many significant `digits`."""
-    factor, label = scaled([value], unit)
-    return f"{value * factor:.{digits}g} {label}"
+    unit = units(problem)
+    return (
+        ", ".join(f"{name} = {unit[LOAD_KIND[name]].text(load[name], 5)}" for name in acting_loads([load])) or "no load"
+    )

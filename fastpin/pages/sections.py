@@ -16,7 +16,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.loads import named_load
 from fastpin.model.materials import Material
-from fastpin.model.units import acting_loads, named_loads, units, with_unit
+from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
@@ -80,7 +80,7 @@ def overview(page: Shared) -> Section:
     if states:
         largest = max(states, key=lambda state: state.peak_pressure)
         unit = units(problem)["traction"]
-        sentences = [f"largest contact pressure in these states: {with_unit(largest.peak_pressure, unit, 5)}"]
+        sentences = [f"largest contact pressure in these states: {unit.text(largest.peak_pressure, 5)}"]
         sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
         sentences += cycle_lines(problem, source.result.cycles)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
@@ -126,7 +126,7 @@ def case(page: Shared) -> Section:
     if not problem.dimensionless:
         clearance = problem.assembled_clearance
         rows += [
-            ("pin radius", with_unit(problem.hole_radius - clearance, unit["length"])),
+            ("pin radius", unit["length"].text(problem.hole_radius - clearance)),
             ("clearance / radius", f"{clearance / problem.hole_radius:.4g}"),
         ]
     known = page.source.knows_options
@@ -153,7 +153,7 @@ def materials(page: Shared) -> Section:
     found = {"pin": problem.pair.pin, "plate": problem.pair.plate}
     if isinstance(problem.plate_body, Bushing):
         found["bush"] = problem.plate_body.material
-    modulus = "1/beta*" if problem.dimensionless else "Pa"
+    modulus = Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL
     columns: list[Column] = [("constant", "", _CONSTANTS)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
     parts: list[Part] = [Table("Elastic constants and yield strength", columns)]
@@ -176,12 +176,12 @@ def materials(page: Shared) -> Section:
 _CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
 
 
-def _constants(material: Material, unit: str) -> list[str]:
+def _constants(material: Material, unit: Unit) -> list[str]:
     if material.is_rigid:
         return [material.name or "rigid", "infinite", "-", "infinite", "-"]
-    moduli = [with_unit(value, unit, 5) for value in (material.E, material.shear_modulus)]
+    moduli = [unit.text(value, 5) for value in (material.E, material.shear_modulus)]
     strength = material.known_yield_strength
-    yields = "not known" if strength is None else with_unit(strength, "Pa", 5)
+    yields = "not known" if strength is None else PASCAL.text(strength, 5)
     return [material.name or "no name", moduli[0], f"{material.nu:.5g}", moduli[1], yields]
 
 

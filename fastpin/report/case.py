@@ -15,7 +15,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.units import acting_loads, printed_scale, printed_unit, units, with_unit
+from fastpin.model.units import PASCAL, Unit, acting_loads, units
 from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
@@ -72,8 +72,9 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     else:
         scale = f"beta* = {surfaces.beta_star:.4g} 1/Pa"
         kind = "clearance" if problem.clearance >= 0.0 else "clearance (interference)"
-        size = f"hole radius {with_unit(problem.hole_radius, 'm')}, {kind} {with_unit(problem.clearance, 'm')}"
-        size += "" if problem.thickness is None else f", thickness {with_unit(problem.thickness, 'm')}"
+        length = units(problem)["length"]
+        size = f"hole radius {length.text(problem.hole_radius)}, {kind} {length.text(problem.clearance)}"
+        size += "" if problem.thickness is None else f", thickness {length.text(problem.thickness)}"
     pin_load = (
         _PIN_LOADS[problem.pin_load] if isinstance(problem.pin_body, Disk) else _BORE_LOADS[problem.pin_body.load]
     )
@@ -118,7 +119,7 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows of the bodies; none for a solid pin in an infinite plate."""
     length, body, rows = units(problem)["length"], problem.plate_body, []
     if isinstance(problem.pin_body, Tube):
-        rows.append(("pin body", f"hollow, bore radius {with_unit(problem.pin_body.bore_radius, length)}"))
+        rows.append(("pin body", f"hollow, bore radius {length.text(problem.pin_body.bore_radius)}"))
     if isinstance(body, Bushing):
         rows += [("plate body", _plate_body(body.inside, length)), *_bush(problem, body)]
     elif body != Plate():
@@ -126,33 +127,33 @@ def _bodies(problem: Problem) -> list[tuple[str, str]]:
     return rows
 
 
-def _plate_body(body: Plate | Ring | Compliance, length: str) -> str:
+def _plate_body(body: Plate | Ring | Compliance, length: Unit) -> str:
     if isinstance(body, Compliance):
         made = f", {body.made_by}" if body.made_by else ""
         return (
             f"finite plate, compliance of {body.order} harmonics{made}, loads: {', '.join(['forces', *body.columns])}"
         )
     if isinstance(body, Ring):
-        return f"ring of outer radius {with_unit(body.outer_radius, length)}, {_SUPPORTS[body.support]}"
+        return f"ring of outer radius {length.text(body.outer_radius)}, {_SUPPORTS[body.support]}"
     if body.reaction is None:
         return "infinite plate"
-    x, y = (with_unit(value, length) for value in body.reaction)
+    x, y = (length.text(value) for value in body.reaction)
     return f"infinite plate, forces balanced at x = {x}, y = {y}"
 
 
 def _bush(problem: Problem, bush: Bushing) -> list[tuple[str, str]]:
     """Return the rows of a bush and of its press fit."""
     unit = units(problem)
-    size = f"outer radius {with_unit(bush.outer_radius, unit['length'])}"
+    size = f"outer radius {unit['length'].text(bush.outer_radius)}"
     grip = "" if bush.friction is None else f", friction {bush.friction:g} in the plate"
     rows = [("bush", f"{_material(bush.material, problem.dimensionless)}, {size}{grip}")]
     if bush.interference:
         rows.append(
             (
                 "press fit",
-                f"interference {with_unit(bush.interference, unit['displacement'])}, "
-                f"pressure {with_unit(problem.press_fit_pressure, unit['traction'], 4)}, "
-                f"clearance after it {with_unit(problem.assembled_clearance, unit['displacement'])}",
+                f"interference {unit['displacement'].text(bush.interference)}, "
+                f"pressure {unit['traction'].text(problem.press_fit_pressure, 4)}, "
+                f"clearance after it {unit['displacement'].text(problem.assembled_clearance)}",
             )
         )
     return rows
@@ -164,16 +165,15 @@ def _hub(problem: Problem) -> str:
         return ""
     spring, unit = "", units(problem)
     if problem.hub_stiffness is not None:
-        factor, per_angle = printed_unit(problem, "stiffness")
-        spring = f" of stiffness {with_unit(factor * problem.hub_stiffness, per_angle)}"
+        spring = f" of stiffness {unit['stiffness'].text(problem.hub_stiffness)}"
     if problem.hub_radius is None:
         if not isinstance(problem.pin_body, Disk):
             return f"{spring} at the bore"
         if problem.surfaces.pin.is_rigid:
             return spring
         datum = problem.hole_radius / math.sqrt(problem.surfaces.pin_kolosov + 1.0)
-        return f"{spring} at radius {datum:.4g} {unit['length']}, the paper's datum"
-    return f"{spring} at radius {problem.hub_radius:g} {unit['length']}"
+        return f"{spring} at radius {datum:.4g} {unit['length'].name}, the paper's datum"
+    return f"{spring} at radius {problem.hub_radius:g} {unit['length'].name}"
 
 
 def _drive(problem: Problem) -> str:
@@ -181,7 +181,7 @@ def _drive(problem: Problem) -> str:
     if problem.drive == "force":
         return ""
     names = {"ux": "ux in place of Q", "uy": "uy in place of P", "both": "ux and uy in place of Q and P"}
-    length = units(problem)["length"]
+    length = units(problem)["length"].name
     words = f", {names[problem.drive]}"
     if problem.gauge_radius is not None:
         words += f" over radius {problem.gauge_radius:g} {length}"
@@ -226,7 +226,7 @@ def load_columns(problem: Problem, loads: Sequence[Mapping[str, float]]) -> list
     acting = acting_loads(loads)
     for name in acting:
         same_kind = [load[other] for other in acting for load in loads if LOAD_KIND[other] == LOAD_KIND[name]]
-        factor, label = printed_scale(problem, LOAD_KIND[name], same_kind)
+        factor, label = units(problem)[LOAD_KIND[name]].scale(same_kind)
         noise = ROUNDING * max(map(abs, same_kind))
         values = [0.0 if abs(load[name]) <= noise else load[name] * factor for load in loads]
         columns.append((name, label, [f"{value:.5g}" for value in values]))
@@ -237,7 +237,7 @@ def _material(material: Material, dimensionless: bool) -> str:
     if material.is_rigid:
         return "rigid"
     name = f"{material.name}, " if material.name else ""
-    modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {with_unit(material.E, 'Pa')}"
+    modulus = f"E = {material.E:.4g} / beta*" if dimensionless else f"E = {PASCAL.text(material.E)}"
     strength = material.known_yield_strength
-    yields = "" if strength is None else f", yields at {with_unit(strength, 'Pa', 4)}"
+    yields = "" if strength is None else f", yields at {PASCAL.text(strength, 4)}"
     return f"{name}{modulus}, nu = {material.nu:.4g}{yields}"

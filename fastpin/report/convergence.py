@@ -1,7 +1,8 @@
 """A convergence study as text tables, CSV and JSON.
 
-Angles are in degrees from the bottom of the hole, widths in degrees. All other values are in SI units, or in the units
-of a dimensionless problem. Only the text tables use SI prefixes.
+Angles are in degrees from the bottom of the hole, widths in degrees. All other values are in SI units, with the
+thickness of the problem if it has one, or in the units of a dimensionless problem. Only the text tables use SI
+prefixes.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 from fastpin.model.problem import Problem
-from fastpin.model.units import named_loads, scaled, units
+from fastpin.model.units import DEGREE, named_loads, scaled, units
 from fastpin.report.cells import csv_cell
-from fastpin.report.summary import json_ready
+from fastpin.report.summary import json_ready, printed_loads, unit_names
 from fastpin.report.table import Column, table
 from fastpin.states.quantities import bar_in_degrees, in_degrees, quantity
 from fastpin.storage.files import replacing
@@ -85,7 +86,7 @@ class ReportedSeries:
         reported: Callable[[float], float]
         reported_bar: Callable[[float], float]
         if outcome is None:
-            label, unit = quantity(name).label, units(problem).get(quantity(name).kind, "deg")
+            label, unit = quantity(name).label, units(problem).get(quantity(name).kind, DEGREE)
             reported, reported_bar = partial(in_degrees, name), partial(bar_in_degrees, name)
         else:
             label, unit = name, outcome.unit_in(units(problem))
@@ -93,12 +94,12 @@ class ReportedSeries:
         reported_last = reported(last)
 
         def in_report_units(value: float) -> float:  # an angle stays next to the last one, also across 180 degrees
-            return reported_last + reported_bar(value - last)
+            return unit.factor * (reported_last + reported_bar(value - last))
 
         return cls(
-            series.corner, name, label, unit, tuple(map(in_report_units, series.values)), estimate.verdict,
-            estimate.order, in_report_units(estimate.limit), reported_bar(estimate.bar), in_report_units(series.path),
-            reported_bar(ROUNDING * series.size), outcome is not None,
+            series.corner, name, label, unit.name, tuple(map(in_report_units, series.values)), estimate.verdict,
+            estimate.order, in_report_units(estimate.limit), unit.factor * reported_bar(estimate.bar),
+            in_report_units(series.path), unit.factor * reported_bar(ROUNDING * series.size), outcome is not None,
         )  # fmt: skip
 
 
@@ -216,7 +217,8 @@ def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
             "title": title,
             "complete": convergence.complete,
             "arc": [float(grid.theta[0]), 2.0 * math.pi + grid.theta[0] if grid.closed else float(grid.theta[-1])],
-            "loads": convergence.loads,
+            "units": unit_names(convergence.problem),
+            "loads": {corner: printed_loads(convergence.problem, load) for corner, load in convergence.loads.items()},
             "unread": convergence.unread,
             "studies": [
                 {

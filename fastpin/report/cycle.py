@@ -12,7 +12,9 @@ import numpy as np
 from fastpin.damage import Fatigue, cycle_states, fatigue
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.units import units, with_unit
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.problem import Problem
+from fastpin.model.units import units
 from fastpin.report.case import ROUNDING, hole_body
 from fastpin.report.curves import Curve
 from fastpin.states.cycles import Cycle
@@ -70,9 +72,7 @@ def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
     pressure = max((state.peak_pressure for state in states), default=0.0)
     if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"
-    parts = [
-        f"{with_unit(spot.parameter, units(problem)['stress times strain'], 4)} at {from_bottom(spot.theta):z.2f} deg"
-    ]
+    parts = [f"{units(problem)['stress times strain'].text(spot.parameter, 4)} at {from_bottom(spot.theta):z.2f} deg"]
     if np.isfinite(spot.plane):
         parts.append(f"normal of the plane {np.degrees(spot.plane):z.2f} deg from +x")
     if not np.isnan(spot.life):
@@ -95,7 +95,7 @@ def _in_words(cycle: LoadCycle, label: str, kind: str, natural: dict[str, float]
     largest, angle = _largest(cycle, label.replace(" ", "_"))
     if largest is None or angle is None or largest <= ROUNDING * natural[kind]:
         return f"{label} 0"
-    return f"{label} up to {with_unit(largest, units(cycle.states[0].problem)[kind], 4)} at {angle:z.2f} deg"
+    return f"{label} up to {units(cycle.states[0].problem)[kind].text(largest, 4)} at {angle:z.2f} deg"
 
 
 def document(cycle: LoadCycle) -> dict[str, Any]:
@@ -108,10 +108,11 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
         found[f"largest_{name}"], found[f"largest_{name}_angle"] = _largest(cycle, name)
     found["slip_range_is_exact"] = cycle.has_exact_slip_range
-    found["dissipation"] = cycle.dissipation
+    unit = units(cycle.states[0].problem)["energy"]
+    found["dissipation"] = unit.factor * cycle.dissipation
     found["nodes"] = {word: int(np.sum(cycle.behaviour == behaviour)) for behaviour, word in WORDS.items()}
     inside = len(cycle.states) > 2
-    found["work"] = {name: loop.work if inside else None for name, loop in cycle.loops.items()}
+    found["work"] = {name: unit.factor * loop.work if inside else None for name, loop in cycle.loops.items()}
     return found
 
 
@@ -134,13 +135,38 @@ def write_csv(cycle: LoadCycle, path: Path) -> None:
             writer.writerow([from_bottom(angle), *values])
 
 
-def loop_curves(cycle: LoadCycle) -> list[Curve]:
-    """Return the loops of the loads: a curve for each load, with the displacement on which it does work."""
-    points = np.array([load_point(state) for state in cycle.states])
-    return [
-        Curve({"load": name}, {"load point": points, "displacement": loop.displacement, "value": loop.load})
-        for name, loop in cycle.loops.items()
-    ]
+CONJUGATES = {
+    "force": ("displacement", "displacement"),
+    "moment": ("rotation", "rotation"),
+    "traction": ("conjugate displacement", "work per stress"),
+}
+"""By kind of load: the name of the displacement on which it does work, and its kind of quantity."""
+
+
+def loop_curve(cycle: LoadCycle) -> Curve:
+    """Return the loops: a row for each state, with each load and the displacement on which it does work."""
+    unit = units(cycle.states[0].problem)
+    columns = {"load point": np.array([load_point(state) for state in cycle.states])}
+    for name, loop in cycle.loops.items():
+        words, conjugate = CONJUGATES[LOAD_KIND[name]]
+        of_load, of_displacement = unit[LOAD_KIND[name]], unit[conjugate]
+        columns[f"{name} [{of_load.name}]"] = of_load.factor * loop.load
+        columns[f"{words} of {name} [{of_displacement.name}]"] = of_displacement.factor * loop.displacement
+    return Curve({}, columns)
+
+
+def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
+    """Return the changes over cycles, a row for each cycle."""
+    unit = units(problem)
+    kinds = {"dissipation": "energy", "rotation_change": "rotation"}
+    columns = {}
+    for name in Cycle._fields:
+        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float)
+        if name in kinds:
+            columns[f"{name} [{unit[kinds[name]].name}]"] = unit[kinds[name]].factor * values
+        elif name != "solved":
+            columns[name] = values
+    return Curve({}, columns)
 
 
 def _largest(cycle: LoadCycle, name: str) -> tuple[float | None, float | None]:

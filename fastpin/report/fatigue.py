@@ -15,7 +15,7 @@ def fatigue_curve(found: Fatigue) -> Curve:
 
     Angles are in degrees from the bottom of the hole, the planes' normals in degrees from the +x axis.
     """
-    length = units(found.problem)["length"]
+    length = units(found.problem)["length"].name
     angles = np.array([from_bottom(angle) for angle in found.theta.ravel().tolist()])
     columns = {
         "angle [deg]": angles,

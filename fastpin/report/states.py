@@ -15,7 +15,7 @@ from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, instances
 from fastpin.model.problem import Problem
-from fastpin.model.units import printed_scale, printed_unit, units, with_unit
+from fastpin.model.units import Unit, units
 from fastpin.report.case import ROUNDING, hole_body, load_columns
 from fastpin.report.table import (
     MAX_ROWS,
@@ -263,7 +263,7 @@ def quantity_column(
         return each.label, "deg", [_angle(value) + bar for value, bar in zip(values, bars, strict=True)]
     noise = ROUNDING * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
     cleaned = [0.0 if abs(value) <= noise else value for value in values]
-    factor, label = (_DEGREE, "deg") if each.kind == "width" else printed_scale(problem, each.kind, cleaned)
+    factor, label = (_DEGREE, "deg") if each.kind == "width" else units(problem)[each.kind].scale(cleaned)
     bars = [_bar(state, factor, name) for state in states]
     return each.label, label, [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)]
 
@@ -281,7 +281,7 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     state = max(distinct.values(), key=lambda state: state.peak_hoop_stress().value)
     peak = state.peak_hoop_stress()
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
-    factor, unit = printed_scale(problem, "traction", [peak.value])
+    factor, unit = units(problem)["traction"].scale([peak.value])
     text = (
         f"largest hoop stress of the {hole_body(problem)} in these states: "
         f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop')} {unit}"
@@ -293,7 +293,7 @@ def hoop_line(problem: Problem, states: Sequence[State]) -> str:
     if len(known) == len(parts):
         terms = [f"{value:.4g} x {name} stress" for name, value in parts.items()]
         if peak.press_fit:
-            terms.append(f"{with_unit(peak.press_fit, units(problem)['traction'], 4)} of the press fit")
+            terms.append(f"{units(problem)['traction'].text(peak.press_fit, 4)} of the press fit")
         known.append(f"it is {' + '.join(terms)}")
     return "; ".join([text, *known])
 
@@ -309,11 +309,11 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     if fit.open_margin < 0.0:
         return (
             f"note: the bush would open {where}: it needs a press-fit pressure of "
-            f"{with_unit(fit.pressure_to_close, unit, 4)}, not {with_unit(fit.press_fit_pressure, unit, 4)}; "
+            f"{unit.text(fit.pressure_to_close, 4)}, not {unit.text(fit.press_fit_pressure, 4)}; "
             "these states hold for a bonded bush"
         )
     needed = max(fit.least_friction for _, fit in fits)
-    text = f"smallest pressure between bush and plate: {with_unit(fit.open_margin, unit, 4)} {where}"
+    text = f"smallest pressure between bush and plate: {unit.text(fit.open_margin, 4)} {where}"
     if fit.friction is None or fit.friction >= needed:
         return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
     return f"{text}\nnote: the bush would slip: it needs a friction of {needed:.3g}, not {fit.friction:g}"
@@ -327,19 +327,19 @@ def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
     return lines
 
 
-def _first_and_last(values: list[float], unit: str, digits: int) -> list[str]:
+def _first_and_last(values: list[float], unit: Unit, digits: int) -> list[str]:
     """Return the first and the last value as text. Values below :data:`ROUNDING` of the largest become 0."""
     noise = ROUNDING * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     cleaned = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
-    return ["not known" if math.isnan(value) else with_unit(value, unit, digits) for value in cleaned]
+    return ["not known" if math.isnan(value) else unit.text(value, digits) for value in cleaned]
 
 
 def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
     first, last = cycles[0], cycles[-1]
     steady = periodic_from(cycles)
-    factor, energy = printed_unit(problem, "energy")
-    dissipation = _first_and_last([factor * cycle.dissipation for cycle in cycles], energy, 4)
-    turned = _first_and_last([cycle.rotation_change for cycle in cycles], units(problem)["rotation"], 3)
+    unit = units(problem)
+    dissipation = _first_and_last([cycle.dissipation for cycle in cycles], unit["energy"], 4)
+    turned = _first_and_last([cycle.rotation_change for cycle in cycles], unit["rotation"], 3)
     state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
     corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
     where = f"to corner {last.corner + 1:,}"

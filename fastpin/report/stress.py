@@ -71,7 +71,7 @@ def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
 
     Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R.
     """
-    unit = units(states[0].problem)["traction"]
+    unit = units(states[0].problem)["traction"].name
     curves = []
     for each in bodies_of(states[0], body):
         for state in states:
@@ -112,9 +112,9 @@ def depth_curves(
     for state in states:
         place = state.peak_hoop_stress(body).angle if angle is None else math.radians(number("angle", angle) - 90.0)
         found = state.stress(Points.at_depth(below, place), body)
-        columns = {f"depth [{unit['length']}]": below}
+        columns = {f"depth [{unit['length'].name}]": below}
         for name in ("radial", "hoop", "shear", "von_mises"):
-            columns[f"{COMPONENTS[name]} [{unit['traction']}]"] = component_of(found, name)
+            columns[f"{COMPONENTS[name]} [{unit['traction'].name}]"] = component_of(found, name)
         parameters = {"body": body, "load point": load_point(state), "angle [deg]": from_bottom(place)}
         curves.append(Curve(parameters, columns))
     return curves
@@ -175,9 +175,9 @@ def field_curves(
         values = component_of(state.stress(Points.at_depth(below, theta), each), component)
         distance = radius + below if each == "plate" else radius - below
         columns = {
-            f"radius [{unit['length']}]": np.broadcast_to(distance, values.shape).ravel(),
+            f"radius [{unit['length'].name}]": np.broadcast_to(distance, values.shape).ravel(),
             "angle [deg]": np.broadcast_to(np.degrees(theta) + 90.0, values.shape).ravel(),
-            f"{COMPONENTS[component]} [{unit['traction']}]": values.ravel(),
+            f"{COMPONENTS[component]} [{unit['traction'].name}]": values.ravel(),
         }
         curves.append(Curve({"body": each, "load point": load_point(state)}, columns))
     return curves

@@ -13,13 +13,15 @@ from fastpin.model.bodies import PinBody, PlateBody, body_document
 from fastpin.model.case import Case
 from fastpin.model.compliance import Compliance
 from fastpin.model.history import Block
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
-from fastpin.model.units import units
+from fastpin.model.problem import Problem
+from fastpin.model.units import DEGREE, units
 from fastpin.report import cycle as cycle_report
 from fastpin.solver.result import Result
+from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point
+from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
 from fastpin.version import __version__
 
@@ -32,8 +34,8 @@ def document(
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
-    The entry ``units`` names the unit of every kind of quantity. Angles are in degrees from the bottom of the hole,
-    widths in degrees.
+    The entry ``units`` names the unit of every kind of quantity: with a thickness forces are in N, else in N/m. Angles
+    are in degrees from the bottom of the hole, widths in degrees.
 
     Parameters
     ----------
@@ -45,14 +47,14 @@ def document(
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
     """
-    problem, pair = case.problem, case.problem.pair
+    problem, pair, unit = case.problem, case.problem.pair, units(case.problem)
     alpha, beta = problem.surfaces.dundurs()
     found = {
         "fastpin": __version__,
         "title": case.title,
         "complete": result is not None and result.complete,
         "error": error,
-        "units": {**units(problem), "angle": "deg from the bottom of the hole, counter-clockwise"},
+        "units": unit_names(problem),
         "problem": {
             "pin": _material_summary(pair.pin),
             "plate": _material_summary(pair.plate),
@@ -65,7 +67,7 @@ def document(
             "pin_load": problem.pin_load,
             "rotation": problem.rotation,
             "hub_radius": problem.hub_radius,
-            "hub_stiffness": problem.hub_stiffness,
+            "hub_stiffness": problem.hub_stiffness and unit["stiffness"].factor * problem.hub_stiffness,
             "drive": problem.drive,
             "gauge_radius": problem.gauge_radius,
             "thickness": problem.thickness,
@@ -75,19 +77,37 @@ def document(
             "press_fit_pressure": problem.press_fit_pressure,
             "dimensionless": problem.dimensionless,
         },
-        "history": {"loads": list(LOADS), "blocks": [_block_summary(block) for block in case.history.blocks]},
+        "history": {"loads": list(LOADS), "blocks": [_block_summary(problem, block) for block in case.history.blocks]},
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
-        "cycles": [] if result is None else [row._asdict() for row in result.cycles],
+        "cycles": [] if result is None else [_cycle_summary(problem, row) for row in result.cycles],
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
     return json_ready(found)
 
 
-def _block_summary(block: Block) -> dict[str, Any]:
+def unit_names(problem: Problem) -> dict[str, str]:
+    """Return the name of the unit of every kind of quantity in the JSON of a problem."""
+    angle = {"angle": "deg from the bottom of the hole, counter-clockwise"}
+    return {kind: unit.name for kind, unit in units(problem).items()} | angle
+
+
+def printed_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, float]:
+    """Return loads, by name, in printed units."""
+    unit = units(problem)
+    return {name: unit[LOAD_KIND[name]].factor * value for name, value in load.items()}
+
+
+def _block_summary(problem: Problem, block: Block) -> dict[str, Any]:
     """Return a block of the history. Loads that a corner does not give become None."""
-    return {"repeat": block.count, "corners": block.given.tolist()}
+    unit = units(problem)
+    factors = np.array([unit[kind].factor for kind in LOAD_KIND.values()])
+    return {"repeat": block.count, "corners": (factors * block.given).tolist()}
+
+
+def _cycle_summary(problem: Problem, row: Cycle) -> dict[str, Any]:
+    return row._asdict() | {"dissipation": units(problem)["energy"].factor * row.dissipation}
 
 
 def _material_summary(material: Material) -> dict[str, Any]:
@@ -105,21 +125,31 @@ def _body_summary(body: PinBody | PlateBody) -> dict[str, Any]:
 
 def _state_summary(state: State) -> dict[str, Any]:
     resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
+    unit = units(state.problem)
+
+    def in_units(name: str, value: float) -> float:
+        """A quantity that is in degrees already, if it is an angle, in printed units."""
+        return unit.get(quantity(name).kind, DEGREE).factor * value
+
     return {
         "load_point": load_point(state),
         "step": state.step,
         "fraction": state.fraction,
-        "load": state.load,
+        "load": printed_loads(state.problem, state.load),
         "in_contact": state.in_contact,
-        **{name: in_degrees(name, each.of(state)) for name, each in QUANTITIES.items() if name not in resultants},
+        **{
+            name: in_units(name, in_degrees(name, each.of(state)))
+            for name, each in QUANTITIES.items()
+            if name not in resultants
+        },
         "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],
         "slip": [(*interval_from_bottom(start, stop), sign) for start, stop, sign in state.slip_zones],
-        "energy": state.energy,
-        "resultants": resultants,
+        "energy": unit["energy"].factor * state.energy,
+        "resultants": printed_loads(state.problem, resultants),
         "residuals": state.residuals,
-        "error_bars": bars and {name: bar_in_degrees(name, bar) for name, bar in bars.items()},
+        "error_bars": bars and {name: in_units(name, bar_in_degrees(name, bar)) for name, bar in bars.items()},
     }
 
 

@@ -6,7 +6,7 @@ import csv
 import io
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from fastpin.model.checks import as_toml
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
-from fastpin.model.units import printed_unit, scaled, units
+from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.report.cells import csv_cell
 from fastpin.report.field_words import field_words
 from fastpin.report.table import Column, table
@@ -54,6 +54,9 @@ _KIND = {
 }
 """The kind of every field of a case that has a unit, apart from the loads."""
 
+THICKNESS = "contact.thickness"
+"""The field of the thickness."""
+
 ROUNDING = 1e-9
 """Part of the largest value below which values are rounding. Figures show them as 0."""
 
@@ -86,10 +89,10 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     A plan without outcomes has the most important key figures in their place. `rows` come from
     :func:`fastpin.studies.sweep.rows`.
     """
-    unit = _units(plan, rows)
+    rows, unit = printed_rows(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
-        columns.append(_column(name, [row[name] for row in rows], _field_unit(plan, name, unit)))
+        columns.append(_column(name, [row[name] for row in rows], unit.get(_kind(name), "")))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
@@ -100,7 +103,8 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
 def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
-    Units are SI, or the paper's for dimensionless problems. A function of the user has its own unit.
+    Units are SI, with the thickness of each run if all runs have one, or the paper's for dimensionless problems. A
+    function of the user has its own unit.
 
     Raises
     ------
@@ -108,7 +112,7 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
         If the file can't be written.
     """
     check_writable(path)
-    unit = _units(plan, rows)
+    rows, unit = printed_rows(plan, rows)
     named = [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
     names = ["id", *plan.fields, *plan.outcomes, *KEY_FIGURES, "seconds", "started", "host", "status", "reason"]
     out = io.StringIO()
@@ -239,7 +243,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
         See :func:`check_axes`.
     """
     x, y, others = check_axes(plan, value, x, y)
-    unit = _units(plan, rows)
+    rows, unit = printed_rows(plan, rows)
     found = [row.get(value) for row in rows if row["status"] == DONE and row.get(value) is not None]
     least = _rounding(plan, rows, value, unit)
     factor, label = scaled(
@@ -271,7 +275,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = scaled(values, _field_unit(plan, name, unit))
+    factor, label = scaled(values, unit.get(_kind(name), ""))
     axis = Axis(_label(field_words(name), label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
 
@@ -285,7 +289,7 @@ def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, st
     words, given = field_words(field), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
-    factor, label = scaled(given, _field_unit(plan, field, unit))
+    factor, label = scaled(given, unit.get(_kind(field), ""))
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
@@ -312,22 +316,39 @@ def _column(name: str, values: Sequence[Any], unit: str) -> Column:
     return name, label, ["-" if value is None else f"{value * factor:.5g}" for value in values]
 
 
-def _units(plan: Plan, rows: Sequence[Row]) -> dict[str, str]:
-    """Return the unit of every kind of quantity; none if only some of the runs are dimensionless."""
+def printed_rows(plan: Plan, rows: Sequence[Row]) -> tuple[Sequence[Row], dict[str, str]]:
+    """Return rows with the outcomes and key figures in printed units, and the units by kind.
+
+    Each run counts with its own thickness. There are no units if only some of the runs are dimensionless.
+    """
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
-        return {}
-    return {**units(plan.case(plan.points[0]).problem), "angle": "deg"}
+        return rows, {}
+    problem = plan.case(plan.points[0]).problem
+    names = {kind: unit.name for kind, unit in units(problem).items()} | {"angle": DEGREE.name}
+    if problem.thickness is None:  # then no run has one: the plan has seen to that
+        return rows, names
+    usual = _usual_thickness(plan)
+    thicknesses = [usual if row.get(THICKNESS) is None else row[THICKNESS] for row in rows]
+    of_thickness = {each: units(replace(problem, thickness=each)) for each in {*thicknesses}}
+    found = []
+    for row, thickness in zip(rows, thicknesses, strict=True):
+        unit = of_thickness[thickness]
+        factors = {name: unit[kind].factor for name, kind in KEY_FIGURES.items() if kind in unit}
+        factors |= {name: outcome.unit_in(unit).factor for name, outcome in plan.outcomes.items()}
+        known = {name: factor * row[name] for name, factor in factors.items() if row.get(name) is not None}
+        found.append({**row, **known})
+    return found, names
 
 
-def _field_unit(plan: Plan, name: str, unit: dict[str, str]) -> str:
-    """Return the unit of a varied field as the plan gives it: loads of a case with a thickness are in N."""
-    kind = _kind(name)
-    return printed_unit(plan.case(plan.points[0]).problem, kind)[1] if kind in unit else ""
+def _usual_thickness(plan: Plan) -> float | None:
+    """Return the thickness of the points that do not vary it; None if all do. Points of equal states share a case."""
+    usual = (plan.case(point).problem.thickness for point in plan.points if THICKNESS not in point.values)
+    return next(usual, None)
 
 
 def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
     if value in plan.outcomes:
-        return plan.outcomes[value].unit_in(unit)
+        return plan.outcomes[value].unit_in({kind: Unit(1.0, name) for kind, name in unit.items()}).name
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
 
 

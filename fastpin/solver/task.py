@@ -23,6 +23,7 @@ from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import REMOTE, Corner, M
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.units import units
 from fastpin.solver.arc import candidate_grids, narrow_grids
 from fastpin.solver.driven import pushes
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
@@ -310,9 +311,9 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
     unit = radius / problem.surfaces.beta_star
     largest = max(pin, moment) or remote or unit
     if largest < LEAST_LOAD * unit:
-        raise InputError(
-            "history", f"the largest load must be at least {LEAST_LOAD:g} times R/beta* = {unit:g} N/m, or all zero"
-        )
+        printed = units(problem)["force"]
+        least = f"{LEAST_LOAD:g} times R/beta* = {printed.factor * unit:g} {printed.name}"
+        raise InputError("history", f"the largest load must be at least {least}, or all zero")
     return unit * 2.0 ** math.ceil(math.log2(largest / unit))
 
 

@@ -19,7 +19,7 @@ from fastpin.model.angles import near_bottom
 from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.units import units
+from fastpin.model.units import units_per_thickness
 from fastpin.states.state import State
 
 if TYPE_CHECKING:
@@ -283,7 +283,7 @@ class LoadCycle:
 
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """The values of all nodes, shape (n,), and their unit, by name. Quantities that are not known are left out."""
-        unit = units(self.states[0].problem)
+        unit = units_per_thickness(self.states[0].problem)
         pressures, shears = self.pressure_extremes, self.shear_extremes
         found = {
             "theta": (self.theta, "rad"),

@@ -18,7 +18,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
-from fastpin.model.units import named_loads, units, with_unit
+from fastpin.model.units import named_loads, units
 from fastpin.states import peaks, zones
 from fastpin.states.cusps import ShearNodes
 from fastpin.states.exponents import contact_exponents, signs_beside, stick_exponents
@@ -144,7 +144,7 @@ class State(ReadOnly):
         if not self.in_contact:
             return f"{head}, no contact, {self.grid.size} nodes>"
         peaks_ = [
-            f"peak {name} {with_unit(value, unit)} at {from_bottom(angle):z.2f} deg"
+            f"peak {name} {unit.text(value)} at {from_bottom(angle):z.2f} deg"
             for name, value, angle in (
                 ("pressure", self.peak_pressure, self.peak_pressure_angle),
                 ("shear", self.peak_shear, self.peak_shear_angle),

@@ -10,7 +10,7 @@ import h5py
 from fastpin.errors import InputError
 from fastpin.model.checks import file_path, instance
 from fastpin.model.loads import LOADS
-from fastpin.model.units import units
+from fastpin.model.units import units_per_thickness
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES, load_point
 from fastpin.storage.damage import as_python
@@ -105,7 +105,7 @@ def _dimensions(name: str) -> list[str]:
 
 
 def _of_result(result: Result) -> tuple[Variables, dict[str, Any]]:
-    unit = units(result.problem)
+    unit = units_per_thickness(result.problem)
     variables: Variables = {
         "state": (["state"], list(range(len(result))), {"units": ""}),
         "theta": (["theta"], result.grid.theta, {"units": "rad"}),
@@ -138,7 +138,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
     except ImportError:
         raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
     instance("result", result, Result, "a Result")
-    unit = {**units(result.problem), "angle": "rad", "width": "rad"}
+    unit = {**units_per_thickness(result.problem), "angle": "rad", "width": "rad"}
     named = dict(zip(LOADS, load_units(result.problem), strict=True))
     rows = [
         {

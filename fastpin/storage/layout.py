@@ -35,7 +35,7 @@ from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.model.units import units
+from fastpin.model.units import units_per_thickness
 from fastpin.states.cycles import Cycle
 from fastpin.states.marks import Marks
 from fastpin.states.old_borders import BITS
@@ -173,7 +173,7 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
     _make_states(file, problem, grid, NODE_FIELDS | BORDER_FIELDS | (SLIP_FIELDS if options.get("slip_sums") else {}))
-    cycles, unit = file.create_group("cycles"), units(problem)
+    cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
 
@@ -194,7 +194,7 @@ def _write_problem(group: h5py.Group, problem: Problem) -> None:
     for name, material in (("pin", problem.pair.pin), ("plate", problem.pair.plate)):
         write_material(group, name, material)
     write_bodies(group, problem)
-    group.attrs["units"] = [f"{kind}: {name}" for kind, name in units(problem).items()]
+    group.attrs["units"] = [f"{kind}: {name}" for kind, name in units_per_thickness(problem).items()]
 
 
 def read_problem(file: h5py.File) -> Problem:
@@ -294,7 +294,7 @@ def _growing(group: h5py.Group, name: str, shape: tuple[int, ...], dtype: type, 
 
 def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[str, str]) -> None:
     """Create the arrays of ``/states`` without rows. `fields` are the fields with node values, with their kinds."""
-    group, unit = file.create_group("states"), units(problem)
+    group, unit = file.create_group("states"), units_per_thickness(problem)
     scales = {
         "state": _growing(group, "state", (), np.int64, ""),
         "theta": group.create_dataset("theta", data=grid.theta),
@@ -321,7 +321,7 @@ def _make_states(file: h5py.File, problem: Problem, grid: Grid, fields: Mapping[
 
 def load_units(problem: Problem) -> list[str]:
     """Return the unit of each load, in the order of a load vector."""
-    unit = units(problem)
+    unit = units_per_thickness(problem)
     return [unit[LOAD_KIND[name]] for name in LOADS]
 
 

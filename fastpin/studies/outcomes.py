@@ -24,6 +24,7 @@ import numpy as np
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
+from fastpin.model.units import DEGREE, Unit
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.state import State
@@ -127,9 +128,9 @@ class Outcome:
         """A difference of values in the units of reports: of angles and widths in degrees."""
         return math.degrees(bar) if self.kind in ("angle", "width") else bar
 
-    def unit_in(self, units: Mapping[str, str]) -> str:
-        """The unit of reports. `units` is that of every kind, see :func:`fastpin.model.units.units`."""
-        return "deg" if self.kind in ("angle", "width") else units.get(self.kind, self.unit)
+    def unit_in(self, units: Mapping[str, Unit]) -> Unit:
+        """The unit of :meth:`reported` values. `units` is that of every kind, see :func:`fastpin.model.units.units`."""
+        return DEGREE if self.kind in ("angle", "width") else units.get(self.kind, Unit(1.0, self.unit))
 
 
 class OutcomeValue(NamedTuple):

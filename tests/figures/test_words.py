@@ -18,6 +18,7 @@ from fastpin.figures.words import (
     wrapped_parts,
 )
 from fastpin.model import Bushing, Plate, Ring, Tube
+from fastpin.model.units import Unit
 from tests.support.samples import sample_result
 
 PAIR = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"], "stress")
@@ -41,13 +42,16 @@ def test_axes_have_a_unit_in_parentheses(words, unit, expected):
     assert quantity(words, unit) == expected
 
 
+METRE = Unit(1.0, "m")
+
+
 def test_numbers_are_rounded_and_keep_their_units_on_the_line():
-    assert plain(short(0.0123456, "m")) == "12.3 mm"
-    assert plain(short(-2e-6, "m")) == "−2 µm"
-    assert " " not in short(0.0123456, "m")
-    rows = wrapped(" ".join([short(0.0123456, "m")] * 9), 1.2)
+    assert plain(short(0.0123456, METRE)) == "12.3 mm"
+    assert plain(short(-2e-6, METRE)) == "−2 µm"
+    assert " " not in short(0.0123456, METRE)
+    rows = wrapped(" ".join([short(0.0123456, METRE)] * 9), 1.2)
     assert len(rows) > 2
-    assert {word for row in rows for word in row.split(" ")} == {short(0.0123456, "m")}
+    assert {word for row in rows for word in row.split(" ")} == {short(0.0123456, METRE)}
 
 
 @pytest.mark.parametrize(

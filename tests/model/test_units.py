@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from fastpin.model.units import scaled
+from fastpin.model.problem import Problem
+from fastpin.model.units import Unit, scaled, units, units_per_thickness
+from tests.support.samples import PAIR
 
 
 @pytest.mark.parametrize(
@@ -23,3 +25,24 @@ from fastpin.model.units import scaled
 def test_scaled(values: list[float], unit: str, expected: tuple[float, str]) -> None:
     factor, label = scaled(values, unit)
     assert (factor, label) == (pytest.approx(expected[0]), expected[1])
+
+
+def test_a_thickness_comes_as_a_factor_and_a_unit() -> None:
+    plain, thick = (units(Problem(PAIR, 0.01, 2e-5, 0.4, thickness=each)) for each in (None, 0.01))
+    assert {kind: unit.name for kind, unit in plain.items()} == units_per_thickness(Problem(PAIR, 0.01, 2e-5, 0.4))
+    changed = {kind: (plain[kind].name, unit) for kind, unit in thick.items() if unit != plain[kind]}
+    assert changed == {
+        "force": ("N/m", Unit(0.01, "N")),
+        "moment": ("N", Unit(0.01, "N m")),
+        "stiffness": ("N/rad", Unit(0.01, "N m/rad")),
+        "energy": ("J/m", Unit(0.01, "J")),
+        "work per stress": ("m^2", Unit(0.01, "m^3")),
+    }
+    assert (plain["force"].text(5e5), thick["force"].text(5e5)) == ("500 kN/m", "5 kN")
+    assert thick["force"].scale([5e5]) == (pytest.approx(1e-5), "kN")
+    assert thick["work per stress"].text(1e-4) == "1e-06 m^3"  # a prefix would count in its cube
+
+
+def test_a_unit_without_its_factor_is_found() -> None:
+    with pytest.raises(TypeError, match="a unit is printed by text or scale"):
+        f"{Unit(0.01, 'N')}"

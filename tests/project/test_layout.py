@@ -47,6 +47,11 @@ BREAKS = {
     "jinja2 elsewhere": ("one_home", "report/table.py", "import jinja2\n"),
     "print elsewhere": ("one_home", "report/case.py", "print(1)\n"),
     "print in a command": ("one_home", "cli/run.py", "print(1)\n"),
+    "units per thickness in an output": (
+        "units_with_thickness",
+        "report/sweep.py",
+        "from fastpin.model.units import units_per_thickness\n",
+    ),
     "a private name of another file": (
         "nothing_private",
         "states/peaks.py",

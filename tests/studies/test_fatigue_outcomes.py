@@ -127,7 +127,7 @@ def test_units_of_the_parameters_follow_the_problem() -> None:
         "largest_slip_range": ("m", "F beta*"),
     }
     for name, both in expected.items():
-        assert (outcome(name).unit_in(si), outcome(name).unit_in(paper)) == both, name
+        assert (outcome(name).unit_in(si).name, outcome(name).unit_in(paper).name) == both, name
 
 
 # -- reasons -----------------------------------------------------------------------------------------------------

@@ -56,6 +56,9 @@ HOMES = {
 PRINTS = "cli/terminal.py"
 """The only file that calls ``print``: its ``say`` escapes all that could steer a terminal."""
 
+OUTPUTS = ("report", "figures", "pages", "live", "cli")
+"""Folders that show numbers to people. Their units come from ``units``, with the thickness of a problem."""
+
 OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab")
 """Packages that may be missing. They are imported inside functions."""
 
@@ -271,6 +274,13 @@ def one_home(tree: Tree) -> Iterator[str]:
             yield from (f"{file}:{line} prints" for line in source.prints)
 
 
+def units_with_thickness(tree: Tree) -> Iterator[str]:
+    """Outputs do not ask for units per thickness."""
+    for one in tree.imports:
+        if one.name == "units_per_thickness" and one.file.split("/")[0] in OUTPUTS:
+            yield f"{one.file}:{one.line} imports {one.name}; units of outputs come from units"
+
+
 def nothing_private(tree: Tree) -> Iterator[str]:
     """No name with an underscore crosses a file."""
     for one in tree.imports:
@@ -349,6 +359,7 @@ RULES: tuple[Callable[[Tree], Iterator[str]], ...] = (
     no_circles,
     kernels_alone,
     one_home,
+    units_with_thickness,
     nothing_private,
     imports_at_the_top,
     small,

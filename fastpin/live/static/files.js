@@ -66,9 +66,9 @@ function writeLines(pen, node) {
   }
 }
 
-// The loads of the history as CSV, which fastpin reads as a load history.
+// The loads of the history as CSV, which fastpin reads as a load history: with a thickness in N, as in its case file.
 export function loadsText(history) {
-  const names = history.case.loads.map((load) => load.name);
-  const lines = history.pictures.map((picture) => names.map((name) => picture.load[name]).join(","));
-  return [names.join(","), ...lines, ""].join("\n");
+  const { loads } = history.case;
+  const lines = history.pictures.map((picture) => loads.map(({ name, unit }) => unit.factor * picture.load[name]).join(","));
+  return [loads.map(({ name }) => name).join(","), ...lines, ""].join("\n");
 }

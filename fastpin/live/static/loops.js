@@ -6,6 +6,7 @@ import { scaled } from "live/units";
 
 const KINDS = { P: "force", Q: "force", M: "moment" };
 const MOVES = { P: "displacement", Q: "displacement", M: "rotation" };
+const PLAIN = { name: "", factor: 1 };
 const LEAST = 1e-4; // least width of the axis, in parts of a usual displacement: below is rounding
 
 export class LoopChart {
@@ -76,7 +77,7 @@ export class LoopChart {
     const bent = (pair) => pair[1] - slope * pair[0]; // subtracting a multiple of the load leaves the area
     const way = points.map(bent);
     const most = (values) => values.reduce((found, value) => Math.max(found, Math.abs(value)), 0);
-    const unit = { load: given.units[KINDS[name] ?? "traction"], way: KINDS[name] ? (name === "M" ? given.units.rotation : given.units.displacement) : "" };
+    const unit = { load: given.units[KINDS[name] ?? "traction"], way: KINDS[name] ? (name === "M" ? given.units.rotation : given.units.displacement) : PLAIN };
     const least = this.least(name, given);
     const x = scaled(Math.max(most(way), least), unit.way), y = scaled(most(load), unit.load);
     const scale = (values, by) => values.map((value) => value * by.factor);

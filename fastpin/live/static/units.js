@@ -1,18 +1,19 @@
-// Numbers with units and SI prefixes, as the tables of fastpin print them.
+// Numbers with units and SI prefixes, as the tables of fastpin print them. A unit has a name, and a factor that takes
+// values of the server to it: with a thickness, forces are in N here and in N/m there.
 
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
 const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "1/beta*", "deg"]);
 
 // A factor and a unit in which values up to `largest` read well.
-export function scaled(largest, unit) {
-  if (WITHOUT.has(unit) || !(largest > 0) || !isFinite(largest)) return { factor: 1, exponent: 0, unit: shown(unit) };
-  const exponent = Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(largest * (1 + 1e-12)) / 3)));
-  return { factor: 10 ** -exponent, exponent, unit: PREFIXES[exponent] + unit };
+export function scaled(largest, { name, factor }) {
+  if (WITHOUT.has(name) || !(largest > 0) || !isFinite(largest)) return { factor, exponent: 0, whole: factor, unit: shown(name) };
+  const exponent = Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(factor * largest * (1 + 1e-12)) / 3)));
+  return { factor: factor * 10 ** -exponent, exponent, whole: factor, unit: PREFIXES[exponent] + name };
 }
 
-// The number that a text in such a unit means. 1 MPa is 1e6 Pa to the last digit.
-export function inBaseUnit(text, { exponent }) {
-  return /e/i.test(text) ? Number(text) * 10 ** exponent : Number(`${text}e${exponent}`);
+// The value that a text in such a unit means. 1 MPa is 1e6 Pa to the last digit, and 5 kN are 5000 N over the thickness.
+export function inBaseUnit(text, { exponent, whole }) {
+  return (/e/i.test(text) ? Number(text) * 10 ** exponent : Number(`${text}e${exponent}`)) / whole;
 }
 
 function shown(unit) {
