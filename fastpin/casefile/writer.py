@@ -1,13 +1,15 @@
 """The writer of case files: the text of a case, which :func:`fastpin.casefile.parse_case` reads back.
 
-Numbers are written with all their digits. The case that is read back is the same one to the last bit. A dimensionless
-problem is the exception: its moduli are scaled anew, and may differ in the last digit. The name of a material that is
-not in :data:`fastpin.MATERIALS` is left out.
+Numbers are written with all their digits. The case that is read back is the same one to the last bit. There are two
+exceptions, which may differ in the last digit. The moduli of a dimensionless problem are scaled anew. Loads of a
+problem with a thickness are written in N and N m, and not every load per thickness is the quotient of such a number;
+loads that were read from a case file are. The name of a material that is not in :data:`fastpin.MATERIALS` is left out.
 """
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from dataclasses import fields
 
@@ -19,10 +21,11 @@ from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.model.units import PER_THICKNESS
 
 PER_LINE = 8
 """Numbers of a list of loads on one line. Lines stay shorter than 200 letters."""
@@ -45,7 +48,7 @@ def case_text(case: Case) -> str:
         ["[plate]", *_material(case.problem.pair.plate)],
         ["[contact]", *_contact(case.problem)],
         *_bodies(case.problem),
-        ["[[load]]", *_loads(case.history)],
+        ["[[load]]", *_loads(case.history, case.problem.thickness)],
         ["[solve]", *_options(case.options)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks if len(block) > 1 or not block[0].startswith("[")) + "\n"
@@ -77,9 +80,10 @@ def _contact(problem: Problem) -> Iterator[str]:
     yield f"friction = {problem.friction!r}"
     for name in ("pin_load", "rotation", "drive"):
         yield f"{name} = {_value(getattr(problem, name))}"
-    for name in ("hub_radius", "hub_stiffness", "gauge_radius"):
-        if getattr(problem, name) is not None:
-            yield f"{name} = {getattr(problem, name)!r}"
+    for name in ("hub_radius", "hub_stiffness", "gauge_radius", "thickness"):
+        value = getattr(problem, name)
+        if value is not None:
+            yield f"{name} = {value if name != 'hub_stiffness' else _whole(value, problem.thickness)!r}"
 
 
 def _bodies(problem: Problem) -> Iterator[list[str]]:
@@ -107,12 +111,30 @@ def _plate_body(body: PlateBody, prefix: str = "") -> Iterator[str]:
         yield f"reaction = [{body.reaction[0]!r}, {body.reaction[1]!r}]"
 
 
-def _loads(history: LoadHistory) -> Iterator[str]:
+def _loads(history: LoadHistory, thickness: float | None) -> Iterator[str]:
     given = np.any([np.any(~np.isnan(block.given), axis=0) for block in history.blocks], axis=0)
     for name, column, is_given in zip(LOADS, history.values().T.tolist(), given, strict=True):
         if is_given:
+            if LOAD_KIND[name] in PER_THICKNESS:
+                whole = {value: _whole(value, thickness) for value in set(column)}
+                column = [whole[value] for value in column]
             lines = [", ".join(map(repr, column[k : k + PER_LINE])) for k in range(0, len(column), PER_LINE)]
             yield f"{name} = [{lines[0]}]" if len(lines) == 1 else "\n".join([f"{name} = [", *_indented(lines), "]"])
+
+
+def _whole(value: float, thickness: float | None) -> float:
+    """The number of N, N m or N m/rad that gives `value` when it is divided by the thickness; if several, the shortest.
+
+    Rounding leaves it within two floats of the product. If no float gives `value`, it is the product.
+    """
+    if thickness is None:
+        return value
+    product = value * thickness
+    near = [product]
+    for end in (-math.inf, math.inf):
+        one = math.nextafter(product, end)
+        near += [one, math.nextafter(one, end)]
+    return min((each for each in near if each / thickness == value), key=lambda each: len(repr(each)), default=product)
 
 
 def _indented(lines: list[str]) -> Iterator[str]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ import pytest
 
 import fastpin
 from fastpin.casefile.reader import EXAMPLE, parse_case
+from fastpin.casefile.writer import case_text
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.doubts import doubts
@@ -18,7 +21,7 @@ from fastpin.model.units import named_loads
 from fastpin.report.case import describe
 from fastpin.report.states import state_table
 from fastpin.report.summary import document
-from fastpin.studies.plan import parse_plan, read_plan
+from fastpin.studies.plan import Plan, parse_plan, read_plan
 from tests.support.samples import PAIR
 
 T = 2.0**-8  # m: a division by it is exact
@@ -53,6 +56,74 @@ csv = "a.csv"
     assert np.array_equal(again.values(), case.history.values())
 
 
+def given_decimals(seed: int) -> tuple[str, list[str]]:
+    """A thickness and three forces as a user writes them: up to four digits."""
+    rng = np.random.default_rng(seed)
+    forces = [f"{rng.integers(1, 10_000)}e{rng.integers(-2, 3)}" for _ in range(3)]
+    return f"{rng.integers(1, 1000)}e-{rng.integers(3, 5)}", forces
+
+
+def with_decimals(thickness: str, forces: list[str]) -> str:
+    text = THICK.replace(f"thickness = {T}", f"thickness = {thickness}")
+    loads = f"[[load]]\nP = [{forces[0]}, {forces[1]}]\nQ = [0.0, {forces[2]}]\n"
+    spring = f'rotation = "spring"\nhub_stiffness = {forces[0]}'
+    text = text.replace('rotation = "free"', spring).replace('pin_load = "body"', 'pin_load = "centre"')
+    return text[: text.index("[[load]]\nP")] + loads
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_given_decimals_are_divided_once_and_survive_the_writer(seed: int) -> None:
+    thickness, forces = given_decimals(seed)
+    case = parse_case(with_decimals(thickness, forces))
+    values = case.history.values()
+    for value, force in zip([values[0, 0], values[1, 0], values[1, 1]], forces, strict=True):
+        assert value == float(force) / float(thickness)
+        nearest = float(Fraction(force) / Fraction(thickness))
+        assert abs(value - nearest) <= math.ulp(nearest)  # two roundings of the input may move the last bit
+    text = case_text(case)
+    again = parse_case(text)
+    assert again == case or again.problem == case.problem
+    assert again.history.values().tobytes() == values.tobytes()
+    assert again.problem.thickness == float(thickness)
+    assert case_text(again) == text
+    assert f"P = [{float(forces[0])!r}, {float(forces[1])!r}]" in text  # in N, as given
+    assert f"hub_stiffness = {float(forces[0])!r}" in text
+
+
+def test_loads_per_thickness_that_no_force_gives_are_written_to_the_last_digit() -> None:
+    rng = np.random.default_rng(1)
+    problem = fastpin.Problem(PAIR, 0.01, 2e-5, 0.4, thickness=0.007)
+    loads = rng.uniform(1e5, 1e6, 400)
+    case = fastpin.model.Case(problem, fastpin.LoadHistory.from_array(loads[:, None], ["P"]), fastpin.SolveOptions())
+    again = parse_case(case_text(case)).history.values()[:, 0]
+    assert not np.array_equal(again, loads)
+    assert np.all(np.abs(again - loads) <= np.spacing(loads))
+
+
+@pytest.mark.parametrize("keep", ["all", "corners"])
+def test_states_have_the_loads_as_given(keep: str, titanium_in_aluminium: fastpin.MaterialPair) -> None:
+    problem = fastpin.Problem(titanium_in_aluminium, 0.01, 2e-5, 0.4, thickness=0.01)
+    whole = fastpin.LoadHistory([{"P": 5e3, "sxx": 1.1e7}]) + fastpin.LoadHistory(
+        [{"Q": 1.1e3}, {"Q": -1.1e3}]
+    ).repeated(3)
+    result = fastpin.solve(problem, whole.per_thickness(0.01), nodes=31, keep=keep, between=2 if keep == "all" else 0)
+    after = [state for state in result if state.step > 0]
+    assert {state.load["P"] for state in after} == {5e5}
+    assert {state.load["sxx"] for state in after} == {1.1e7}
+    assert {state.load["Q"] for state in after if state.fraction == 1.0} == {1.1e3 / 0.01, -1.1e3 / 0.01}
+    assert named_loads(problem, result[-1].load) == "P = 5 kN, Q = -1.1 kN, sxx = 11 MPa"
+
+
+def test_reactions_stand_beside_loads_as_given(titanium_in_aluminium: fastpin.MaterialPair) -> None:
+    problem = fastpin.Problem(titanium_in_aluminium, 0.01, 2e-5, 0.4, "centre", "fixed", drive="ux", thickness=0.01)
+    history = fastpin.LoadHistory([{"P": 5e3}, {"ux": 3e-6}, {"ux": -3e-6}]).per_thickness(0.01)
+    result = fastpin.solve(problem, history, nodes=31)
+    assert [state.load["P"] for state in result] == [5e5] * 3
+    assert [state.load["ux"] for state in result] == [0.0, 3e-6, -3e-6]
+    assert all(state.load["Q"] == pytest.approx(state.resultants["Q"], rel=1e-6) for state in result[1:])
+    assert result[1].load["Q"] > 0.0 > result[2].load["Q"]
+
+
 def test_a_spring_is_divided_too() -> None:
     spring = 'rotation = "spring"\nhub_stiffness = 1e4'
     text = EXAMPLE.replace('rotation = "free"', spring).replace('pin_load = "body"', 'pin_load = "centre"')
@@ -61,7 +132,7 @@ def test_a_spring_is_divided_too() -> None:
     assert "of stiffness 10 kN/rad at" in describe(parse_case(text))
 
 
-def test_printed_texts_are_in_newtons_and_files_per_metre(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_printed_texts_are_in_newtons_and_results_per_metre(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, stored = tmp_path / "case.toml", tmp_path / "a.h5"
     path.write_text(THICK.replace("2.42e6", "9453.125").replace("7.26e5", "2.8359375e3"))
     plain, case = parse_case(EXAMPLE), fastpin.read_case(path)
@@ -81,8 +152,8 @@ def test_printed_texts_are_in_newtons_and_files_per_metre(tmp_path: Path, capsys
     assert named_loads(case.problem, result[0].load) == "P = 9.4531 kN"
     assert named_loads(plain.problem, result[0].load) == "P = 2.42 MN/m"
     found = document(case, result)
-    assert (found["problem"]["thickness"], found["units"]["force"]) == (T, "N/m")
-    assert found["states"][0]["load"]["P"] == 2.42e6
+    assert (found["problem"]["thickness"], found["units"]["force"]) == (T, "N")
+    assert found["states"][0]["load"]["P"] == 9453.125
     json.dumps(found)
     assert main(["run", str(path), "--nodes", "61", "-o", str(stored)]) == 0
     printed = capsys.readouterr().out.splitlines()[:6]
@@ -140,6 +211,30 @@ def test_plans_vary_it(tmp_path: Path) -> None:
         parse_plan("[grid]\ncontact.thickness = [0.25, 0.5]\n")
 
 
+def rows_of(plan: Plan, heat: float) -> list[dict[str, object]]:
+    """A finished run for each point. Each dissipates `heat` per metre."""
+    rows = []
+    for point in plan.points:
+        fields = dict.fromkeys(plan.fields) | point.values
+        rows.append({"id": point.id, "status": "done", "dimensionless": 0, "dissipation": heat, **fields})
+    return rows
+
+
+def test_each_run_counts_with_its_own_thickness(tmp_path: Path) -> None:
+    outcomes = '[outcomes]\nlost = { quantity = "dissipation" }\n'
+    (tmp_path / "case.toml").write_text(THICK)
+    (tmp_path / "plan.toml").write_text(f'case = "case.toml"\n[grid]\ncontact.thickness = [0.25, 0.5]\n{outcomes}')
+    plan = read_plan(tmp_path / "plan.toml")
+    rows = [row | {"lost": 8.0} for row in rows_of(plan, 4.0)]
+    head, names, *cells = fastpin.report.sweep.text(plan, rows).splitlines()
+    assert (head.split()[2], names.split()[1]) == ("lost", "J")
+    assert [line.split()[2] for line in cells] == ["2", "4"]
+    chart = fastpin.report.sweep.chart(plan, rows, "dissipation")
+    assert (chart.label, chart.parts[0][1].tolist()) == ("dissipation (J)", [1.0, 2.0])
+    fastpin.report.sweep.write_csv(plan, rows, tmp_path / "a.csv")
+    assert "lost J, " in (tmp_path / "a.csv").read_text()
+
+
 def test_doubts_speak_of_newtons() -> None:
     def said(load: float, thickness: float = 5e-3) -> list[str]:
         problem = fastpin.Problem(PAIR, 0.01, 2e-5, 0.4, thickness=thickness)
@@ -149,6 +244,16 @@ def test_doubts_speak_of_newtons() -> None:
     assert said(12.1) == ["P: 12.1 N is a bearing stress of 0.121 MPa only; forces are in N: 1 kN is 1e3"]
     assert said(2.42e6) == ["P: 2.42e6 N strains the bodies by 2, far beyond linear elasticity; forces are in N"]
     assert said(12.1e6, 5.0)[0] == "thickness: 5 m is more than 50 hole radii; lengths are in m: 5 mm is 5e-3"
+
+
+def test_errors_speak_of_newtons(titanium_in_aluminium: fastpin.MaterialPair) -> None:
+    problem = fastpin.Problem(titanium_in_aluminium, 0.01, 2e-5, 0.0, "centre", thickness=0.5)
+    with pytest.raises(InputError, match=r"1e-50 times R/beta\* = \S+ N, or all zero"):
+        fastpin.solve(problem, fastpin.LoadHistory([{"P": 1e-60}]))
+    with pytest.raises(
+        fastpin.NoEquilibriumError, match=r"^step 2, at 0 % \(P = 5 kN\): without friction nothing holds"
+    ):
+        fastpin.solve(problem, fastpin.LoadHistory([{"P": 1e4}, {"M": 1.0}]), nodes=31)
 
 
 def test_a_session_can_change_a_problem_with_a_thickness() -> None:
