@@ -16,9 +16,12 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.transforms import Bbox
 
 from fastpin.errors import InputError
+from fastpin.figures.class_map import class_patches, draw_classes
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, Line, line, spread
 from fastpin.figures.words import caption, shown_unit
@@ -30,6 +33,9 @@ _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MOST_COLUMNS = 3
 """Most maps side by side."""
 
+MOST_ENTRIES = 4
+"""Most entries of a map's legend side by side."""
+
 LOG_RATIO = 30.0
 """Ratio of the largest to the smallest value, all positive, from which on their scale is logarithmic."""
 
@@ -38,6 +44,9 @@ MARKERS = ("o", "s", "^", "D", "v", "<", "P", "*")
 
 LEVELS = 7
 """Most contour lines of a map."""
+
+LABEL_GAP = 2.0
+"""Least distance of the labels of contour lines, points, from each one half."""
 
 LEAST_CELLS = 3
 """Fewest cells along each axis of a map with contour lines."""
@@ -74,7 +83,8 @@ def plot_sweep(
     """Draw the figure of a sweep: maps over two fields, or curves over one field.
 
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
-    at the geometric mean. Contour lines join equal values. Hatched cells are failed runs. Crosses at the lower edge of
+    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and lines where
+    two classes meet. Hatched cells are failed runs. Crosses at the lower edge of
     a figure of curves are failed runs, too. Positive values that differ by a factor of 30 or more have a logarithmic
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
@@ -130,12 +140,14 @@ def _draw_maps(chart: Chart, look: Look) -> Sheet:
     columns = min(len(chart.parts), MOST_COLUMNS)
     rows = math.ceil(len(chart.parts) / columns)
     sheet = look.sheet([3.4 if columns == 1 else 2.5] * rows, columns, 0.6)
+    if chart.classes:
+        return _draw_class_maps(sheet, chart, look.title)
     known = _known_values(chart)
     scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
-    levels = _levels(known)
+    levels, labels = _levels(known), []
     for panel, (name, numbers, failed) in zip(sheet.axes.flat, chart.parts, strict=False):
         mesh = _draw_map(panel, chart, numbers, failed, scale)
-        _draw_contours(panel, chart, numbers, levels)
+        labels.append(_draw_contours(panel, chart, numbers, levels))
         _scale_axes(panel, chart)
         panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
     _label_panels(sheet, chart)
@@ -146,7 +158,35 @@ def _draw_maps(chart: Chart, look: Look) -> Sheet:
         _round_numbers(bar.ax.yaxis, known)
     sheet.head(look.title, caption=_fixed_parameters(chart))
     _explain(sheet, chart)
+    _thin_out(sheet, [label for part in labels for label in part])
     return sheet
+
+
+def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
+    """Draw maps of classes. The legend names the classes, and no bar of colours stands beside the maps."""
+    assert chart.y is not None
+    x, y = cell_edges(chart.x), cell_edges(chart.y)
+    for panel, (name, numbers, failed) in zip(sheet.axes.flat, chart.parts, strict=False):
+        draw_classes(panel, x, y, numbers, chart.classes)
+        _draw_empty_cells(panel, x, y, numbers, failed)
+        _scale_axes(panel, chart)
+        panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
+    _label_panels(sheet, chart)
+    sheet.head(title, _shown(chart.label), caption=_fixed_parameters(chart))
+    _explain(sheet, chart)
+    return sheet
+
+
+def _thin_out(sheet: Sheet, labels: Sequence[Text]) -> None:
+    """Remove the labels of contour lines that would overlap others. The size of the panels must be final."""
+    sheet.figure.draw_without_rendering()
+    kept: list[Bbox] = []
+    for label in labels:
+        space = label.get_window_extent().padded(LABEL_GAP * sheet.figure.dpi / 72.0)
+        if any(space.overlaps(other) for other in kept):
+            label.remove()
+        else:
+            kept.append(space)
 
 
 def _draw_map(panel: Axes, chart: Chart, numbers: np.ndarray, failed: np.ndarray, scale: Normalize) -> QuadMesh:
@@ -155,11 +195,16 @@ def _draw_map(panel: Axes, chart: Chart, numbers: np.ndarray, failed: np.ndarray
     x, y = cell_edges(chart.x), cell_edges(chart.y)
     mesh = panel.pcolormesh(x, y, np.ma.masked_invalid(numbers), norm=scale, cmap="viridis", edgecolors="face")
     mesh.set_linewidth(0.2)
+    _draw_empty_cells(panel, x, y, numbers, failed)
+    return mesh
+
+
+def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.ndarray, failed: np.ndarray) -> None:
+    """Draw the cells without a value."""
     for row, column in np.argwhere(np.isnan(numbers)):
         size = x[column + 1] - x[column], y[row + 1] - y[row]
         style = _FAILED if failed[row, column] else _OPEN
         panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
-    return mesh
 
 
 def _levels(known: np.ndarray) -> np.ndarray:
@@ -173,19 +218,25 @@ def _levels(known: np.ndarray) -> np.ndarray:
     return found[(found > low) & (found < high)]
 
 
-def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.ndarray) -> None:
-    """Draw labelled lines of equal values through the middles of the cells."""
+def _draw_contours(panel: Axes, chart: Chart, numbers: np.ndarray, levels: np.ndarray) -> list[Text]:
+    """Draw lines of equal values through the middles of the cells, and return their labels."""
     assert chart.y is not None
     known = np.isfinite(numbers)
+    labels: list[Text] = []
     if min(numbers.shape) < LEAST_CELLS or not known.any():
-        return
+        return labels
     inside = levels[(levels > numbers[known].min()) & (levels < numbers[known].max())]
     if inside.size:
         lines = panel.contour(
             chart.x.values, chart.y.values, np.ma.masked_invalid(numbers), inside, colors="white", linewidths=0.8
         )
-        for text in panel.clabel(lines, fmt=lambda value: f"{value:.4g}".replace("-", "−"), fontsize=6.5):
+        # A gap in a line would stay where its label is removed.
+        labels = list(
+            panel.clabel(lines, fmt=lambda value: f"{value:.4g}".replace("-", "−"), fontsize=6.5, inline=False)
+        )
+        for text in labels:
             text.set_bbox({"facecolor": "0.15", "edgecolor": "none", "pad": 0.6})
+    return labels
 
 
 def _known_values(chart: Chart) -> np.ndarray:
@@ -200,11 +251,12 @@ def _spans_decades(values: np.ndarray) -> bool:
 
 
 def _explain(sheet: Sheet, chart: Chart) -> None:
-    """Add a legend of the cells without a value: of failed runs, and of all others."""
+    """Add a legend of classes, and of the cells without a value: of failed runs, and of all others."""
     failed = any(part.any() for _, _, part in chart.parts)
     empty = any((np.isnan(numbers) & ~part).any() for _, numbers, part in chart.parts)
-    handles = [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
-    sheet.legend(handles, 2)
+    handles = class_patches(chart.classes, _known_values(chart)) if chart.classes else []
+    handles += [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
+    sheet.legend(_by_rows(handles, MOST_ENTRIES), MOST_ENTRIES)
 
 
 def _draw_curves(chart: Chart, look: Look) -> Sheet:
@@ -226,7 +278,10 @@ def _draw_curves(chart: Chart, look: Look) -> Sheet:
             handles.append(Line2D([], [], label=name, **style))
     _scale_axes(panel, chart)
     panel.set_ylabel(_shown(chart.label), parse_math=False)
-    if _spans_decades(_known_values(chart)):
+    if chart.classes:
+        panel.set_yticks(list(chart.classes), list(chart.classes.values()))
+        panel.set_ylim(min(chart.classes) - 0.5, max(chart.classes) + 0.5)
+    elif _spans_decades(_known_values(chart)):
         panel.set_yscale("log")
         _round_numbers(panel.yaxis, _known_values(chart))
     _label_panels(sheet, chart)

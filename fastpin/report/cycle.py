@@ -31,18 +31,19 @@ WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in No
 
 
 def cycle_line(cycle: LoadCycle) -> str:
-    """Return a line of text: the largest slip range, slip distance and friction energy of a node, with their places.
+    """Return a line of text: the regime, and the largest slip range, slip distance and friction energy of a node, with their places.
 
     Values that are rounding beside the sizes of :func:`natural_sizes` are 0.
     """
     natural = natural_sizes(cycle)
+    regime = cycle.regime.words + ("" if cycle.has_exact_slip_range else " (read from the kept states)")
     parts = [_in_words(cycle, "slip range", "displacement", natural)]
     if not cycle.has_exact_slip_range:
         parts[0] += " at the kept states"
     if cycle.friction_energy is not None:
         parts.append(_in_words(cycle, "slip distance", "displacement", natural))
         parts.append(_in_words(cycle, "friction energy", "energy density", natural))
-    return f"from corner {cycle.first:,} to {cycle.last:,}: {', '.join(parts)}"
+    return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
 def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
@@ -107,6 +108,7 @@ def document(cycle: LoadCycle) -> dict[str, Any]:
     found: dict[str, Any] = {"first": cycle.first, "last": cycle.last, "closed": cycle.is_closed}
     for name in ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range"):
         found[f"largest_{name}"], found[f"largest_{name}_angle"] = _largest(cycle, name)
+    found["regime"] = cycle.regime.words
     found["slip_range_is_exact"] = cycle.has_exact_slip_range
     unit = units(cycle.states[0].problem)["energy"]
     found["dissipation"] = unit.factor * cycle.dissipation

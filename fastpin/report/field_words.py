@@ -27,6 +27,8 @@ def field_words(field: str) -> str:
     section, *between, key = field.split(".")
     if section == "load":
         load = _LOADS.get(key, f"remote stress {key}") if key in LOADS else key.replace("_", " ")
-        return f"{load} in load {'.'.join(between)}" if between else load
+        number, *part = between or [""]  # the part is mean, amplitude or phase of a harmonic block
+        words = f"{part[0]} of the {load}" if part else load
+        return f"{words} in load {number}" if number else words
     words = _KEYS.get(key, key.replace("_", " "))
     return f"{words} of the {_OWNERS[section]}" if section in _OWNERS else words

@@ -31,6 +31,7 @@ from fastpin.report.table import (
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.states.regimes import Regime
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round
 
@@ -380,4 +381,5 @@ def _intervals(state: State, zone: str) -> str:
         first, last = interval_from_bottom(start, stop)
         bar = _bar(state, _DEGREE, f"{zone}_{number}_start", f"{zone}_{number}_stop")
         parts.append("all round" if is_all_round(stop - start) else f"{first:z.2f} to {last:z.2f}{bar}")
-    return ", ".join(parts) or "none"
+    none = Regime.GROSS_SLIDING.words if zone == "stick" and state.in_contact else "none"
+    return ", ".join(parts) or none

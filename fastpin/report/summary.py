@@ -131,17 +131,18 @@ def _state_summary(state: State) -> dict[str, Any]:
         """A quantity that is in degrees already, if it is an angle, in printed units."""
         return unit.get(quantity(name).kind, DEGREE).factor * value
 
+    def shown(name: str) -> float | str:
+        """A quantity: angles and widths in degrees, a class in words."""
+        value = QUANTITIES[name].shown(state)
+        return value if isinstance(value, str) else in_units(name, in_degrees(name, value))
+
     return {
         "load_point": load_point(state),
         "step": state.step,
         "fraction": state.fraction,
         "load": printed_loads(state.problem, state.load),
         "in_contact": state.in_contact,
-        **{
-            name: in_units(name, in_degrees(name, each.of(state)))
-            for name, each in QUANTITIES.items()
-            if name not in resultants
-        },
+        **{name: shown(name) for name in QUANTITIES if name not in resultants},
         "peak_hoop_resolved": None if plate.is_rigid else state.peak_hoop_stress().resolved,
         "contact": [interval_from_bottom(*interval) for interval in state.contact],
         "stick": [interval_from_bottom(*interval) for interval in state.stick],

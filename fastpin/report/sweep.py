@@ -5,8 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -92,10 +92,12 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     rows, unit = printed_rows(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
-        columns.append(_column(name, [row[name] for row in rows], unit.get(_kind(name), "")))
+        heading = plan.labels.get(name, name)
+        columns.append(_column(heading, [row[name] for row in rows], unit.get(_kind(name), "")))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
-        columns.append(_column(heading, [row.get(name) for row in rows], _unit(plan, name, unit)))
+        values = [_in_words(plan, name, row.get(name)) for row in rows]
+        columns.append(_column(plan.labels.get(name, heading), values, _unit(plan, name, unit)))
     columns.append(("status", "", [row["status"] for row in rows]))
     return columns
 
@@ -103,8 +105,8 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
 def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
-    Units are SI, with the thickness of each run if all runs have one, or the paper's for dimensionless problems. A
-    function of the user has its own unit.
+    Classes are words. Units are SI, with the thickness of each run if all runs have one, or the paper's for
+    dimensionless problems. A function of the user has its own unit.
 
     Raises
     ------
@@ -121,7 +123,7 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(map(csv_cell, names))
     for row in rows:
-        cells = (row.get(name) for name in names)
+        cells = (_in_words(plan, name, row.get(name)) for name in names)
         writer.writerow([json.dumps(cell) if isinstance(cell, list) else csv_cell(cell) for cell in cells])
     with replacing(path) as temporary:
         temporary.write_text(out.getvalue(), encoding="utf-8")
@@ -169,6 +171,8 @@ class Chart:
         The joint of the first point.
     varied : tuple of str
         The fields of the plan with several values.
+    classes : dict of int to str
+        The words of each value, if the values are numbers of classes; else empty.
     """
 
     title: str
@@ -179,6 +183,7 @@ class Chart:
     missing: int
     problem: Problem | None = None
     varied: tuple[str, ...] = ()
+    classes: Mapping[int, str] = field(default_factory=dict)
 
 
 def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[str, str | None, list[str]]:
@@ -262,13 +267,14 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
             numbers[place] = factor * row[value] if abs(row[value]) > least else 0.0
     return Chart(
         plan.title,
-        _label(value.replace("_", " "), label),
+        _label(plan.labels.get(value, value.replace("_", " ")), label),
         axes[-1][0],
         axes[0][0] if y else None,
         [(name, *arrays) for name, arrays in parts.items()],
         len(rows) - len(found),
         plan.case(plan.points[0]).problem,
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
+        plan.outcomes[value].classes if value in plan.outcomes else {},
     )
 
 
@@ -276,8 +282,15 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
     factor, label = scaled(values, unit.get(_kind(name), ""))
-    axis = Axis(_label(field_words(name), label), factor * np.array(values, float), plan.fields[name] == "log")
+    words = plan.labels.get(name, field_words(name))
+    axis = Axis(_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
+
+
+def _in_words(plan: Plan, name: str, value: Any) -> Any:
+    """Return the word for the number of a class; another value as it is."""
+    classes = plan.outcomes[name].classes if name in plan.outcomes and value is not None else {}
+    return classes.get(value, value)
 
 
 def _label(words: str, unit: str) -> str:
@@ -286,7 +299,7 @@ def _label(words: str, unit: str) -> str:
 
 def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
-    words, given = field_words(field), [row[field] for row in rows if row[field] is not None]
+    words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
     factor, label = scaled(given, unit.get(_kind(field), ""))

@@ -20,6 +20,7 @@ from fastpin.model.checks import instances, number_array
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
+from fastpin.states.regimes import Regime, regime_of
 from fastpin.states.state import State
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 NEGLIGIBLE = 1e-12
 """Slip distance that is rounding, in parts of the largest."""
+
+NO_SLIP = 1e-9
+"""Slip that is rounding, in parts of R beta* times the largest pressure of the cycle."""
 
 
 class NodeBehaviour(IntEnum):
@@ -152,6 +156,27 @@ class LoadCycle:
         ever, always = ~np.isnan(self.slip_extremes[0]), closed.all(axis=0)
         behaviours = NodeBehaviour.NO_CONTACT, NodeBehaviour.SLIPS, NodeBehaviour.STICKS
         return np.select([~ever, always & slips, always], behaviours, NodeBehaviour.OPENS).astype(np.int8)
+
+    @cached_property
+    def regime(self) -> Regime:
+        """Separation, full stick, partial slip or gross sliding, over the whole cycle.
+
+        Full stick: no node slips while it is closed. Partial slip: some nodes slip, and others that are closed at some
+        time never do. Gross sliding: every node that is closed at some time slips. The slip is that of the whole path
+        if :attr:`has_exact_slip_range`. Otherwise it is read from the states after the first: from their regimes, and
+        from the slip between two states at which a node is closed. Without friction all closed nodes slip.
+        """
+        closed = ~np.isnan(self.slip_extremes[0])
+        problem = self.states[0].problem
+        if problem.frictionless:
+            return regime_of(closed, closed)
+        least = NO_SLIP * problem.hole_radius * problem.surfaces.beta_star * float(self.pressure_extremes[1].max())
+        if self.slip_distance is not None:
+            return regime_of(closed, self.slip_distance > least)
+        slips = np.any([state.slipping for state in self.states[1:]], axis=0)
+        both = (self.status[1:] != OPEN) & (self.status[:-1] != OPEN)
+        moved = np.abs(np.diff([state.slip for state in self.states], axis=0))
+        return regime_of(closed, slips | np.any(both & (moved > least), axis=0))
 
     # -- slip ----------------------------------------------------------------------------------------------------
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.model.bodies import Bushing
+from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
 from fastpin.states.zones import Interval, is_all_round
 
@@ -26,14 +28,22 @@ class Quantity(NamedTuple):
     label : str
         Its name in tables and figures.
     kind : str
-        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad) or "width" (rad).
+        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad) or "class".
     of : callable
         Gives its value for a state, in SI units or in the units of a dimensionless problem.
+    classes : dict of int to str
+        Of the kind "class": the words of each value.
     """
 
     label: str
     kind: str
     of: Callable[[State], float]
+    classes: Mapping[int, str] = MappingProxyType({})
+
+    def shown(self, state: State) -> float | str:
+        """The value for tables of other programs: a class in words."""
+        value = self.of(state)
+        return self.classes[int(value)] if self.classes else value
 
 
 def width(intervals: Sequence[Interval]) -> float:
@@ -93,13 +103,15 @@ QUANTITIES: dict[str, Quantity] = {
     "joint_uy": Quantity("joint uy", "displacement", lambda state: state.joint_displacement()["uy"]),
     "bush_open_margin": Quantity("bush open margin", "traction", _bush(lambda fit: fit.open_margin)),
     "bush_slip_margin": Quantity("bush slip margin", "traction", _bush(lambda fit: fit.slip_margin)),
+    "regime": Quantity("regime", "class", lambda state: float(state.regime), REGIMES),
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
 "peak_hoop" is the largest hoop stress of the plate round the hole, "kt_gross" and "kt_bearing" are its ratios to the
 remote stress and to the bearing stress, see :class:`fastpin.states.HoopPeak`. All are NaN for a rigid plate.
 "joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
-:class:`fastpin.states.BushFit`, NaN without a bush, and without its friction.
+:class:`fastpin.states.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
+:class:`fastpin.states.Regime`, :attr:`State.regime`.
 
 A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",
 "stick_1_start" and so on. They are angles in rad, counted along +theta, in the order of :attr:`State.contact` and
@@ -128,8 +140,11 @@ def intervals(state: State, zone: str) -> list[Interval]:
 
 
 def values(state: State) -> dict[str, float]:
-    """All quantities of a state by name. Angles are in rad; the angle of a peak that does not exist is NaN."""
-    numbers = {name: entry.of(state) for name, entry in QUANTITIES.items()}
+    """All quantities of a state by name, without classes, which have no error bars and no order.
+
+    Angles are in rad; the angle of a peak that does not exist is NaN.
+    """
+    numbers = {name: entry.of(state) for name, entry in QUANTITIES.items() if not entry.classes}
     for zone in ZONES:
         numbers |= _ends(zone, intervals(state, zone))
     return numbers

@@ -25,6 +25,7 @@ from fastpin.states.exponents import contact_exponents, signs_beside, stick_expo
 from fastpin.states.half_line import HalfLine, half_line
 from fastpin.states.marks import Marks
 from fastpin.states.old_borders import truly_sticking
+from fastpin.states.regimes import Regime, regime_of
 from fastpin.states.zones import Interval, runs
 
 if TYPE_CHECKING:
@@ -205,6 +206,19 @@ class State(ReadOnly):
     def slip_zones(self) -> list[tuple[float, float, int]]:
         """Slip zones (start, stop, sign), rad: the parts of the contact that do not stick, and the sign of the slip."""
         return zones.in_order(zones.complement(self.grid, self.contact_in_runs, self._stick, self.status))
+
+    @property
+    def regime(self) -> Regime:
+        """Separation, full stick, partial slip or gross sliding: whether all, some or none of the closed nodes stick.
+
+        Sticking nodes that reach |T| = mu N exactly at this load count as slipping, as in :attr:`stick`.
+        """
+        return regime_of(self.status != OPEN, self.slipping)
+
+    @property
+    def slipping(self) -> np.ndarray:
+        """The nodes that are closed and do not stick, bool, shape (n,)."""
+        return (self.status != OPEN) & ~self._sticking
 
     @property
     def peak_pressure(self) -> float:

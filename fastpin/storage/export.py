@@ -125,8 +125,8 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
     """Return the reported quantities as a pandas.DataFrame with one row for each state.
 
     Columns are "load_point", "step", "fraction", the loads ("load_P", "load_Q", ...) and the quantities of
-    :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad.
-    ``frame.attrs["units"]`` names the unit of every column.
+    :data:`fastpin.states.QUANTITIES`. Values are in SI units or in the units of a dimensionless problem, angles in rad;
+    the regime is text. ``frame.attrs["units"]`` names the unit of every column.
 
     Raises
     ------
@@ -138,7 +138,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
     except ImportError:
         raise InputError("pandas", "is not installed: pip install 'fastpin[pandas]'") from None
     instance("result", result, Result, "a Result")
-    unit = {**units_per_thickness(result.problem), "angle": "rad", "width": "rad"}
+    unit = {**units_per_thickness(result.problem), "angle": "rad", "width": "rad", "class": ""}
     named = dict(zip(LOADS, load_units(result.problem), strict=True))
     rows = [
         {
@@ -146,7 +146,7 @@ def to_dataframe(result: Result) -> pandas.DataFrame:
             "step": state.step,
             "fraction": state.fraction,
             **{f"load_{name}": value for name, value in state.load.items()},
-            **{name: each.of(state) for name, each in QUANTITIES.items()},
+            **{name: each.shown(state) for name, each in QUANTITIES.items()},
         }
         for state in result
     ]

@@ -38,11 +38,20 @@ from fastpin.studies.run_end import RUN_COLUMNS
 Outcomes = dict[str, Outcome]
 """Outcomes by the names that the user chose."""
 
-KEYS = {"quantity": ("quantity", "take", "over"), "cycle": ("cycle",), "function": ("function",)}
+KEYS = {"quantity": ("quantity", "take", "over"), "cycle": ("cycle",), "function": ("function", "classes")}
 """The first key of an outcome says what is read. The others may stand beside it."""
 
 LONGEST_NAME = 64
 """Most characters in the name of an outcome."""
+
+TAKES_OF_CLASS = ("last", "largest", "smallest")
+"""Ways to take a class from those of several states."""
+
+MOST_CLASSES = 8
+"""Most classes of an outcome: more can't be told apart in a map."""
+
+LONGEST_CLASS = 40
+"""Most letters in the words of a class. They stand in legends."""
 
 _EXAMPLE = '{ quantity = "peak_shear", take = "largest" }, { cycle = "dissipation" } or { function = "my.py:wear" }'
 
@@ -197,6 +206,9 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
     if quantity is None or take is None or span is None:
         return None
     kind = QUANTITIES[quantity].kind
+    if kind == "class" and take not in TAKES_OF_CLASS:
+        section.report(f"{name}: take: {quantity} is a class: {_alternatives(TAKES_OF_CLASS)}", "take")
+        return None
     if take == "largest magnitude" and kind == "angle":
         section.report(f'{name}: take: a place on the hole has no magnitude; take "largest" or "smallest"', "take")
         return None
@@ -205,15 +217,21 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
         return None
     kind = "width" if (kind, take) == ("angle", "range") else kind
     definition = {"quantity": quantity, "take": take, "over": span}
-    return Outcome(kind, "", json.dumps(definition), partial(taken, quantity, take, span))
+    read = partial(taken, quantity, take, span)
+    return Outcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes))
+
+
+def _alternatives(words: tuple[str, ...]) -> str:
+    quoted = [f'"{word}"' for word in words]
+    return f"take {', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
 def _of_cycle(name: str, section: Section) -> Outcome | None:
     quantity = _choice(name, section, "cycle", tuple(CYCLE_QUANTITIES))
     if quantity is None:
         return None
-    kind = CYCLE_QUANTITIES[quantity].kind
-    return Outcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity))
+    kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
+    return Outcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
 
 
 def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
@@ -246,8 +264,35 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
         hint = closest(function, tuple(functions)) or (f"; there are {', '.join(functions)}" if functions else "")
         section.report(f'{name}: there is no function "{function}" in {file}{hint}', "function")
         return None
-    definition = json.dumps({"function": function, "file": digest(text)})
-    return Outcome("", functions[function], definition, FunctionOfFile(str(path), text, function))
+    definition = {"function": function, "file": digest(text)}
+    reader = FunctionOfFile(str(path), text, function)
+    if "classes" not in section:
+        return Outcome("", functions[function], json.dumps(definition), reader)
+    classes = section.checked("classes", lambda _, value: _classes(f"{name}: classes", value))
+    if classes is None:
+        return None
+    if functions[function]:
+        section.report(f"{name}: classes: the number of a class has no unit, but {function}.unit is set", "classes")
+    # The words of a class change no value.
+    return Outcome("class", "", json.dumps(definition | {"classes": list(classes)}), reader, classes)
+
+
+def _classes(field: str, value: object) -> dict[int, str]:
+    """Check the words of the classes of an outcome, by number, and return them in the order of the numbers."""
+    if not isinstance(value, Mapping) or not 2 <= len(value) <= MOST_CLASSES:
+        example = '{ 0 = "stick", 1 = "slip" }'
+        raise InputError(field, f"must be a table of 2 to {MOST_CLASSES} numbers with words, such as {example}")
+    found: dict[int, str] = {}
+    for key, word in value.items():
+        if not re.fullmatch(r"-?\d{1,9}", str(key)) or isinstance(key, bool):
+            raise InputError(field, f"each class has a whole number, such as 0 = \"stick\", not {as_toml(key)}")
+        words = string(f"{field}: {key}", word)
+        if not words.strip() or len(words) > LONGEST_CLASS or not words.isprintable():
+            raise InputError(f"{field}: {key}", f"must be text of 1 to {LONGEST_CLASS} letters")
+        if int(key) in found or words in found.values():
+            raise InputError(field, f"the numbers and words of classes must differ, but there is {as_toml(word)} twice")
+        found[int(key)] = words
+    return dict(sorted(found.items()))
 
 
 def _of_callable(function: Callable[..., Any]) -> Outcome:

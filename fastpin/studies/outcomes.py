@@ -13,9 +13,9 @@ import pickle
 import sys
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -27,6 +27,7 @@ from fastpin.model.checks import number
 from fastpin.model.units import DEGREE, Unit
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.quantities import QUANTITIES, size
+from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
@@ -57,14 +58,17 @@ class CycleQuantity(NamedTuple):
     Attributes
     ----------
     kind : str
-        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad) or "" for a plain
-        number.
+        A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad), "class" or "" for
+        a plain number.
     of : callable
         Gives its value for a result with cycles, in SI units or in the units of a dimensionless problem.
+    classes : dict of int to str
+        Of the kind "class": the words of each value.
     """
 
     kind: str
     of: Callable[[Result], float]
+    classes: Mapping[int, str] = MappingProxyType({})
 
 
 CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
@@ -88,12 +92,13 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     "crossland_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "crossland").theta),
     "dang_van": CycleQuantity("traction", lambda result: _hot_spot(result, "dang-van").parameter),
     "dang_van_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "dang-van").theta),
+    "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),
 }
 """The quantities of the last cycle, by name.
 
 The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four are the largest values of a node in
-:class:`fastpin.states.LoadCycle`. The others belong to the hot spot on the edge of the plate, see
-:func:`fastpin.damage.fatigue`.
+:class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. The others belong to the hot
+spot on the edge of the plate, see :func:`fastpin.damage.fatigue`.
 """
 
 
@@ -111,12 +116,15 @@ class Outcome:
         A text that changes with the definition of the number.
     read : callable
         Gives the number for a result, with angles and widths in rad. NaN or None: the result has no such number.
+    classes : dict of int to str
+        The words of each value, if the number stands for a class; else empty.
     """
 
     kind: str
     unit: str
     definition: str
     read: Callable[[Result], Any]
+    classes: Mapping[int, str] = field(default_factory=dict)
 
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""
@@ -157,7 +165,11 @@ def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
         value = outcome.read(result)
         if value is None or (isinstance(value, float | np.floating) and math.isnan(value)):
             return OutcomeValue(outcome.definition, None)
-        return OutcomeValue(outcome.definition, number("its value", value))
+        known = number("its value", value)
+        if outcome.classes and known not in outcome.classes:
+            allowed = ", ".join(map(str, outcome.classes))
+            raise FastpinError(f"its value must be the number of a class, {allowed}, not {known:g}")
+        return OutcomeValue(outcome.definition, known)
     except (Exception, SystemExit) as error:  # A function of the user may fail in any way.
         return OutcomeValue(outcome.definition, None, reason_of(error))
 
@@ -333,6 +345,14 @@ def _slip_range(result: Result) -> tuple[float, float]:
     if cycle.largest_slip_range <= ROUNDING * size("dx", cycle.states[-1]):
         return 0.0, math.nan
     return cycle.largest_slip_range, cycle.largest_slip_range_angle
+
+
+def _regime(result: Result) -> float:
+    """The regime of the cycle. Unless slip sums are counted, all corners of the cycle must be kept."""
+    cycle = result.cycle()
+    if not cycle.has_exact_slip_range:
+        _states_of_cycle(result)
+    return float(cycle.regime)
 
 
 def _friction_energy(result: Result) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 A plan is a TOML text with a base case, a ``[grid]`` and ``[[list]]`` tables. Every combination of the values in the
 grid is run. The fields of a list change together. The table ``[outcomes]`` names numbers that are read from every
-result. All faults of a plan are reported at once, each with its line. Every
+result, and ``[labels]`` gives words for axes and tables. All faults of a plan are reported at once, each with its line. Every
 run is checked before the first run starts.
 """
 
@@ -40,6 +40,7 @@ from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
+from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
 MAX_RUNS = 100_000
@@ -63,7 +64,10 @@ Row = dict[str, tuple[Place, Any]]
 Progress = Callable[[int, int], None]
 """A callable ``progress(done, total)`` of numbers of points or runs."""
 
-_ROOT_KEYS = ("title", "case", "grid", "list", "outcomes")
+LONGEST_LABEL = 80
+"""Most letters of a label. It stands beside an axis of a figure."""
+
+_ROOT_KEYS = ("title", "case", "grid", "list", "outcomes", "labels")
 _RANGE_KEYS = ("from", "to", "count", "spacing")
 
 
@@ -103,6 +107,9 @@ class Plan:
         The numbers that are read from every result, by name. They change no run and no id.
     doubts : list of InputWarning
         Values that are probably a mistake. They change no run.
+    labels : dict of str to str
+        Words for varied fields, outcomes and key figures in tables and figures, without units. They change no run and
+        no id.
     """
 
     title: str
@@ -111,6 +118,7 @@ class Plan:
     points: list[Point]
     outcomes: Outcomes
     doubts: list[InputWarning]
+    labels: dict[str, str]
     _base: BaseCase
     _cases: dict[str, Case]
 
@@ -256,12 +264,43 @@ def _plan(source: CaseText, text: str, folder: Path, progress: Progress | None) 
     if count > MAX_RUNS:
         source.report(f"the plan has {count:,} runs; more than {MAX_RUNS:,} are not possible in one", "grid")
     outcomes = outcomes_in_text(source, folder)
+    labels = _labels(source, (*places, *source.section("outcomes").table, *KEY_FIGURES))
     if base is None or source.faults:
         return None
     cases: dict[str, Case] = {}
     found: list[InputWarning] = []
     points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
-    return Plan(title, text, {name: spacings[name] for name in places}, points, outcomes, found, base, cases)
+    fields = {name: spacings[name] for name in places}
+    return Plan(title, text, fields, points, outcomes, found, labels, base, cases)
+
+
+def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
+    """Read the words for fields, outcomes and key figures."""
+    labels: dict[str, str] = {}
+    for place, name, words in _leaves(source, source.section("labels").table, ("labels",)):
+        if name not in known:
+            hint = closest(name, known) or "; a label is for a varied field, an outcome or a key figure"
+            source.report(f'labels: the plan has no "{name}"{hint}', *place)
+            continue
+        try:
+            labels[name] = string(f"labels: {name}", words)
+            if not 1 <= len(words.strip()) <= LONGEST_LABEL:
+                raise InputError(f"labels: {name}", f"must be text of 1 to {LONGEST_LABEL} letters")
+        except InputError as error:
+            source.report(str(error), *place)
+    return labels
+
+
+def _leaves(
+    source: CaseText, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
+) -> Iterator[tuple[Place, str, Any]]:
+    """Yield place, dotted name and value of all keys of a table, and of the tables in it."""
+    for key in table:
+        value = Section(source, place, table).value(key)
+        if isinstance(value, dict):
+            yield from _leaves(source, value, (*place, key), (*parts, str(key)))
+        elif value is not None:  # A value that can't be parsed is reported already.
+            yield (*place, key), ".".join((*parts, str(key))), value
 
 
 def _check_root(source: CaseText) -> None:
@@ -270,7 +309,7 @@ def _check_root(source: CaseText) -> None:
         if key in _ROOT_KEYS:
             continue
         section, owners = written(key, value), sections_with(key)
-        hint = closest(key, _ROOT_KEYS) or "; a plan has title, case, [grid], [[list]] and [outcomes]"
+        hint = closest(key, _ROOT_KEYS) or "; a plan has title, case, [grid], [[list]], [outcomes] and [labels]"
         if section and key in KEYS:
             hint = '; it belongs in the case file, which a plan names: case = "case.toml"'
         elif owners:
