@@ -25,7 +25,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 """The key figure in the figure of a sweep without outcomes, unless another one is chosen."""
 
 
-STATES_HELP = "last, cycle (the last one), all, or load points such as 2,3.5"
+STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ranges such as 1-9,20-"
 """Help on the choice of states."""
 
 SHELLS = ("bash", "zsh", "tcsh")
@@ -42,7 +42,7 @@ PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
     "map": ("states", "csv", "body", "component", "extent"),
     "cycles": ("csv",),
     "slip": ("csv",),
-    "loops": ("csv",),
+    "loops": ("csv", "cycle", "abscissa"),
     "fatigue": ("csv", "body", "criterion", "depth"),
 }
 """Kinds of figures of a stored result, and their options."""
@@ -205,7 +205,7 @@ def add_plot(commands: Any) -> None:
         "points; sketch: pin, plate and loads; animation: the states of the last cycle, one after the other; hoop: "
         "hoop stress round hole and pin; profile: stresses below the edge; map: one component of the stress in both "
         "bodies; cycles: changes in each cycle; slip: slip and friction energy in the last cycle; loops: hysteresis "
-        "loops of the last cycle; fatigue: a criterion along the edge over the last cycle",
+        "loops of the last cycle, or of several; fatigue: a criterion along the edge over the last cycle",
     )
     plot.add_argument(
         "-o",
@@ -216,6 +216,17 @@ def add_plot(commands: Any) -> None:
     )
     plot.add_argument("--csv", metavar="FILE", type=Path, help="also write the numbers of the figure")
     plot.add_argument("--states", metavar="WHICH", help=STATES_HELP)
+    plot.add_argument(
+        "--cycle",
+        metavar="N",
+        help="loops: last (default), blocks (the last cycle of each block), all, or cycles such as 3, 1,5 or 10-, "
+        "counted from 1",
+    )
+    plot.add_argument(
+        "--abscissa",
+        metavar="WHICH",
+        help="loops: prescribed (default where a displacement is prescribed) or pin (its displacement)",
+    )
     plot.add_argument("--sketch", action="store_const", const=True, help="tractions: add a small sketch of the joint")
     plot.add_argument("--rate", metavar="N", type=literal, help="animation: states a second (default 4)")
     plot.add_argument("--body", help="plate, pin, or (hoop and map) both")

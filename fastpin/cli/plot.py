@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,13 +17,12 @@ from fastpin.cli.terminal import check_outputs, say, write_files
 from fastpin.errors import InputError
 from fastpin.kernels.status import Status
 from fastpin.report.curves import Curve, write_csv
+from fastpin.states.choice import NO_CYCLE, chosen_cycles
 from fastpin.states.cycles import Cycle
+from fastpin.states.load_cycle import LoadCycle
 
 Made = tuple[Callable[[Path], object], Callable[[Path], object]]
 """Two functions that write a file: the figure, and its numbers."""
-
-NO_CYCLE = "no cycle of the history has ended; add repeat = 2 to a [[load]] block"
-"""Refusal of a figure of a cycle."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -71,14 +71,16 @@ def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
     return {name: value for name in names if (value := getattr(options, name)) is not None}
 
 
-def _states(options: argparse.Namespace, usual: str | None = None, most: int = 0) -> figures.states.DrawnStates:
+def _states(
+    options: argparse.Namespace, usual: str | None = None, most: int = 0, whole: bool = False
+) -> figures.states.DrawnStates:
     """The states of ``--states``, or the `usual` ones. Only these are read from the file.
 
-    With `most` a figure draws up to so many states, in a row.
+    With `most` a figure draws up to so many states, in a row; or as a `whole`, which joins more states.
     """
     chosen = usual if options.states is None else options.states
     if most:
-        states = figures.states.stored_states(options.result, chosen, most, in_a_row=True)
+        states = figures.states.stored_states(options.result, chosen, most, in_a_row=not whole, whole=whole)
     else:
         states = figures.states.stored_states(options.result, chosen)
     if states.note:
@@ -117,7 +119,9 @@ def _polar(options: argparse.Namespace, title: str) -> Made:
 
 
 def _stick_slip(options: argparse.Namespace, title: str) -> Made:
-    states = _states(options, most=figures.stick_slip.MOST_COLUMNS)
+    states = _states(options, most=figures.stick_slip.MOST_COLUMNS, whole=True)
+    if len(states) > figures.stick_slip.MOST_COLUMNS:
+        return _long_stick_slip(states, title)
     boxes = list(figures.stick_slip.zone_boxes(states))
     columns: dict[str, Any] = {
         "load point": np.array([box.point for box in boxes]),
@@ -126,6 +130,23 @@ def _stick_slip(options: argparse.Namespace, title: str) -> Made:
         "status": np.array([Status(box.status).name.lower().replace("_", " ") for box in boxes]),
     }
     return _drawn(lambda look: figures.stick_slip.draw_stick_slip(states, look), title), _curves([Curve({}, columns)])
+
+
+def _long_stick_slip(states: figures.states.DrawnStates, title: str) -> Made:
+    """The map of many states, whose columns join some of them."""
+    columns, words = figures.stick_slip.long_columns(states)
+    say(f"the figure shows {len(states):,} states in {len(columns)} columns: {words}")
+    frame = figures.states.Frame(states)
+    boxes = list(figures.slip_extent.extent_boxes(states, columns, frame))
+    look = figures.stick_slip.extent_look
+    numbers: dict[str, Any] = {
+        "load points after": np.array([box.left for box in boxes]),
+        "to": np.array([box.right for box in boxes]),
+        "start [deg]": np.array([box.start for box in boxes]),
+        "stop [deg]": np.array([box.stop for box in boxes]),
+        "slip": np.array([look(states[0].problem, box.extent)[2] for box in boxes]),
+    }
+    return _drawn(lambda sheet: figures.stick_slip.draw_stick_slip(states, sheet), title), _curves([Curve({}, numbers)])
 
 
 def _sketch(options: argparse.Namespace, title: str) -> Made:
@@ -204,9 +225,44 @@ def _slip(options: argparse.Namespace, title: str) -> Made:
 
 
 def _loops(options: argparse.Namespace, title: str) -> Made:
-    cycle = _result(options).cycle()
-    figures.load_cycle.check_loops(cycle)
-    return lambda path: figures.plot_loops(cycle, path, title), _curves([report.cycle.loop_curve(cycle)])
+    cycles = _chosen_cycles(options)
+    abscissa = options.abscissa
+    figures.load_cycle.check_loops(list(cycles.values()), abscissa)
+    for number, cycle in cycles.items():
+        say(f"cycle {number:,}: {figures.load_cycle.dissipated_words(cycle)}")
+        if doubt := figures.load_cycle.area_doubt(cycle):
+            say(f"note: {doubt}", file=sys.stderr)
+    names = [f"cycle {number:,}" for number in cycles]
+    curves = [
+        Curve({"cycle": number}, report.cycle.loop_curve(cycle).columns) for number, cycle in cycles.items()
+    ]
+
+    def write(path: Path) -> None:
+        figures.plot_loops(list(cycles.values()), path, title, abscissa=abscissa, names=names)
+
+    return write, _curves(curves)
+
+
+def _chosen_cycles(options: argparse.Namespace) -> dict[int, LoadCycle]:
+    """The cycles of ``--cycle`` by number, at most as many as a figure can show. Others than loops are left out."""
+    result = _with_cycles(options.result)
+    chosen = "last" if options.cycle is None else options.cycle
+    places, refusal = chosen_cycles(result.cycles, chosen), None
+    found: dict[int, LoadCycle] = {}
+    shown = figures.style.spread(len(places), figures.style.MAX_NAMED)
+    if len(shown) < len(places):
+        say(f"the figure shows {len(shown)} of {len(places):,} cycles: {', '.join(f'{places[k] + 1:,}' for k in shown)}")
+    for place in (places[k] for k in shown):
+        part = storage.load(options.result, states=_places_of(result.cycles[place], options.result))
+        try:
+            found[place + 1] = part.cycle(place)
+        except InputError as error:
+            refusal = error
+            if len(places) > 1:
+                say(f"note: cycle {place + 1:,} is left out: {error.reason}", file=sys.stderr)
+    if refusal is not None and not found:
+        raise refusal
+    return found
 
 
 def _fatigue(options: argparse.Namespace, title: str) -> Made:

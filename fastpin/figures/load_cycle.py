@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import Frame
-from fastpin.figures.style import line
+from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.words import (
     ANGLE,
     ROUNDING,
@@ -28,8 +30,9 @@ from fastpin.figures.words import (
     shown_unit,
     without_rounding,
 )
-from fastpin.model.checks import instance
+from fastpin.model.checks import choice, instance, instances
 from fastpin.model.loads import LOAD_KIND
+from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
 from fastpin.report.cycle import CONJUGATES, natural_sizes
 from fastpin.solver.result import Result
@@ -48,6 +51,21 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 TICKS = {1: 9, 2: 6, 3: 3}
 """Most intervals on the axis of displacements, by the number of panels side by side."""
+
+ENERGY_DIGITS = 4
+"""Significant digits of areas and energies."""
+
+AREA_ERROR = 0.01
+"""Largest part of the dissipation by which the areas of the loops may differ from it without a warning."""
+
+Abscissa = Literal["prescribed", "pin"]
+"""The displacement over which a reaction is drawn."""
+
+ABSCISSAS = ("prescribed", "pin")
+"""The values of :data:`Abscissa`."""
+
+PRESCRIBED = {"Q": "ux", "P": "−uy"}
+"""Names of prescribed displacements along the reactions."""
 
 NO_AREA = "area unknown: no states between the corners"
 """Title of a loop that is a line."""
@@ -160,26 +178,36 @@ def _shade(panel: Axes, cycle: LoadCycle, frame: Frame, slips: bool) -> list[Art
 
 
 def plot_loops(
-    cycle: LoadCycle | Result,
+    cycle: LoadCycle | Result | Sequence[LoadCycle],
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
     dpi: float = 300.0,
     *,
+    abscissa: Abscissa | None = None,
+    names: Sequence[str] = (),
     ax: Axes | None = None,
 ) -> Figure:
-    """Draw the hysteresis loops of a cycle: each load against the displacement on which it does work.
+    """Draw the hysteresis loops of a cycle, or of several: each load against the displacement on which it does work.
 
     Each panel names the area of its loop, which is the work of the load. Over a closed cycle of a settled contact the
-    areas sum up to the dissipation. The area needs more states than the ends of a line: see `between` of
-    :func:`fastpin.solve`.
+    areas sum up to the dissipation. The heading names the dissipation of the exact path beside them. An area needs more
+    states than the ends of a line: see `between` of :func:`fastpin.solve`. Loops of several cycles lie over one
+    another, and the legend names them. A load whose displacement is always 0 has no panel.
 
     Parameters
     ----------
-    cycle : LoadCycle or Result
-        From :meth:`fastpin.Result.cycle`; of a result the last cycle.
+    cycle : LoadCycle, Result or sequence of LoadCycle
+        From :meth:`fastpin.Result.cycle`; of a result the last cycle. At most
+        :data:`~fastpin.figures.style.MAX_NAMED` cycles of one problem.
     path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
+    abscissa : {"prescribed", "pin"}, optional
+        Displacement of a reaction P or Q: "prescribed" is ux or -uy, which holds the elastic deformation of pin and
+        plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops have the same
+        area. Unless given, it is "prescribed" where a displacement is prescribed.
+    names : sequence of str
+        Names of several cycles in the legend, before their corners.
 
     Raises
     ------
@@ -187,57 +215,143 @@ def plot_loops(
         If `cycle` is no load cycle, or a result without one, or if no load changes in it. Also see
         :func:`fastpin.plot_tractions`.
     """
-    look, found = Look(path, title, width, dpi, ax), _cycle_of(cycle)
-    check_loops(found)
-    return look.drawn(lambda: _draw_loops(found, look))
+    look = Look(path, title, width, dpi, ax)
+    several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
+    cycles = instances("cycle", cycle, LoadCycle, "load cycles") if several else [_cycle_of(cycle)]  # type: ignore[arg-type]
+    check_loops(cycles, abscissa)
+    return look.drawn(lambda: _draw_loops(cycles, look, abscissa, list(names)))
 
 
-def check_loops(cycle: LoadCycle) -> None:
-    """Raise :class:`InputError` if a cycle has no hysteresis loop."""
-    if _changing(cycle):
+def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:
+    """Raise :class:`InputError` if no cycle has a hysteresis loop, there are too many, or the abscissa is unknown."""
+    if abscissa is not None:
+        choice("abscissa", abscissa, ABSCISSAS)
+    if not 1 <= len(cycles) <= MAX_NAMED:
+        raise InputError("cycle", f"must be 1 to {MAX_NAMED} cycles, not {len(cycles)}")
+    if any(cycle.states[0].problem != cycles[0].states[0].problem for cycle in cycles):
+        raise InputError("cycle", "must be cycles of one problem")
+    if abscissa == "prescribed" and not any(cycles[0].states[0].problem.driven):
+        raise InputError("abscissa", "no displacement is prescribed here; the other choice is pin")
+    if any(_changing(cycle) for cycle in cycles):
         return
-    if len(cycle.states) == 2 and cycle.last - cycle.first > 1:
+    if all(len(cycle.states) == 2 and cycle.last - cycle.first > 1 for cycle in cycles):
         raise InputError("cycle", 'has no loop: only its ends were kept; keep "corners" or "all" keeps its corners')
     raise InputError("cycle", "has no loop: no load changes in it")
 
 
 def _changing(cycle: LoadCycle) -> list[str]:
-    """Names of the loads that change in a cycle, beyond rounding."""
-    loops = cycle.loops
+    """Names of the loads that change in a cycle, beyond rounding, and whose displacement is not always 0."""
+    loops, problem = cycle.loops, cycle.states[0].problem
     force = max(float(np.abs(loops[name].load).max()) for name in ("P", "Q"))
-    sizes = {"moment": force * cycle.states[0].problem.hole_radius, "force": force}
+    sizes = {"moment": force * problem.hole_radius, "force": force}
+    strain = problem.surfaces.beta_star * float(cycle.pressure_extremes[1].max())
+    moves = {"moment": strain, "force": strain * problem.hole_radius}
     return [
         name
         for name, loop in loops.items()
         if np.ptp(loop.load) > 1e-9 * sizes.get(LOAD_KIND[name], float(np.abs(loop.load).max()))
+        and np.abs(loop.displacement).max() > ROUNDING * moves.get(LOAD_KIND[name], 0.0)
     ]
 
 
-def _draw_loops(cycle: LoadCycle, look: Look) -> Sheet:
-    names = _changing(cycle)
-    across = min(len(names), 3)
-    sheet = look.sheet([2.6] * -(-len(names) // across), columns=across, extra=0.9)
-    axes = sheet.axes
+def _draw_loops(cycles: Sequence[LoadCycle], look: Look, abscissa: Abscissa | None, names: Sequence[str]) -> Sheet:
+    loads = list(dict.fromkeys(name for cycle in cycles for name in _changing(cycle)))
+    across = min(len(loads), 3)
+    sheet = look.sheet([2.6] * -(-len(loads) // across), columns=across, extra=0.9 + 0.17 * len(cycles))
     sheet.grid()
-    unit = units(cycle.states[0].problem)
-    for panel in axes.flat[len(names) :]:
+    for panel in sheet.axes.flat[len(loads) :]:
         panel.set_visible(False)
-    for name, panel in zip(names, axes.flat, strict=False):
-        loop, kind = cycle.loops[name], LOAD_KIND[name]
-        load, load_unit = unit[kind].scale(loop.load.tolist())
-        words, conjugate = CONJUGATES[kind]
-        moved, moved_unit = _displacement_scale(loop.displacement, unit[conjugate])
-        if kind == "traction":  # of a square unit, which has no prefixes
-            moved = 1.0 / max(float(np.abs(loop.displacement).max()), 1e-300)
-            moved_unit = "largest is 1"
-        panel.plot(moved * loop.displacement, load * loop.load, marker="o", markersize=2.2, **line(0))
-        panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
-        panel.set_ylabel(quantity(name, load_unit))
-        area = _area(cycle, name, float(loop.work)) if len(loop.load) > STRAIGHT else NO_AREA
-        panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
-        panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
-    _head(sheet, cycle, look.title, lift=18.0)
+    for name, panel in zip(loads, sheet.axes.flat, strict=False):
+        _draw_loop(panel, cycles, name, abscissa, across)
+    problem, single = cycles[0].states[0].problem, len(cycles) == 1
+    if single:
+        _head(sheet, cycles[0], f"{look.title}\n{dissipated_words(cycles[0])}".strip(), lift=18.0)
+        return sheet
+    sheet.head(look.title, caption=caption(problem, [state for cycle in cycles for state in cycle.states]), lift=6.0)
+    handles = []
+    for k, cycle in enumerate(cycles):
+        name = f"{names[k]}, " if k < len(names) else ""
+        label = f"{name}corners {cycle.first:,} to {cycle.last:,}: {dissipated_words(cycle)}"
+        handles.append(Line2D([], [], label=label, **line(k, k)))
+    sheet.legend(handles, 1)
     return sheet
+
+
+def _draw_loop(
+    panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Abscissa | None, across: int
+) -> None:
+    """Draw the loops of one load in all cycles."""
+    problem, kind = cycles[0].states[0].problem, LOAD_KIND[name]
+    loops = [cycle.loops[name] for cycle in cycles]
+    unit = units(problem)
+    load, load_unit = unit[kind].scale(np.concatenate([loop.load for loop in loops]).tolist())
+    words, conjugate = CONJUGATES[kind]
+    moves = [_abscissa_values(cycle, name, abscissa) for cycle in cycles]
+    if prescribed := _prescribed(problem, name, abscissa):
+        words = f"prescribed displacement {prescribed}"
+    moved, moved_unit = _displacement_scale(np.concatenate(moves), unit[conjugate])
+    if kind == "traction":  # of a square unit, which has no prefixes
+        moved = 1.0 / max(float(np.abs(np.concatenate(moves)).max()), 1e-300)
+        moved_unit = "largest is 1"
+    for k, (loop, move) in enumerate(zip(loops, moves, strict=True)):
+        panel.plot(moved * move, load * loop.load, marker="o", markersize=2.2, **line(k, k))
+    panel.set_xlabel(f"{words}\n({shown_unit(moved_unit)})" if across > 2 else quantity(words, moved_unit))
+    panel.set_ylabel(quantity(name, load_unit))
+    if len(cycles) == 1:
+        area = _area(cycles[0], name, float(loops[0].work)) if len(loops[0].load) > STRAIGHT else NO_AREA
+        panel.text(0.0, 1.02, area, fontsize=8.0, ha="left", va="bottom", transform=panel.transAxes)
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS[across], steps=[1, 2, 5, 10]))
+
+
+def _prescribed(problem: Problem, name: str, abscissa: Abscissa | None) -> str:
+    """Words for the prescribed displacement over which a load is drawn; empty if it is drawn over that of the pin."""
+    driven = dict(zip(("Q", "P"), problem.driven, strict=True)).get(name, False)
+    return PRESCRIBED[name] if driven and abscissa != "pin" else ""
+
+
+def _abscissa_values(cycle: LoadCycle, name: str, abscissa: Abscissa | None) -> np.ndarray:
+    """The displacements over which a load is drawn, with the sign of the load, shape (states,)."""
+    if not _prescribed(cycle.states[0].problem, name, abscissa):
+        return cycle.loops[name].displacement
+    sign, load = (1.0, "ux") if name == "Q" else (-1.0, "uy")
+    return np.array([sign * state.load[load] for state in cycle.states])
+
+
+def dissipated_words(cycle: LoadCycle) -> str:
+    """The areas of all loops of a cycle, and the energy that friction dissipates on its exact path, as text."""
+    problem = cycle.states[0].problem
+    unit = units(problem)["energy"]
+    size = max(abs(state.energy) for state in cycle.states)
+    lost = cycle.dissipation if abs(cycle.dissipation) > ROUNDING * size else 0.0
+    exact = f"dissipated on the path {short(lost, unit, ENERGY_DIGITS)}" if lost else "nothing dissipated"
+    if len(cycle.states) <= STRAIGHT:
+        return exact
+    area = enclosed(cycle)
+    area = area if abs(area) > ROUNDING * size else 0.0
+    return f"area {short(area, unit, ENERGY_DIGITS) if area else '0'}, {exact}"
+
+
+def enclosed(cycle: LoadCycle) -> float:
+    """The areas of all loops of a cycle together, J/m: the work of the loads on polygons through the states."""
+    return float(sum(loop.work for loop in cycle.loops.values()))
+
+
+def area_doubt(cycle: LoadCycle) -> str:
+    """A sentence if the areas of the loops differ by more than :data:`AREA_ERROR` from the dissipation; else empty."""
+    lost, area = cycle.dissipation, enclosed(cycle)
+    size = max(abs(state.energy) for state in cycle.states)
+    if len(cycle.states) <= STRAIGHT or max(abs(lost), abs(area)) <= ROUNDING * size:
+        return ""
+    away = area - lost
+    if abs(away) <= AREA_ERROR * abs(lost):
+        return ""
+    share = f"{abs(away / lost):.2g} times" if abs(away) > 2.0 * abs(lost) else f"{100.0 * abs(away / lost):.2g} %"
+    stored = cycle.states[-1].energy - cycle.states[0].energy
+    why = "few states draw the loop; between = N adds some"
+    if abs(away - stored) < 0.5 * abs(away):
+        why = "the contact has not settled, and stores the difference"
+    where = f"corners {cycle.first:,} to {cycle.last:,}"
+    return f"{where}: the areas differ by {share} from the dissipation of the path: {why}"
 
 
 def _displacement_scale(values: np.ndarray, unit: Unit) -> tuple[float, str]:

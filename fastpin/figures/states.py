@@ -54,11 +54,13 @@ class DrawnStates(list[State]):
     ----------
     total : int
         Number of states from which they were chosen.
+    cycles : sequence of Cycle
+        The cycles of the history.
     """
 
-    def __init__(self, states: Iterable[State], total: int) -> None:
+    def __init__(self, states: Iterable[State], total: int, cycles: Sequence[Cycle] = ()) -> None:
         super().__init__(states)
-        self.total = total
+        self.total, self.cycles = total, cycles
 
     @property
     def note(self) -> str:
@@ -71,15 +73,19 @@ class DrawnStates(list[State]):
 
 
 def drawn_states(
-    result: Sequence[State] | State, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False
+    result: Sequence[State] | State,
+    states: StateChoice = None,
+    most: int = MAX_NAMED,
+    in_a_row: bool = False,
+    whole: bool = False,
 ) -> DrawnStates:
-    """Return the states that a figure draws, at most `most`.
+    """Return the states that a figure draws, at most `most` unless it draws the `whole` choice.
 
     Parameters
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    states, most, in_a_row
+    states, most, in_a_row, whole
         See :func:`drawn_places`.
 
     Raises
@@ -92,11 +98,11 @@ def drawn_states(
         raise InputError("result", f"must be states or a result, not {as_toml(result)}")
     if any(not np.array_equal(state.theta, every[0].theta) for state in every):
         raise InputError("result", "its states must all be on one grid")
-    cycles = every.cycles if isinstance(every, Result) else ()
+    cycles = every.cycles if isinstance(every, Result | DrawnStates) else ()
     points = np.array([load_point(state) for state in every])
-    places = drawn_places(points, cycles, states, most, in_a_row)
+    places = drawn_places(points, cycles, states, most, in_a_row, whole)
     total = every.total if isinstance(every, DrawnStates) else len(every)
-    return DrawnStates([every[place] for place in places], total)
+    return DrawnStates([every[place] for place in places], total, cycles)
 
 
 def drawn_places(
@@ -105,6 +111,7 @@ def drawn_places(
     states: StateChoice = None,
     most: int = MAX_NAMED,
     in_a_row: bool = False,
+    whole: bool = False,
 ) -> list[int]:
     """Return the places of the states that a figure draws.
 
@@ -121,6 +128,8 @@ def drawn_places(
     in_a_row : bool
         Whether the first states are drawn instead of an even choice, if the history has cycles. An even choice from
         many cycles would look like a slow cycle.
+    whole : bool
+        Whether all chosen states are drawn, in the order of the history: the figure joins more than `most` of them.
 
     Raises
     ------
@@ -136,12 +145,16 @@ def drawn_places(
         if states is not None or not len(points):
             raise
         places = chosen_places(points, cycles, "all")  # the states of the last cycle were not kept
+    if whole:
+        return sorted(set(places)) if len(places) > most else places
     if in_a_row and cycles:
         return places[:most]
     return [places[k] for k in spread(len(places), most)]
 
 
-def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False) -> DrawnStates:
+def stored_states(
+    path: Path, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False, whole: bool = False
+) -> DrawnStates:
     """Return the states that a figure of a result file draws. No others are read.
 
     Raises
@@ -151,8 +164,11 @@ def stored_states(path: Path, states: StateChoice = None, most: int = MAX_NAMED,
     """
     points = load_points(path)
     cycles = load(path, states=[]).cycles
-    places = drawn_places(points, cycles, states, most, in_a_row)
-    return DrawnStates(load(path, states=places).states, len(points))
+    places = drawn_places(points, cycles, states, most, in_a_row, whole)
+    neighbours = bool(places) and places == list(range(places[0], places[-1] + 1))
+    # A slice is read at once, a list state by state.
+    read = load(path, states=slice(places[0], places[-1] + 1) if neighbours else places)
+    return DrawnStates(read.states, len(points), cycles)
 
 
 class Frame:

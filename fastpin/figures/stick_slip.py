@@ -15,6 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from fastpin.figures.sheet import Look, Sheet
+from fastpin.figures.slip_extent import BOTH_WAYS, Column, ExtentBox, columns_of, extent_boxes, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states
 from fastpin.figures.style import line
 from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
@@ -25,7 +26,7 @@ from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 
 MOST_COLUMNS = 200
-"""Most states in a map. A column is then half a millimetre wide on paper."""
+"""Most columns of a map. A column is then half a millimetre wide on paper. Columns of more states join some of them."""
 
 ZoneLook = tuple[str, str, str]
 """Colour, hatch and words of a zone."""
@@ -39,6 +40,20 @@ LOOKS: dict[int, ZoneLook] = {
 
 FRICTIONLESS = ("#A6A6A6", "", "slips without friction")
 """The look of a contact without friction. Its status tells no direction."""
+
+EXTENTS = {
+    STICK: "sticks whenever it touches",
+    SLIP_POSITIVE: "pin slips counter-clockwise at some time",
+    SLIP_NEGATIVE: "pin slips clockwise at some time",
+    BOTH_WAYS: "pin slips both ways",
+}
+"""Words of what a node does in a column that joins several states."""
+
+BOTH_WAYS_LOOK = ("#6FB58F", "xxxx", "")
+"""The look of nodes that slip both ways in a column."""
+
+OPEN_WORDS = "open all the time"
+"""Words of nodes that are closed at no state of a column."""
 
 MARKS = {SLIP_POSITIVE: "^", SLIP_NEGATIVE: "v"}
 """Marks of slip zones that are too narrow to be seen; they point along the slip of the pin."""
@@ -85,7 +100,8 @@ def plot_stick_slip(
     Parameters
     ----------
     result : State, Result or sequence of State
-        Of one problem and on one grid. At most :data:`MOST_COLUMNS` states are drawn: the first ones of many cycles.
+        Of one problem and on one grid. Of more than :data:`MOST_COLUMNS` states, a column joins the states of one cycle
+        or of several. It shows which nodes slip, and in which direction, at some time in it.
     path, title, width, dpi, states, ax
         See :func:`fastpin.plot_tractions`.
 
@@ -95,7 +111,7 @@ def plot_stick_slip(
         See :func:`fastpin.plot_tractions`.
     """
     look = Look(path, title, width, dpi, ax)
-    drawn = drawn_states(result, states, MOST_COLUMNS, in_a_row=True)
+    drawn = drawn_states(result, states, MOST_COLUMNS, whole=True)
     return look.drawn(lambda: draw_stick_slip(drawn, look))
 
 
@@ -125,45 +141,101 @@ def column_ends(points: np.ndarray) -> np.ndarray:
 
 
 def draw_stick_slip(states: DrawnStates, look: Look) -> Sheet:
-    """Draw the map of these states on a new sheet."""
-    common, differing = loads_by_change(states)
-    sheet = look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
-    panel, frame = sheet.axes[-1, 0], Frame(states)
+    """Draw the map of these states on a new sheet. Many states are joined in columns, see :func:`columns_of`."""
+    if len(states) > MOST_COLUMNS:
+        return _draw_long(states, look)
+    problem, frame = states[0].problem, Frame(states)
     boxes = list(zone_boxes(states, frame))
     present = [status for status in LOOKS if any(box.status == status for box in boxes)]
-    problem = states[0].problem
+    differing = loads_by_change(states)[1]
+    sheet = _sheet(look, differing)
+    panel = sheet.axes[-1, 0]
     for status in present:
-        colour, hatch, _ = zone_look(problem, status)
-        corners = [_corners(box) for box in boxes if box.status == status]
-        panel.add_collection(
-            PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False)
-        )
-        if hatch:
-            shape = PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch)
-            panel.add_collection(shape)
+        _fill(panel, [box for box in boxes if box.status == status], zone_look(problem, status))
     marked = not problem.frictionless and _draw_marks(panel, boxes, len(states), frame.limits)
     panel.set_xlim(*column_ends(np.array([load_point(state) for state in states]))[[0, -1]])
-    frame.scale(panel, upright=True)
-    panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
-    panel.set_xlabel(LOAD_POINT)
-    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     if differing:
         _draw_loads(sheet.axes[0, 0], states, differing)
-        sheet.axes[0, 0].tick_params(labelbottom=False)
-    sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
     note = f"; {len(states)} of {states.total:,} states drawn" if len(states) < states.total else ""
-    text = caption(problem, states)
-    sheet.head(look.title, ",  ".join(load_text(states, 0, name) for name in common), caption=f"{text}{note}")
+    _add_words(sheet, states, frame, look.title, note)
     handles: list[Patch | Line2D] = [zone_patch(zone_look(problem, status)) for status in present]
-    handles.append(Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label="open"))
+    handles.append(_open_patch("open"))
     if marked:
         handles.append(Line2D([], [], label="narrow slip zone", **(_MARK | {"marker": "^"})))
     sheet.legend(handles, len(handles))
     return sheet
 
 
-def _corners(box: ZoneBox) -> list[tuple[float, float]]:
+def _draw_long(states: DrawnStates, look: Look) -> Sheet:
+    """Draw the map of more states than columns can be seen."""
+    problem, frame = states[0].problem, Frame(states)
+    columns, words = long_columns(states)
+    boxes = list(extent_boxes(states, columns, frame))
+    present = [extent for extent in EXTENTS if any(box.extent == extent for box in boxes)]
+    differing = loads_by_change(states)[1]
+    sheet = _sheet(look, differing)
+    panel = sheet.axes[-1, 0]
+    for extent in present:
+        _fill(panel, [box for box in boxes if box.extent == extent], extent_look(problem, extent))
+    panel.set_xlim(columns[0].left, columns[-1].right)
+    if differing:
+        _draw_load_ranges(sheet.axes[0, 0], states, columns, differing)
+    some = f" of {states.total:,}" if len(states) < states.total else ""
+    _add_words(sheet, states, frame, look.title, f"; {len(states):,}{some} states; {words}")
+    handles = [zone_patch(extent_look(problem, extent)) for extent in present]
+    sheet.legend([*handles, _open_patch(OPEN_WORDS)], 3)
+    return sheet
+
+
+def long_columns(states: DrawnStates) -> tuple[list[Column], str]:
+    """Return the columns in which many states are drawn, and words on what a column joins."""
+    points = np.array([load_point(state) for state in states])
+    return columns_of(points, states.cycles, MOST_COLUMNS)
+
+
+def extent_look(problem: Problem, extent: int) -> ZoneLook:
+    """Colour, hatch and words of nodes in a column that joins several states."""
+    if problem.frictionless:
+        return FRICTIONLESS
+    colour, hatch, words = LOOKS.get(extent, BOTH_WAYS_LOOK)
+    return colour, hatch, EXTENTS.get(extent, words)
+
+
+def _sheet(look: Look, differing: Sequence[str]) -> Sheet:
+    """A sheet with the panel of the map, below the panel of the loads that change."""
+    return look.sheet([1.0, 2.8] if differing else [2.8], extra=1.2, sharex=True)
+
+
+def _fill(panel: Axes, boxes: Sequence[ZoneBox | ExtentBox], look: ZoneLook) -> None:
+    """Fill rectangles with a colour and a hatch."""
+    colour, hatch, _ = look
+    corners = [_corners(box) for box in boxes]
+    panel.add_collection(PolyCollection(corners, facecolor=colour, edgecolor="none", linewidth=0.0, antialiased=False))
+    if hatch:
+        panel.add_collection(PolyCollection(corners, facecolor="none", edgecolor="0.25", linewidth=0.0, hatch=hatch))
+
+
+def _add_words(sheet: Sheet, states: DrawnStates, frame: Frame, title: str, note: str) -> None:
+    """Add the axes, the heading and the caption, which ends in the note."""
+    panel = sheet.axes[-1, 0]
+    frame.scale(panel, upright=True)
+    panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
+    panel.set_xlabel(LOAD_POINT)
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    for above in sheet.axes[:-1, 0]:
+        above.tick_params(labelbottom=False)
+    sheet.figure.align_ylabels(list(sheet.axes[:, 0]))
+    common = loads_by_change(states)[0]
+    text = f"{caption(states[0].problem, states)}{note}"
+    sheet.head(title, ",  ".join(load_text(states, 0, name) for name in common), caption=text)
+
+
+def _open_patch(words: str) -> Patch:
+    return Patch(facecolor="white", edgecolor="0.5", linewidth=0.6, label=words)
+
+
+def _corners(box: ZoneBox | ExtentBox) -> list[tuple[float, float]]:
     return [(box.left, box.start), (box.right, box.start), (box.right, box.stop), (box.left, box.stop)]
 
 
@@ -190,6 +262,21 @@ def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tup
     return bool(narrow)
 
 
+def _draw_load_ranges(panel: Axes, states: DrawnStates, columns: Sequence[Column], names: Sequence[str]) -> None:
+    """Draw the range of each load that changes in each column, over its largest value."""
+    ends = np.array([[column.left, column.right] for column in columns]).ravel()
+    for k, name in enumerate(names):
+        lowest, highest = load_ranges(states, columns, name)
+        largest = float(max(np.abs(lowest).max(), np.abs(highest).max()))
+        style = line(k % 8, k % 8, 0.8)
+        label = f"{name}, largest {short_load(states[0].problem, name, largest)}"
+        lower, upper = np.repeat(lowest / largest, 2), np.repeat(highest / largest, 2)
+        panel.fill_between(ends, lower, upper, color=style["color"], alpha=0.25, linewidth=0.0)
+        panel.plot(ends, upper, label=label, **style)
+        panel.plot(ends, lower, **style)
+    _finish_loads(panel, "range of load\n/ largest")
+
+
 def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str]) -> None:
     """Draw the loads that change, each over its largest value. The legend names these values."""
     points = [load_point(state) for state in states]
@@ -199,7 +286,11 @@ def _draw_loads(panel: Axes, states: DrawnStates, names: Sequence[str]) -> None:
         marker = "o" if len(states) <= MOST_MARKS else ""
         label = f"{name}, largest {short_load(states[0].problem, name, largest)}"
         panel.plot(points, values / largest, marker=marker, markersize=2.4, label=label, **line(k % 8, k % 8, 1.1))
+    _finish_loads(panel, "load / largest")
+
+
+def _finish_loads(panel: Axes, words: str) -> None:
     panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-    panel.set_ylabel("load / largest")
+    panel.set_ylabel(words)
     panel.margins(y=0.12)
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.0, handlelength=2.4)

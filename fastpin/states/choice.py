@@ -14,12 +14,14 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml, items, number, places_of
 from fastpin.model.history import LoadHistory
-from fastpin.states.cycles import Cycle
+from fastpin.states.cycles import Cycle, consecutive_cycles
 from fastpin.states.quantities import load_point
+from fastpin.states.ranges import Range, ranges_in
 from fastpin.states.state import State
 
 StateChoice = str | float | Sequence[float] | slice | None
-"""A choice of states: "last", "cycle", "all", load points (numbers, or a text such as "1,5,9"), or a slice of places.
+"""A choice of states: "last", "cycle", "all", load points (numbers, or a text such as "1,5,9"), ranges of them ("1-9", "10-",
+"1,5-9"), or a slice of places.
 
 None leaves the choice to the figure.
 """
@@ -87,8 +89,8 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
     if word == "cycle":
         return _places_of_last_cycle(points, cycles)
     wanted = _points_of(chosen)
-    found = {point: _place(points, point) for point in dict.fromkeys(wanted)}
-    return [found[point] for point in wanted]
+    found = {ends: _places(points, ends) for ends in dict.fromkeys(wanted)}
+    return [place for ends in wanted for place in found[ends]]
 
 
 def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
@@ -103,9 +105,9 @@ def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
         raise InputError("states", NO_CYCLE)
     if chosen is None or isinstance(chosen, slice) or (isinstance(chosen, str) and chosen in WORDS):
         return
-    for point in _points_of(chosen):
-        if not 0.0 < point <= len(history):
-            raise InputError("states", f"there is no state at load point {point:g}; the last is {len(history)}")
+    for ends in _points_of(chosen):
+        if not (0.0 < ends.last and ends.first <= len(history)):
+            raise _no_state(ends, len(history))
 
 
 def _places_of_last_cycle(points: np.ndarray, cycles: Sequence[Cycle]) -> list[int]:
@@ -118,25 +120,70 @@ def _places_of_last_cycle(points: np.ndarray, cycles: Sequence[Cycle]) -> list[i
     return places
 
 
-def _points_of(chosen: Any) -> list[float]:
-    """The load points that a choice names."""
+def _points_of(chosen: Any) -> list[Range]:
+    """The load points, and ranges of them, that a choice names."""
     parts = chosen.split(",") if isinstance(chosen, str) else [chosen] if isinstance(chosen, _NUMBERS) else chosen
     try:
         listed = items("states", parts, "load points")
-        points = [number("states", float(part) if isinstance(chosen, str) else part) for part in listed[:MOST_CHOSEN]]
+        if isinstance(chosen, str):
+            points = ranges_in(",".join(listed[:MOST_CHOSEN]))
+        else:
+            points = [Range(point, point) for point in (number("states", part) for part in listed[:MOST_CHOSEN])]
     except (InputError, ValueError):
         points = []
     if points and len(listed) > MOST_CHOSEN:
         raise InputError("states", f"must be at most {MOST_CHOSEN:,} load points, not {len(listed):,}")
     if not points:
         shown = repr(chosen) if isinstance(chosen, str) else as_toml(chosen)
-        raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, not {shown}")
+        raise InputError("states", f"must be last, cycle, all, load points such as 2,3.5 or ranges such as 1-9 or 10-, not {shown}")
     return points
 
 
-def _place(points: np.ndarray, point: float) -> int:
-    """The place of the state at a load point."""
-    found = np.flatnonzero(np.abs(points - point) < SAME_POINT)
+def _places(points: np.ndarray, ends: Range) -> list[int]:
+    """The places of the states in a range of load points, at least one."""
+    found = np.flatnonzero((points > ends.first - SAME_POINT) & (points < ends.last + SAME_POINT))
     if not found.size:
-        raise InputError("states", f"there is no state at load point {point:g}; the last is {points[-1]:g}")
-    return int(found[0])
+        raise _no_state(ends, points[-1])
+    return found[:1].tolist() if ends.is_single else found.tolist()
+
+
+def _no_state(ends: Range, last: float) -> InputError:
+    where = f"at load point {ends}" if ends.is_single else f"in the load points {ends}"
+    return InputError("states", f"there is no state {where}; the last is {last:g}")
+
+
+def chosen_cycles(cycles: Sequence[Cycle], chosen: str) -> list[int]:
+    """Return the places of the chosen cycles among `cycles`, in their order.
+
+    Parameters
+    ----------
+    cycles : sequence of Cycle
+        All cycles of a history that have ended.
+    chosen : str
+        "last", "all", "blocks" (the last cycle of each block), or numbers and ranges such as "1,5-9,20-". Cycles count
+        from 1, in the order of their ends.
+
+    Raises
+    ------
+    InputError
+        If there is no cycle, no such cycle, or the choice is none. The field is "cycle".
+    """
+    if not cycles:
+        raise InputError("cycle", NO_CYCLE)
+    if chosen == "last":
+        return [len(cycles) - 1]
+    if chosen == "all":
+        return list(range(len(cycles)))
+    if chosen == "blocks":
+        return sorted(cycles.index(block[-1]) for block in consecutive_cycles(cycles))
+    try:
+        wanted = ranges_in(chosen)
+    except ValueError:
+        raise InputError("cycle", f"must be last, blocks, all, or cycles such as 3, 1,5 or 10-, not {chosen!r}") from None
+    found: set[int] = set()
+    for ends in wanted:
+        places = [place for place in range(len(cycles)) if ends.first <= place + 1 <= ends.last]
+        if not places:
+            raise InputError("cycle", f"there is no cycle {ends}; the history has {len(cycles):,}, counted from 1")
+        found.update(places)
+    return sorted(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -54,6 +55,19 @@ def periodic_from(cycles: Sequence[Cycle]) -> Cycle | None:
     same = [cycle.pressure_change == 0.0 and cycle.shear_change == 0.0 for cycle in cycles]
     changing = max((k for k, steady in enumerate(same) if not steady), default=-1)
     return cycles[changing + 1] if changing + 1 < len(cycles) else None
+
+
+def innermost_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
+    """The cycles that contain no shorter one, in the order of their ends."""
+    ends: list[tuple[int, int]] = []  # end and length of the cycles so far
+    found = []
+    for cycle in sorted(cycles, key=lambda cycle: (cycle.corner, cycle.length)):
+        begin = cycle.corner - cycle.length
+        inside = itertools.takewhile(lambda other, begin=begin: other[0] > begin, reversed(ends))
+        if not any(length < cycle.length for _, length in inside):
+            found.append(cycle)
+        ends.append((cycle.corner, cycle.length))
+    return found
 
 
 def consecutive_cycles(cycles: Sequence[Cycle]) -> list[list[Cycle]]:

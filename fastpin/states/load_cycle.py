@@ -163,8 +163,9 @@ class LoadCycle:
 
         Full stick: no node slips while it is closed. Partial slip: some nodes slip, and others that are closed at some
         time never do. Gross sliding: every node that is closed at some time slips. The slip is that of the whole path
-        if :attr:`has_exact_slip_range`. Otherwise it is read from the states after the first: from their regimes, and
-        from the slip between two states at which a node is closed. Without friction all closed nodes slip.
+        if :attr:`has_exact_slip_range`. Otherwise it is read from the states: from the change of the slip between two
+        states at which a node is closed, and from the statuses of nodes that were open before. Without friction all
+        closed nodes slip.
         """
         closed = ~np.isnan(self.slip_extremes[0])
         problem = self.states[0].problem
@@ -173,10 +174,11 @@ class LoadCycle:
         least = NO_SLIP * problem.hole_radius * problem.surfaces.beta_star * float(self.pressure_extremes[1].max())
         if self.slip_distance is not None:
             return regime_of(closed, self.slip_distance > least)
-        slips = np.any([state.slipping for state in self.states[1:]], axis=0)
-        both = (self.status[1:] != OPEN) & (self.status[:-1] != OPEN)
-        moved = np.abs(np.diff([state.slip for state in self.states], axis=0))
-        return regime_of(closed, slips | np.any(both & (moved > least), axis=0))
+        opened = self.status[:-1] == OPEN
+        slipping = np.array([state.slipping for state in self.states[1:]])
+        moved = np.abs(np.diff([state.slip for state in self.states], axis=0)) > least
+        both = ~opened & (self.status[1:] != OPEN)
+        return regime_of(closed, np.any((both & moved) | (opened & slipping), axis=0))
 
     # -- slip ----------------------------------------------------------------------------------------------------
 
