@@ -38,8 +38,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         draw, write = KINDS[options.kind](options, title)
     except InputError as error:
-        option = f"--{error.field}"
-        raise InputError(option if error.field in PLOT_OPTIONS[options.kind] else error.field, error.reason) from None
+        given = error.field in PLOT_OPTIONS[options.kind] and getattr(options, error.field) is not None
+        raise InputError(f"--{error.field}" if given else error.field, error.reason) from None
     code = write_files([(figure, draw), (options.csv, write)])
     if code == 0:
         say(f"wrote {figure}" + ("" if options.csv is None else f" and {options.csv}"))
@@ -251,7 +251,8 @@ def _chosen_cycles(options: argparse.Namespace) -> dict[int, LoadCycle]:
     found: dict[int, LoadCycle] = {}
     shown = figures.style.spread(len(places), figures.style.MAX_NAMED)
     if len(shown) < len(places):
-        say(f"the figure shows {len(shown)} of {len(places):,} cycles: {', '.join(f'{places[k] + 1:,}' for k in shown)}")
+        numbers = ", ".join(f"{places[k] + 1:,}" for k in shown)
+        say(f"the figure shows {len(shown)} of {len(places):,} cycles: {numbers}")
     for place in (places[k] for k in shown):
         part = storage.load(options.result, states=_places_of(result.cycles[place], options.result))
         try:

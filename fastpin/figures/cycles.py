@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import MAX_NAMED, line
 from fastpin.figures.words import ROUNDING, caption, quantity, without_rounding
 from fastpin.model.checks import instance
+from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
@@ -32,14 +34,24 @@ FEW = 60
 SPARSE = 0.12
 """Distance of the marks of more cycles, in parts of the diagonal of the panel."""
 
+CYCLE = "cycle (1: first of the history)"
+"""Words of the axis of cycles."""
+
 LONG = 50
-"""Ratio of the last and the first corner from which the axis of corners is logarithmic: transients are short.
+"""Number of cycles of one block from which their axis is logarithmic: transients are short.
 
 With several blocks the axis is linear: a logarithmic one would squeeze all blocks but the first.
 """
 
 PERIODIC: dict[str, Any] = {"color": "0.45", "linewidth": 0.8, "linestyle": (0, (1.0, 2.0))}
 """Line of the first periodic cycle of a block."""
+
+CHANGE, DISSIPATION, ROTATION = (
+    "largest change of\ntractions / peak N",
+    "dissipated\nin the cycle",
+    "turned by all\ncycles so far",
+)
+"""Words of the panels."""
 
 CHANGES = {"pressure_change": "pressure", "shear_change": "shear"}
 """Changes of a cycle, and their words."""
@@ -56,11 +68,11 @@ def plot_cycles(
 ) -> Figure:
     """Draw the changes that each cycle of a load history makes, from the beginning to the end of the cycle.
 
-    The upper panel shows the largest change of pressure and shear traction, relative to the largest pressure. The
-    middle panel shows the energy dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end.
+    Cycles count from 1 in the order of their ends, also those that contain others. The upper panel shows the largest
+    change of pressure and shear traction, relative to the largest pressure. The middle panel shows the energy dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end.
     Values below rounding are 0. A vertical line marks the end of the first cycle from which on the contact is periodic.
     The lower panel sums up how far the cycles so far have turned the pin (ratcheting), counter-clockwise positive.
-    Cycles that contain others have a sum of their own.
+    Cycles that contain others have a sum of their own. A panel whose values are all 0 to rounding is left out.
 
     Parameters
     ----------
@@ -86,39 +98,62 @@ def plot_cycles(
 
 
 def _draw_cycles(result: Result, look: Look) -> Sheet:
-    sheet = look.sheet([1.7, 1.7, 1.7], extra=1.2, sharex=True)
-    panels = list(sheet.axes[:, 0])
-    sheet.grid()
     kind, cycles = units(result.problem), result.cycles
     lengths = sorted({cycle.length for cycle in cycles})[:MAX_NAMED]
     energy, unit = units(result.problem)["energy"].scale([cycle.dissipation for cycle in cycles])
     turns = _turned(cycles)
     angle, unit_of_angle = kind["rotation"].scale(np.concatenate(list(turns.values())).tolist())
+    shown = _panels_with_values(result, turns)
+    sheet = look.sheet([1.7] * len(shown), extra=1.2, sharex=True)
+    panels = dict(zip(shown, sheet.axes[:, 0], strict=True))
+    sheet.grid()
+    numbers = {(cycle.length, cycle.corner): number for number, cycle in enumerate(cycles, start=1)}
+    ends = [cycle.corner for cycle in cycles]
     changes = [np.array([getattr(cycle, name) for cycle in cycles]) for name in CHANGES]
     floors = [_floor(np.concatenate(changes)), _floor(energy * np.array([cycle.dissipation for cycle in cycles]))]
     for kind_of_length, length in enumerate(lengths):
         mine = [cycle for cycle in cycles if cycle.length == length]
         for part in _parts(mine):  # the blocks of one length stand apart where other blocks lie between them
-            where = [cycle.corner + 1 for cycle in part]
-            turn = angle * turns[length, part[0].corner]
-            panels[2].plot([where[0] - length, *where], turn, **_style(kind_of_length, 0, len(mine)))
-            for dashes, name in enumerate(CHANGES):
+            where = [numbers[length, cycle.corner] for cycle in part]
+            begin = bisect_right(ends, part[0].corner - length)  # cycles that had ended before
+            if ROTATION in panels:
+                turn = angle * turns[length, part[0].corner]
+                panels[ROTATION].plot([begin, *where], turn, **_style(kind_of_length, 0, len(mine)))
+            for dashes, name in enumerate(CHANGES if CHANGE in panels else ()):
                 drawn = _above(np.array([getattr(cycle, name) for cycle in part]), floors[0])
-                panels[0].plot(where, drawn, **_style(kind_of_length, dashes, len(mine)))
-            lost = energy * np.array([cycle.dissipation for cycle in part])
-            panels[1].plot(where, _above(lost, floors[1]), **_style(kind_of_length, 0, len(mine)))
-    for panel, floor in zip(panels, floors, strict=False):
-        _log_axis_with_zero(panel, floor)
-    marked = _mark_periodic(panels, cycles)
-    panels[0].set_ylabel("largest change of\ntractions / peak N")
-    panels[1].set_ylabel(quantity("dissipated\nin the cycle", unit))
-    panels[2].set_ylabel(quantity("turned by all\ncycles so far", unit_of_angle))
-    _corner_axis(panels, cycles)
-    sheet.figure.align_ylabels(panels)
+                panels[CHANGE].plot(where, drawn, **_style(kind_of_length, dashes, len(mine)))
+            if DISSIPATION in panels:
+                lost = energy * np.array([cycle.dissipation for cycle in part])
+                panels[DISSIPATION].plot(where, _above(lost, floors[1]), **_style(kind_of_length, 0, len(mine)))
+    words = {CHANGE: CHANGE, DISSIPATION: quantity(DISSIPATION, unit), ROTATION: quantity(ROTATION, unit_of_angle)}
+    for name, panel in panels.items():
+        panel.set_ylabel(words[name])
+        if name != ROTATION:
+            _log_axis_with_zero(panel, floors[name == DISSIPATION])
+    drawn_panels = list(panels.values())
+    marked = _mark_periodic(drawn_panels, cycles, numbers)
+    _cycle_axis(drawn_panels, cycles)
+    sheet.figure.align_ylabels(drawn_panels)
     sheet.head(look.title, _counts(cycles), caption=caption(result.problem))
     handles = _handles(lengths, marked)
     sheet.legend(handles, min(len(handles), 4))
     return sheet
+
+
+def _panels_with_values(result: Result, turns: dict[tuple[int, int], np.ndarray]) -> list[str]:
+    """The panels whose values are not all 0 to rounding; the first one if all are."""
+    cycles, surfaces, radius = result.cycles, result.problem.surfaces, result.problem.hole_radius
+    largest_loads = dict(zip(LOADS, np.abs(result.history.distinct()).max(axis=0).tolist(), strict=True))
+    strains = {"force": surfaces.beta_star / radius, "traction": surfaces.beta_star, "displacement": 1.0 / radius}
+    strain = max(strains.get(LOAD_KIND[name], 0.0) * load for name, load in largest_loads.items())
+    changes = [getattr(cycle, name) for cycle in cycles for name in CHANGES]
+    found = {
+        CHANGE: max(np.nan_to_num(changes), default=0.0),
+        DISSIPATION: max(np.nan_to_num([abs(cycle.dissipation) for cycle in cycles])),
+        ROTATION: max(float(np.abs(turned).max()) for turned in turns.values()),
+    }
+    least = {ROTATION: ROUNDING * strain}
+    return [name for name, largest in found.items() if largest > least.get(name, 0.0)] or [CHANGE]
 
 
 def _turned(cycles: Sequence[Cycle]) -> dict[tuple[int, int], np.ndarray]:
@@ -191,30 +226,28 @@ def _log_axis_with_zero(panel: Axes, floor: float) -> None:
     panel.yaxis.set_minor_locator(NullLocator())
 
 
-def _mark_periodic(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> bool:
+def _mark_periodic(panels: Sequence[Axes], cycles: Sequence[Cycle], numbers: dict[tuple[int, int], int]) -> bool:
     """Mark the first periodic cycle of each block, and return whether there is one."""
     steady = [found for block in consecutive_cycles(cycles) if (found := periodic_from(block)) is not None]
     for found in steady[:MAX_NAMED]:
         for panel in panels:
-            panel.axvline(found.corner + 1, zorder=1, **PERIODIC)
+            panel.axvline(numbers[found.length, found.corner], zorder=1, **PERIODIC)
     return bool(steady)
 
 
-def _corner_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
-    """Set the axis of corners: logarithmic for a long block, else with whole numbers."""
-    corners = [cycle.corner + 1 for cycle in cycles]
-    panels[-1].set_xlabel("corner of the load history at which the cycle ends")
-    first, last = max(min(corners) - max(cycle.length for cycle in cycles), 1), max(corners)
-    if last > LONG * min(corners) and len(consecutive_cycles(cycles)) == 1:
+def _cycle_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
+    """Set the axis of cycles: logarithmic for a long block, else with whole numbers."""
+    last = len(cycles)
+    panels[-1].set_xlabel(CYCLE)
+    if last > LONG and len(consecutive_cycles(cycles)) == 1:
         for panel in panels:
             panel.set_xscale("log")
             panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=15))
             panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
             panel.xaxis.set_minor_locator(NullLocator())
-        panels[0].set_xlim(0.93 * first, 1.07 * last)
+        panels[0].set_xlim(0.93, 1.07 * last)
         return
-    if last > first:
-        panels[0].set_xlim(first - 0.02 * (last - first), last + 0.02 * (last - first))
+    panels[0].set_xlim(-0.02 * last, 1.02 * last)
     panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
 
 

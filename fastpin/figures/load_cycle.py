@@ -204,8 +204,8 @@ def plot_loops(
         See :func:`fastpin.plot_tractions`.
     abscissa : {"prescribed", "pin"}, optional
         Displacement of a reaction P or Q: "prescribed" is ux or -uy, which holds the elastic deformation of pin and
-        plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops have the same
-        area. Unless given, it is "prescribed" where a displacement is prescribed.
+        plate between the two places too. "pin" is the displacement of the pin over the hole. Both loops of a settled
+        contact have the same area. Unless given, it is "prescribed" where a displacement is prescribed.
     names : sequence of str
         Names of several cycles in the legend, before their corners.
 

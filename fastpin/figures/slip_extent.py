@@ -83,7 +83,7 @@ def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[
     for places in np.split(np.arange(points.size), starts[1:]):
         first = float(points[places[0]])
         near = first - right <= GAP * max(usual, 1.0)
-        columns.append(Column(right if near else first - usual, float(points[places[-1]]), places))
+        columns.append(Column(right if near else max(first - usual, 0.0), float(points[places[-1]]), places))
         right = columns[-1].right
     single, several = KINDS.get(float(np.mean(units % 1.0 == 0.0)), MIXED)
     return columns, f"each column is {single}" if joined == 1 else f"each column joins {joined} {several}"

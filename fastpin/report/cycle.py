@@ -158,12 +158,12 @@ def loop_curve(cycle: LoadCycle) -> Curve:
 
 
 def cycles_curve(problem: Problem, cycles: Sequence[Cycle]) -> Curve:
-    """Return the changes over cycles, a row for each cycle."""
+    """Return the changes over cycles, a row for each cycle. Cycles and corners are counted from 1, as in tables."""
     unit = units(problem)
     kinds = {"dissipation": "energy", "rotation_change": "rotation"}
-    columns = {}
+    columns = {"cycle": np.arange(1.0, len(cycles) + 1.0)}
     for name in Cycle._fields:
-        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float)
+        values = np.array([getattr(cycle, name) for cycle in cycles], dtype=float) + (name == "corner")
         if name in kinds:
             columns[f"{name} [{unit[kinds[name]].name}]"] = unit[kinds[name]].factor * values
         elif name != "solved":

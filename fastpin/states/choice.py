@@ -135,7 +135,7 @@ def _points_of(chosen: Any) -> list[Range]:
         raise InputError("states", f"must be at most {MOST_CHOSEN:,} load points, not {len(listed):,}")
     if not points:
         shown = repr(chosen) if isinstance(chosen, str) else as_toml(chosen)
-        raise InputError("states", f"must be last, cycle, all, load points such as 2,3.5 or ranges such as 1-9 or 10-, not {shown}")
+        raise InputError("states", f"must be last, cycle, all or load points such as 2,3.5, 1-9 or 10-, not {shown}")
     return points
 
 

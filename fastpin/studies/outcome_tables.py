@@ -20,7 +20,7 @@ from typing import Any
 
 from fastpin.casefile.toml_text import CaseText, Section, read_text
 from fastpin.errors import CaseFileError, InputError, printable
-from fastpin.model.checks import as_toml, choice, file_path, string
+from fastpin.model.checks import alternatives, as_toml, choice, file_path, string
 from fastpin.model.synonyms import closest
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.outcomes import (
@@ -207,7 +207,7 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
         return None
     kind = QUANTITIES[quantity].kind
     if kind == "class" and take not in TAKES_OF_CLASS:
-        section.report(f"{name}: take: {quantity} is a class: {_alternatives(TAKES_OF_CLASS)}", "take")
+        section.report(f"{name}: take: {quantity} is a class: take {alternatives(TAKES_OF_CLASS)}", "take")
         return None
     if take == "largest magnitude" and kind == "angle":
         section.report(f'{name}: take: a place on the hole has no magnitude; take "largest" or "smallest"', "take")
@@ -219,11 +219,6 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
     definition = {"quantity": quantity, "take": take, "over": span}
     read = partial(taken, quantity, take, span)
     return Outcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes))
-
-
-def _alternatives(words: tuple[str, ...]) -> str:
-    quoted = [f'"{word}"' for word in words]
-    return f"take {', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
 def _of_cycle(name: str, section: Section) -> Outcome | None:

@@ -4,7 +4,7 @@ import csv
 
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, record
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, record
 from fastpin.cli.main import main
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.plot import KINDS
@@ -92,7 +92,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
-        (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, not 'now'"),
+        (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, 1-9 or 10-, not 'now'"),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate" or "pin"'),
@@ -167,3 +167,70 @@ def test_a_result_without_cycles(tmp_path, capsys):
     assert "no cycle of the history has ended" in capsys.readouterr().err
     assert main(["plot", str(path), "hoop", "-o", str(tmp_path / "a.png")]) == 0
     assert main(["plot", str(path), "cycles", "-o", str(tmp_path / "b.png")]) != 0
+
+
+@pytest.fixture(scope="module")
+def blocks(tmp_path_factory):
+    """Two blocks of three cycles, with slip sums."""
+    path = tmp_path_factory.mktemp("blocks") / "blocks.h5"
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    parts = [LoadHistory([{"Q": force}, {"Q": -force}]).repeated(3) for force in (1e5, 3e5)]
+    problem = Problem(pair, 1e-2, 2e-5, 0.4, pin_load="centre", rotation="fixed")
+    record(problem, LoadHistory([{"P": 1e6}]) + parts[0] + parts[1], path, nodes=41, between=2, slip_sums=True)
+    return path
+
+
+def test_loops_of_chosen_cycles(blocks, tmp_path, capsys):
+    numbers = tmp_path / "loops.csv"
+    arguments = ["plot", str(blocks), "loops", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
+    assert main([*arguments, "--cycle", "blocks"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.count("dissipated on the path") == 2
+    assert printed.out.splitlines()[1].startswith("cycle 6: area ")
+    assert "few states draw the loop" in printed.err
+    assert {line.split(",")[0] for line in numbers.read_text().splitlines()[1:]} == {"3", "6"}
+    assert main([*arguments, "--cycle", "1-"]) == 0
+    assert "note: cycle 1 is left out: the cycle to corner 3 is not closed" in capsys.readouterr().err
+    assert main([*arguments, "--cycle", "1"]) == 2
+    assert "not closed" in capsys.readouterr().err
+    assert main([*arguments, "--cycle", "7"]) == 2
+    assert "--cycle: there is no cycle 7; the history has 6, counted from 1" in capsys.readouterr().err
+    assert main([*arguments, "--abscissa", "prescribed"]) == 2
+    assert "--abscissa: no displacement is prescribed here" in capsys.readouterr().err
+    assert main(["plot", str(blocks), "hoop", "--cycle", "2"]) == 2
+    assert "--cycle: has no effect on hoop; it is for loops" in capsys.readouterr().err
+
+
+def test_ranges_of_states(blocks, tmp_path, capsys):
+    assert main(["plot", str(blocks), "stick-slip", "--states", "10-", "-o", str(tmp_path / "a.png")]) == 0
+    assert "states: load points 10 to 13" in capsys.readouterr().out
+    assert main(["show", str(blocks), "--plot", str(tmp_path / "b.png"), "--states", "2-3"]) == 0
+    assert main(["plot", str(blocks), "polar", "--states", "3-2", "-o", str(tmp_path / "c.png")]) == 2
+    assert "or load points such as 2,3.5, 1-9 or 10-, not '3-2'" in capsys.readouterr().err
+
+
+def test_cycles_are_counted_from_1_and_their_numbers_have_units(blocks, tmp_path):
+    numbers = tmp_path / "cycles.csv"
+    assert main(["plot", str(blocks), "cycles", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]) == 0
+    header, first, *others = numbers.read_text().splitlines()
+    assert header.startswith("cycle,corner,length,number,")
+    assert "dissipation [J/m],rotation_change [rad]" in header
+    assert first.startswith("1,3,2,1,")
+    assert len(others) == 5
+
+
+def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
+    numbers = tmp_path / "map.csv"
+    arguments = ["plot", str(blocks), "stick-slip", "--states", "all", "-o", str(tmp_path / "a.png")]
+    assert main([*arguments, "--csv", str(numbers)]) == 0
+    said = capsys.readouterr().out
+    assert "states in 5 columns: each column joins 2 cycles, or states outside of cycles" in said
+    header, first, *_ = numbers.read_text().splitlines()
+    assert header == "load points after,to,start [deg],stop [deg],slip"
+    assert first.startswith("0,")
+
+
+def test_the_regime_is_printed(blocks, capsys):
+    assert main(["show", str(blocks)]) == 0
+    assert "partial slip, slip range up to" in capsys.readouterr().out

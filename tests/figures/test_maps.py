@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -10,9 +11,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
 from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
+from fastpin.figures.slip_extent import BOTH_WAYS, columns_of
 from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
 from fastpin.figures.style import COLOURS
-from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model import Bushing, Ring, Tube
 from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result, with_values
@@ -96,6 +98,80 @@ def test_many_cycles_show_their_first_states_and_no_slow_cycle():
     assert [state.step for state in drawn] == list(range(MOST_COLUMNS))
     assert drawn.note == f"{MOST_COLUMNS} of {MOST_COLUMNS + 50} states: load points 1 to {MOST_COLUMNS}"
     assert [state.step for state in figures.states.drawn_states(result, None, MOST_COLUMNS)] == [247, 248, 249]
+
+
+def long_result(corners=700, largest=650, friction=0.4):
+    """Corners between which the outermost nodes slip forth and back; one late corner slips everywhere."""
+    (first,) = sample_result([{"P": 1e6}], nodes=21, friction=friction).states
+    closed = first.status != OPEN
+    outer = closed & (np.abs(first.theta + 0.5 * np.pi) > 0.8)
+    states = []
+    for step in range(corners):
+        moved = closed if step == largest else outer
+        slip = np.where(moved, 1e-6 * (-1.0) ** step, 0.0)
+        load = first.load | {"Q": 1e5 * (-1.0) ** step * (3.0 if step == largest else 1.0)}
+        states.append(dataclasses.replace(first, step=step, slip=slip, load=load))
+    return states, closed, outer
+
+
+def with_block(states, cycles):
+    result = sample_result([{"P": 1e6}], nodes=21)
+    result.states, result.cycles = states, cycles
+    return result
+
+
+def test_a_long_history_has_a_column_for_some_cycles_each_and_hides_no_extreme():
+    states, closed, outer = long_result()
+    cycles = tuple(Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in range(2, 700, 2))
+    drawn = figures.states.drawn_states(with_block(states, cycles), "all", MOST_COLUMNS, whole=True)
+    assert len(drawn) == 700
+    columns, words = figures.stick_slip.long_columns(drawn)
+    assert words == "each column joins 2 cycles, or states outside of cycles"
+    assert len(columns) <= MOST_COLUMNS
+    assert [column.left for column in columns[1:]] == [column.right for column in columns[:-1]]
+    ends = [column.right for column in columns[1:-1]]
+    assert all((end - 1.0) % 2.0 == 0.0 for end in ends)  # no column ends inside a cycle
+    (late,) = (column for column in columns if 650 in column.places)
+    found = figures.slip_extent.extents([states[k] for k in late.places], states[late.places[0] - 1])
+    assert set(found[closed & ~outer]) == {SLIP_POSITIVE}  # and back in the next column
+    usual = columns[20]
+    found = figures.slip_extent.extents([states[k] for k in usual.places], states[usual.places[0] - 1])
+    assert set(found[outer]) == {BOTH_WAYS}
+    assert set(found[closed & ~outer]) == {STICK}
+    assert set(found[~closed]) == {OPEN}
+
+
+def test_the_map_of_a_long_history_is_drawn_with_the_range_of_the_loads(tmp_path):
+    states, _, _ = long_result()
+    figure = figures.plot_stick_slip(states, tmp_path / "long.png")
+    loads, panel = figure.axes
+    assert loads.get_legend().get_texts()[0].get_text().startswith("Q, largest 300")
+    assert max(loads.lines[0].get_ydata()) == 1.0  # the largest load is drawn
+    assert panel.get_xlim()[1] == 700.0
+    texts = legend_texts(figure)  # the first state has statuses only, in both directions
+    assert [texts[0], *texts[3:]] == ["sticks whenever it touches", "pin slips both ways", "open all the time"]
+    assert "700 states; each column joins 4 states" in loads.get_title().replace("\n", " ")
+
+
+def test_recorded_slip_counts_between_the_kept_states():
+    states, closed, outer = long_result(3)
+    still = [
+        dataclasses.replace(state, slip=np.zeros(21), slip_distance=np.where(outer, 2e-6, 0.0)) for state in states
+    ]
+    found = figures.slip_extent.extents(still[1:], still[0])
+    assert set(found[outer]) == {BOTH_WAYS}
+    assert set(found[closed & ~outer]) == {STICK}  # their status may be slip, at |T| = mu N
+
+
+def test_columns_of_cycles_and_of_single_states():
+    cycles = [Cycle(c, 2, k, 0.0, 0.0, 0.0, 0.0, True) for k, c in enumerate((2, 4), start=1)]
+    columns, words = columns_of(np.arange(1.0, 8.0), cycles, 10)
+    assert words == "each column is one cycle, or one state outside of cycles"
+    assert [column.places.tolist() for column in columns] == [[0], [1, 2], [3, 4], [5], [6]]
+    assert [(column.left, column.right) for column in columns[:3]] == [(0.0, 1.0), (1.0, 3.0), (3.0, 5.0)]
+    assert columns_of(np.arange(1.0, 8.0), (), 10)[1] == "each column is one state"
+    apart, _ = columns_of(np.array([1.0, 2.0, 3.0, 4.0, 9.0]), (), 10)
+    assert apart[-1].left == 8.0  # nothing is drawn where states are left out
 
 
 # -- the polar view --------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
 from fastpin.damage import fatigue
+from fastpin.figures.load_cycle import area_doubt
 from fastpin.model import Bushing, Ring, Tube
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 
@@ -149,6 +150,68 @@ def test_slip_and_loops_of_a_cycle(result, tmp_path):
         figures.plot_slip(result[-1])
     with pytest.raises(InputError, match="has no loop"):
         figures.plot_loops(solve(result.problem, [{"P": 1e5}, {"P": 1e5}], nodes=61).cycle(first=1, last=2))
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """A pin whose hub is moved to and fro: two blocks."""
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
+    problem = Problem(
+        pair, 10e-3, 20e-6, 0.4, pin_load="centre", rotation="fixed", drive="ux", hub_radius=2e-3, gauge_radius=50e-3
+    )
+    parts = [LoadHistory([{"ux": far}, {"ux": -far}]).repeated(3) for far in (5e-6, 15e-6)]
+    return solve(problem, LoadHistory([{"P": 1e6}]) + parts[0] + parts[1], nodes=41, between=5)
+
+
+def loop_panel(figure, name="Q"):
+    return next(panel for panel in figure.axes if panel.get_ylabel().startswith(f"{name} "))
+
+
+def test_loops_of_several_cycles_lie_over_one_another(rig):
+    cycles = [rig.cycle(2), rig.cycle(5)]
+    figure = figures.plot_loops(cycles, names=["cycle 3", "cycle 6"])
+    panel = loop_panel(figure)
+    assert [max(drawn.get_xdata()) for drawn in panel.lines] == pytest.approx([5.0, 15.0])
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert entries[0].startswith("cycle 3, corners 5 to 7: area ")
+    assert "dissipated on the path" in entries[1]
+    with pytest.raises(InputError, match="cycle: must be 1 to 8 cycles, not 9"):
+        figures.plot_loops(cycles[:1] * 9)
+
+
+def test_a_loop_is_drawn_over_the_prescribed_displacement_or_over_that_of_the_pin(rig):
+    cycle = rig.cycle()
+    prescribed = loop_panel(figures.plot_loops(rig))
+    assert prescribed.get_xlabel() == "prescribed displacement ux (µm)"
+    assert prescribed.lines[0].get_xdata() == pytest.approx([1e6 * state.load["ux"] for state in cycle.states])
+    pin = loop_panel(figures.plot_loops(rig, abscissa="pin"))
+    assert pin.get_xlabel() == "displacement of the pin over the hole (µm)"
+    assert max(pin.lines[0].get_xdata()) < 14.9  # pin and plate deform on the way to the gauge circle
+    x, q = prescribed.lines[0].get_data()
+    over_pin = pin.lines[0].get_data()
+    areas = [np.sum(0.5 * (b[1:] + b[:-1]) * np.diff(a)) for a, b in ((x, q), over_pin)]
+    assert areas[0] == pytest.approx(areas[1], rel=0.05)  # not equal: the contact has not settled
+
+
+def test_the_abscissa_must_be_known(rig, result):
+    with pytest.raises(InputError, match="abscissa: no displacement is prescribed here; the other choice is pin"):
+        figures.plot_loops(result, abscissa="prescribed")
+    with pytest.raises(InputError, match='abscissa: must be "prescribed" or "pin"'):
+        figures.plot_loops(rig, abscissa="hub")
+
+
+def test_areas_that_miss_the_dissipation_are_doubted(rig):
+    few = rig.cycle()
+    assert "few states draw the loop" in area_doubt(few) or "not settled" in area_doubt(few)
+    assert "not settled" in area_doubt(rig.cycle(first=9, last=11))
+    problem = Problem(few.states[0].problem.pair, 10e-3, 20e-6, 0.4, pin_load="centre", rotation="fixed")
+    history = LoadHistory([{"P": 1e6}]) + LoadHistory([{"Q": 4e5}, {"Q": -4e5}]).repeated(3)
+    exact = [solve(problem, history, nodes=41, between=between).cycle() for between in (2, 40)]
+    assert "few states draw the loop" in area_doubt(exact[0])
+    assert area_doubt(exact[1]) == ""
+    heading = figures.plot_loops(exact[0]).get_suptitle() or figures.plot_loops(exact[0]).axes[0].get_title()
+    assert "dissipated on the path" in heading
+    assert [panel.get_ylabel()[0] for panel in figures.plot_loops(exact[0]).axes] == ["Q"]  # M turns nothing
 
 
 def test_fatigue_along_the_edge(result):

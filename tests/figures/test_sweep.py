@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,10 +10,13 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
 from fastpin.figures import sweep as sweep_figure
+from fastpin.figures.class_map import LOOKS
 from fastpin.figures.style import MAX_NAMED
 from fastpin.figures.sweep import cell_edges, plot_sweep
 from fastpin.report.sweep import Axis, Chart, chart
@@ -178,3 +182,61 @@ def test_no_more_curves_than_can_be_told_apart() -> None:
     assert figure.legends[0].get_title().get_text() == "8 of 12 curves"
     names = {text.get_text() for text in figure.legends[0].get_texts()}
     assert {"force P in load 1 = 0 N", "force P in load 1 = 11 N"} <= names
+
+
+# -- classes and labels --------------------------------------------------------------------------------------
+
+CLASSES = {0: "none", 1: "a part", 2: "all"}
+
+
+def class_chart(numbers: Any, failed: Any = None) -> Chart:
+    """A map of classes over two fields."""
+    values = np.array(numbers, dtype=float)
+    marks = np.zeros(values.shape, dtype=bool) if failed is None else np.array(failed)
+    rows, columns = values.shape
+    x, y = Axis("x", np.arange(columns) + 1.0, False), Axis("y", np.arange(rows) + 1.0, False)
+    return Chart("Title", "regime", x, y, [("", values, marks)], 0, classes=CLASSES)
+
+
+def test_a_map_of_classes_has_names_and_one_line_between_two_classes() -> None:
+    figure = plot_sweep(class_chart([[0, 0, 1], [0, 1, 1], [2, 1, 1]]))
+    (panel,) = figure.axes  # no bar of colours
+    fills = [shape for shape in panel.collections if isinstance(shape, PolyCollection)]
+    assert sorted(len(shape.get_paths()) for shape in fills if len(shape.get_facecolor())) == [1, 3, 5]
+    (borders,) = (shape for shape in panel.collections if isinstance(shape, LineCollection))
+    sides = sorted(tuple(map(tuple, side)) for side in borders.get_segments())
+    assert len(sides) == 5
+    assert ((0.5, 2.5), (1.5, 2.5)) in sides  # between 0 and 2, one line, and no line of a third class
+    assert not panel.texts  # no labels of contours
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["none", "a part", "all"]
+
+
+def test_classes_differ_in_grey_or_by_their_hatches() -> None:
+    greys = [0.299 * red + 0.587 * green + 0.114 * blue for red, green, blue in map(to_rgb, (c for c, _ in LOOKS))]
+    for one, other in itertools.combinations(range(len(LOOKS)), 2):
+        assert LOOKS[one][1] != LOOKS[other][1] or abs(greys[one] - greys[other]) > 0.3
+
+
+def test_absent_classes_are_not_in_the_legend_but_failures_are() -> None:
+    figure = plot_sweep(class_chart([[0, np.nan], [1, np.nan]], [[False, True], [False, False]]))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["none", "a part", "failed run", "no value"]
+    (borders,) = (shape for shape in figure.axes[0].collections if isinstance(shape, LineCollection))
+    assert len(borders.get_segments()) == 1  # no line towards a cell without a value
+
+
+def test_curves_of_classes_have_names_on_their_axis() -> None:
+    curve = Chart("", "regime", Axis("x", np.arange(3.0), False), None, [("", np.array([0.0, 1, 2]), np.zeros(3, bool))],
+                  0, classes=CLASSES)  # fmt: skip
+    panel = plot_sweep(curve).axes[0]
+    assert [tick.get_text() for tick in panel.get_yticklabels()] == ["none", "a part", "all"]
+
+
+def test_labels_of_contour_lines_do_not_overlap() -> None:
+    x, y = np.meshgrid(np.linspace(0.0, 1.0, 30), np.linspace(0.0, 1.0, 30))
+    steep = 100.0 / (1.0 + np.exp(-60.0 * (x - 0.5))) + 5.0 * y  # all lines in a narrow band
+    axes = [Axis(name, np.arange(30.0), False) for name in "xy"]
+    figure = plot_sweep(Chart("", "value", *axes, [("", steep, np.zeros(steep.shape, bool))], 0))
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    assert boxes
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))

@@ -318,7 +318,8 @@ def test_cycles(tmp_path: Path) -> None:
     change, lost, turned = figure.axes
     assert sorted(len(drawn.get_xdata()) for drawn in change.lines) == [1, 1, 3, 3]
     pressure, shear = change.lines[:2]
-    assert pressure.get_xdata().tolist() == [2, 4, 6]
+    assert pressure.get_xdata().tolist() == [1, 2, 3]  # cycles, not corners
+    assert "cycle" in turned.get_xlabel()
     floor = change.get_ylim()[0]
     assert pressure.get_ydata()[1:] == pytest.approx([1e-3, 1e-6])
     assert shear.get_ydata()[1:] == pytest.approx([1e-2, floor])  # 0 stands at the lower end
@@ -339,7 +340,7 @@ def test_later_blocks_of_cycles_go_on_turning_where_earlier_ones_ended() -> None
     one, two = (line for line in figure.axes[2].lines if len(line.get_xdata()) == 3)
     assert one.get_ydata().tolist() == pytest.approx([0.0, 1.0, 2.0])
     assert two.get_ydata().tolist() == pytest.approx([2.0, 3.0, 4.0])
-    assert two.get_xdata().tolist() == [12, 14, 16]
+    assert two.get_xdata().tolist() == [2, 3, 4]
     assert "periodic from here" in labels(figure)
 
 
@@ -349,12 +350,20 @@ def test_a_block_with_cycles_of_another_length_goes_on_turning_too() -> None:
     around = [Cycle(11, 10, 1, 0.1, 0.1, 9.0, 5e-6, True)]
     drawn = plot_cycles(with_cycles(*first, *second, *around)).axes[2].lines
     turned = {tuple(line.get_xdata()): list(line.get_ydata()) for line in drawn}
-    assert turned[2, 4, 6] == pytest.approx([0.0, 1.0, 2.0])
-    assert turned[6, 9, 12] == pytest.approx([2.0, 1.0, 0.0])
-    assert turned[2, 12] == pytest.approx([0.0, 5.0])
+    assert turned[0, 1, 2] == pytest.approx([0.0, 1.0, 2.0])
+    assert turned[2, 3, 4] == pytest.approx([2.0, 1.0, 0.0])
+    assert turned[0, 5] == pytest.approx([0.0, 5.0])
 
 
-def test_long_histories_have_a_logarithmic_axis_of_corners() -> None:
+def test_a_panel_of_cycles_that_is_always_zero_is_left_out() -> None:
+    still = [Cycle(k, 2, k // 2, 0.1, 0.1, 1.0, 1e-16, True) for k in (3, 5, 7)]  # the rotation is rounding
+    figure = plot_cycles(with_cycles(*still))
+    assert [panel.get_ylabel().split("\n")[0] for panel in figure.axes] == ["largest change of", "dissipated"]
+    nothing = [Cycle(k, 2, k // 2, 0.0, 0.0, 0.0, 0.0, True) for k in (3, 5)]
+    assert len(plot_cycles(with_cycles(*nothing)).axes) == 1
+
+
+def test_long_histories_have_a_logarithmic_axis_of_cycles() -> None:
     cycles = [Cycle(2 * k, 2, k, 10.0**-k, 10.0**-k, 1.0, 0.0, True) for k in range(1, 200)]
     change = plot_cycles(with_cycles(*cycles)).axes[0]
     assert change.get_xscale() == "log"

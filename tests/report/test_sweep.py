@@ -103,7 +103,7 @@ def test_rounding_is_no_number_of_a_figure(plan: Plan, rows: list[dict[str, Any]
         ("pin.nu", "Poisson's ratio of the pin"),
         ("plate_body.outer_radius", "outer radius of the plate"),
         ("load.2.Q", "force Q in load 2"),
-        ("load.1.amplitude.sxx", "remote stress sxx in load 1.amplitude"),
+        ("load.1.amplitude.sxx", "amplitude of the remote stress sxx in load 1"),
         ("load.3.repeat", "repeat in load 3"),
         ("solve.nodes", "number of nodes"),
     ],
@@ -170,3 +170,30 @@ def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any
 def test_a_value_that_is_unknown_names_outcomes_first(with_outcomes: Plan) -> None:
     with pytest.raises(InputError, match='value: there is no outcome or key figure "los", did you mean "loss"'):
         check_axes(with_outcomes, "los", None, None)
+
+
+LABELLED = MAP.replace("[grid]", """
+[outcomes]
+regime = { quantity = "regime" }
+[labels]
+contact.friction = "friction of the rig"
+regime = "slip regime"
+[grid]""", 1)
+
+
+def test_classes_are_words_and_labels_are_headings(tmp_path: Path) -> None:
+    plan = parse_plan(LABELLED)
+    assert [point.id for point in plan.points] == [point.id for point in parse_plan(MAP).points]
+    rows = made_up_rows(plan)
+    for row in rows:
+        row["regime"] = None if row["status"] != "done" else 2.0
+    lines = text(plan, rows).split("\n")
+    assert "friction of the rig" in lines[0]
+    assert "slip regime" in lines[0]
+    assert "partial slip" in lines[-1]
+    write_csv(plan, rows, tmp_path / "a.csv")
+    header, first = (tmp_path / "a.csv").read_text().splitlines()[2:4]
+    assert dict(zip(header.split(","), first.split(","), strict=False))["regime"] == "partial slip"
+    found = chart(plan, rows, "regime")
+    assert (found.label, found.classes[2]) == ("slip regime", "partial slip")
+    assert "friction of the rig" in (found.x.label, found.y.label if found.y else "")

@@ -453,3 +453,55 @@ def test_a_function_of_no_ordinary_file_is_a_fault(tmp_path: Path, file: str, fa
             f'[grid]\n"contact.friction" = [0.4]\n[outcomes]\nw = {{ function = "{file}:f" }}\n', folder=tmp_path
         )
     assert fault in str(caught.value)
+
+
+# -- classes ---------------------------------------------------------------------------------------------------
+
+
+def test_the_regime_is_an_outcome(result: Result) -> None:
+    cycle = result.cycle()
+    assert value({"cycle": "regime"}, result) == float(cycle.regime)
+    assert value({"quantity": "regime", "take": "largest"}, result) == max(float(state.regime) for state in result)
+    (outcome,) = outcomes_from({"it": {"cycle": "regime"}}).values()
+    assert outcome.classes[int(cycle.regime)] == cycle.regime.words
+
+
+def with_classes(folder: Path, classes: str) -> dict[str, Any]:
+    """The outcomes of a plan whose function returns 1."""
+    (folder / "kinds.py").write_text("def kind(result):\n    return 1\n", encoding="utf-8")
+    (folder / "kinds.toml").write_text(
+        f'[outcomes]\nkind = {{ function = "kinds.py:kind", classes = {classes} }}\n', encoding="utf-8"
+    )
+    return dict(read_outcomes(folder / "kinds.toml"))
+
+
+def test_the_classes_of_a_function_have_words(tmp_path: Path, result: Result) -> None:
+    outcome = with_classes(tmp_path, '{ 2 = "bad", 1 = "good" }')["kind"]
+    assert outcome.classes == {1: "good", 2: "bad"}
+    assert value_of(outcome, result).value == 1.0
+    renamed = with_classes(tmp_path, '{ 1 = "fine", 2 = "bad" }')["kind"]
+    assert renamed.definition == outcome.definition  # the words change no value
+    other = value_of(with_classes(tmp_path, '{ 0 = "good", 2 = "bad" }')["kind"], result)
+    assert (other.value, other.reason) == (None, "its value must be the number of a class, 0, 2, not 1")
+
+
+@pytest.mark.parametrize(
+    ("classes", "message"),
+    [
+        ("3", "kind: classes: must be a table of 2 to 8 numbers with words"),
+        ('{ 0 = "a" }', "kind: classes: must be a table of 2 to 8 numbers with words"),
+        ('{ a = "a", 1 = "b" }', 'kind: classes: each class has a whole number, such as 0 = "stick", not "a"'),
+        ('{ 0 = "a", 1 = "a" }', 'kind: classes: the numbers and words of classes must differ, but there is "a" twice'),
+        ('{ 0 = "a", 1 = "" }', "kind: classes: 1: must be text of 1 to 40 letters"),
+        ("{ 0 = 1, 1 = 2 }", "kind: classes: 0: must be text in quotes, not 1"),
+    ],
+)
+def test_faults_of_classes(tmp_path: Path, classes: str, message: str) -> None:
+    with pytest.raises(CaseFileError) as fault:
+        with_classes(tmp_path, classes)
+    assert message in str(fault.value)
+
+
+def test_a_class_has_no_range() -> None:
+    with pytest.raises(CaseFileError, match='regime is a class: take "last", "largest" or "smallest"'):
+        outcomes_from({"it": {"quantity": "regime", "take": "range"}})

@@ -471,3 +471,27 @@ def test_a_plan_knows_its_cases_again() -> None:
     assert isinstance(plan, Plan)
     for point in plan.points:
         assert run_id(canonical(plan.case(point))) == point.id
+
+
+def test_labels_change_no_run() -> None:
+    plain = '[grid]\ncontact.friction = [0.2, 0.4]\n'
+    plan = parse_plan(f'{plain}[labels]\n"contact.friction" = "mu"\npeak_pressure = "N"\n')
+    assert plan.labels == {"contact.friction": "mu", "peak_pressure": "N"}
+    assert plan.digest == parse_plan(plain).digest
+    assert parse_plan(plain).labels == {}
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('contact.frictoin = "mu"', 'labels: the plan has no "contact.frictoin", did you mean "contact.friction"?'),
+        ('wear = "W"', 'labels: the plan has no "wear"; a label is for a varied field, an outcome or a key figure'),
+        ("contact.friction = 3", "labels: contact.friction: must be text in quotes, not 3"),
+        ('contact.friction = ""', "labels: contact.friction: must be text of 1 to 80 letters"),
+    ],
+)
+def test_faults_of_labels(line: str, message: str) -> None:
+    with pytest.raises(CaseFileError) as fault:
+        parse_plan(f"[grid]\ncontact.friction = [0.2, 0.4]\n[labels]\n{line}\n")
+    assert "line 4" in str(fault.value)
+    assert message in str(fault.value)
