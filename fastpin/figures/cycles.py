@@ -69,10 +69,11 @@ def plot_cycles(
     """Draw the changes that each cycle of a load history makes, from the beginning to the end of the cycle.
 
     Cycles count from 1 in the order of their ends, also those that contain others. The upper panel shows the largest
-    change of pressure and shear traction, relative to the largest pressure. The middle panel shows the energy dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end.
-    Values below rounding are 0. A vertical line marks the end of the first cycle from which on the contact is periodic.
-    The lower panel sums up how far the cycles so far have turned the pin (ratcheting), counter-clockwise positive.
-    Cycles that contain others have a sum of their own. A panel whose values are all 0 to rounding is left out.
+    change of pressure and shear traction, relative to the largest pressure. The middle panel shows the energy
+    dissipated in each cycle. Both scales are logarithmic; 0 stands at their lower end. Values below rounding are 0. A
+    vertical line marks the end of the first cycle from which on the contact is periodic. The lower panel sums up how
+    far the cycles so far have turned the pin (ratcheting), counter-clockwise positive. Cycles that contain others have
+    a sum of their own. A panel whose values are all 0 to rounding is left out.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -30,7 +30,7 @@ from fastpin.figures.words import (
     shown_unit,
     without_rounding,
 )
-from fastpin.model.checks import choice, instance, instances
+from fastpin.model.checks import choice, instance
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
@@ -217,7 +217,8 @@ def plot_loops(
     """
     look = Look(path, title, width, dpi, ax)
     several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
-    cycles = instances("cycle", cycle, LoadCycle, "load cycles") if several else [_cycle_of(cycle)]  # type: ignore[arg-type]
+    each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment, list-item]
+    cycles = [_cycle_of(one) for one in each]
     check_loops(cycles, abscissa)
     return look.drawn(lambda: _draw_loops(cycles, look, abscissa, list(names)))
 
@@ -277,9 +278,7 @@ def _draw_loops(cycles: Sequence[LoadCycle], look: Look, abscissa: Abscissa | No
     return sheet
 
 
-def _draw_loop(
-    panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Abscissa | None, across: int
-) -> None:
+def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Abscissa | None, across: int) -> None:
     """Draw the loops of one load in all cycles."""
     problem, kind = cycles[0].states[0].problem, LOAD_KIND[name]
     loops = [cycle.loops[name] for cycle in cycles]

@@ -83,9 +83,9 @@ def plot_sweep(
     """Draw the figure of a sweep: maps over two fields, or curves over one field.
 
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
-    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and lines where
-    two classes meet. Hatched cells are failed runs. Crosses at the lower edge of
-    a figure of curves are failed runs, too. Positive values that differ by a factor of 30 or more have a logarithmic
+    at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
+    lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
+    failed runs, too. Positive values that differ by a factor of 30 or more have a logarithmic
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     Parameters

@@ -31,9 +31,10 @@ WORDS = {behaviour: behaviour.name.lower().replace("_", " ") for behaviour in No
 
 
 def cycle_line(cycle: LoadCycle) -> str:
-    """Return a line of text: the regime, and the largest slip range, slip distance and friction energy of a node, with their places.
+    """Return a line of text: the regime, and the largest slip range, slip distance and friction energy of a node.
 
-    Values that are rounding beside the sizes of :func:`natural_sizes` are 0.
+    The places of the largest values stand beside them. Values that are rounding beside the sizes of
+    :func:`natural_sizes` are 0.
     """
     natural = natural_sizes(cycle)
     regime = cycle.regime.words + ("" if cycle.has_exact_slip_range else " (read from the kept states)")

@@ -20,8 +20,9 @@ from fastpin.states.ranges import Range, ranges_in
 from fastpin.states.state import State
 
 StateChoice = str | float | Sequence[float] | slice | None
-"""A choice of states: "last", "cycle", "all", load points (numbers, or a text such as "1,5,9"), ranges of them ("1-9", "10-",
-"1,5-9"), or a slice of places.
+"""A choice of states: "last", "cycle", "all", load points (numbers, or a text such as "1,5,9"), or a slice of places.
+
+A text may hold ranges of load points: "1-9", "10-" or "1,5-9".
 
 None leaves the choice to the figure.
 """
@@ -106,7 +107,7 @@ def check_choice(chosen: StateChoice, history: LoadHistory) -> None:
     if chosen is None or isinstance(chosen, slice) or (isinstance(chosen, str) and chosen in WORDS):
         return
     for ends in _points_of(chosen):
-        if not (0.0 < ends.last and ends.first <= len(history)):
+        if not (ends.last > 0.0 and ends.first <= len(history)):
             raise _no_state(ends, len(history))
 
 
@@ -179,7 +180,8 @@ def chosen_cycles(cycles: Sequence[Cycle], chosen: str) -> list[int]:
     try:
         wanted = ranges_in(chosen)
     except ValueError:
-        raise InputError("cycle", f"must be last, blocks, all, or cycles such as 3, 1,5 or 10-, not {chosen!r}") from None
+        allowed = "last, blocks, all, or cycles such as 3, 1,5 or 10-"
+        raise InputError("cycle", f"must be {allowed}, not {chosen!r}") from None
     found: set[int] = set()
     for ends in wanted:
         places = [place for place in range(len(cycles)) if ends.first <= place + 1 <= ends.last]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -62,12 +61,20 @@ def innermost_cycles(cycles: Sequence[Cycle]) -> list[Cycle]:
     ends: list[tuple[int, int]] = []  # end and length of the cycles so far
     found = []
     for cycle in sorted(cycles, key=lambda cycle: (cycle.corner, cycle.length)):
-        begin = cycle.corner - cycle.length
-        inside = itertools.takewhile(lambda other, begin=begin: other[0] > begin, reversed(ends))
-        if not any(length < cycle.length for _, length in inside):
+        if not _contains_another(cycle, ends):
             found.append(cycle)
         ends.append((cycle.corner, cycle.length))
     return found
+
+
+def _contains_another(cycle: Cycle, ends: Sequence[tuple[int, int]]) -> bool:
+    """Whether a shorter one of the cycles before, given by end and length in this order, ended in the cycle."""
+    for end, length in reversed(ends):
+        if end <= cycle.corner - cycle.length:
+            return False
+        if length < cycle.length:
+            return True
+    return False
 
 
 def consecutive_cycles(cycles: Sequence[Cycle]) -> list[list[Cycle]]:

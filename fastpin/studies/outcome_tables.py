@@ -280,7 +280,7 @@ def _classes(field: str, value: object) -> dict[int, str]:
     found: dict[int, str] = {}
     for key, word in value.items():
         if not re.fullmatch(r"-?\d{1,9}", str(key)) or isinstance(key, bool):
-            raise InputError(field, f"each class has a whole number, such as 0 = \"stick\", not {as_toml(key)}")
+            raise InputError(field, f'each class has a whole number, such as 0 = "stick", not {as_toml(key)}')
         words = string(f"{field}: {key}", word)
         if not words.strip() or len(words) > LONGEST_CLASS or not words.isprintable():
             raise InputError(f"{field}: {key}", f"must be text of 1 to {LONGEST_CLASS} letters")

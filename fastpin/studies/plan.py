@@ -2,8 +2,8 @@
 
 A plan is a TOML text with a base case, a ``[grid]`` and ``[[list]]`` tables. Every combination of the values in the
 grid is run. The fields of a list change together. The table ``[outcomes]`` names numbers that are read from every
-result, and ``[labels]`` gives words for axes and tables. All faults of a plan are reported at once, each with its line. Every
-run is checked before the first run starts.
+result, and ``[labels]`` gives words for axes and tables. All faults of a plan are reported at once, each with its line.
+Every run is checked before the first run starts.
 """
 
 from __future__ import annotations

@@ -92,7 +92,10 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
-        (["hoop", "--states", "now"], "--states: must be last, cycle, all or load points such as 2,3.5, 1-9 or 10-, not 'now'"),
+        (
+            ["hoop", "--states", "now"],
+            "load points such as 2,3.5, 1-9 or 10-, not 'now'",
+        ),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),
         (["profile", "--body", "both"], '--body: must be "plate" or "pin"'),

@@ -225,8 +225,8 @@ def test_absent_classes_are_not_in_the_legend_but_failures_are() -> None:
 
 
 def test_curves_of_classes_have_names_on_their_axis() -> None:
-    curve = Chart("", "regime", Axis("x", np.arange(3.0), False), None, [("", np.array([0.0, 1, 2]), np.zeros(3, bool))],
-                  0, classes=CLASSES)  # fmt: skip
+    part = ("", np.array([0.0, 1.0, 2.0]), np.zeros(3, bool))
+    curve = Chart("", "regime", Axis("x", np.arange(3.0), False), None, [part], 0, classes=CLASSES)
     panel = plot_sweep(curve).axes[0]
     assert [tick.get_text() for tick in panel.get_yticklabels()] == ["none", "a part", "all"]
 

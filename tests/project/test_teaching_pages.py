@@ -86,8 +86,14 @@ def test_the_map_of_slip_regimes_is_a_plan() -> None:
     text = re.sub(r"\{ from = 5e4.*\}", "[5e4, 6e5]\nsolve.nodes = [41]", text)
     few = parse_plan(text, folder=Path.cwd())
     assert sweep.run(few, "out", Inline()).done == 4
-    found = {(row["contact.friction"], row["load.2.amplitude.Q"]): row["regime"] for row in sweep.rows(few, "out")}
-    assert found == {(0.1, 5e4): 1, (0.1, 6e5): 2, (1.0, 5e4): 0, (1.0, 6e5): 1}
+    rows = {(row["contact.friction"], row["load.2.amplitude.Q"]): row for row in sweep.rows(few, "out")}
+    assert {key: row["regime"] for key, row in rows.items()} == {
+        (0.1, 5e4): 2,
+        (0.1, 6e5): 3,
+        (1.0, 5e4): 1,
+        (1.0, 6e5): 2,
+    }
+    assert {key: row["harm"] for key, row in rows.items() if key[1] == 5e4} == {(0.1, 5e4): 1, (1.0, 5e4): 0}
 
 
 def test_every_case_of_bodies_is_read() -> None:

@@ -172,13 +172,17 @@ def test_a_value_that_is_unknown_names_outcomes_first(with_outcomes: Plan) -> No
         check_axes(with_outcomes, "los", None, None)
 
 
-LABELLED = MAP.replace("[grid]", """
+LABELLED = MAP.replace(
+    "[grid]",
+    """
 [outcomes]
 regime = { quantity = "regime" }
 [labels]
 contact.friction = "friction of the rig"
 regime = "slip regime"
-[grid]""", 1)
+[grid]""",
+    1,
+)
 
 
 def test_classes_are_words_and_labels_are_headings(tmp_path: Path) -> None:

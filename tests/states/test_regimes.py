@@ -41,9 +41,7 @@ def states_of_each_regime():
         Regime.SEPARATION: with_values(state, pressure=0.0, shear=0.0, status=OPEN),
         Regime.FULL_STICK: replace(no_shear, status=np.where(closed, STICK, OPEN).astype(np.int8)),
         Regime.PARTIAL_SLIP: state,
-        Regime.GROSS_SLIDING: replace(
-            state, shear=-full, status=np.where(closed, SLIP_POSITIVE, OPEN).astype(np.int8)
-        ),
+        Regime.GROSS_SLIDING: replace(state, shear=-full, status=np.where(closed, SLIP_POSITIVE, OPEN).astype(np.int8)),
     }
 
 

@@ -474,7 +474,7 @@ def test_a_plan_knows_its_cases_again() -> None:
 
 
 def test_labels_change_no_run() -> None:
-    plain = '[grid]\ncontact.friction = [0.2, 0.4]\n'
+    plain = "[grid]\ncontact.friction = [0.2, 0.4]\n"
     plan = parse_plan(f'{plain}[labels]\n"contact.friction" = "mu"\npeak_pressure = "N"\n')
     assert plan.labels == {"contact.friction": "mu", "peak_pressure": "N"}
     assert plan.digest == parse_plan(plain).digest
