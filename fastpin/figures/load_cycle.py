@@ -217,7 +217,7 @@ def plot_loops(
     """
     look = Look(path, title, width, dpi, ax)
     several = isinstance(cycle, Sequence) and not isinstance(cycle, Result)
-    each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment, list-item]
+    each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
     cycles = [_cycle_of(one) for one in each]
     check_loops(cycles, abscissa)
     return look.drawn(lambda: _draw_loops(cycles, look, abscissa, list(names)))

@@ -28,7 +28,7 @@ QUANTITY_WORDS = {
     "joint_uy": "displacement of the joint upwards",
     "bush_open_margin": "least pressure between bush and plate",
     "bush_slip_margin": "least pressure between bush and plate, minus shear over friction",
-    "regime": "separation, full stick, partial slip or gross sliding",
+    "regime": "regime of the contact",
 }
 """Words for :data:`fastpin.states.QUANTITIES`."""
 

@@ -258,6 +258,8 @@ def quantity_column(
         In the quantity's unit.
     """
     each = QUANTITIES[name]
+    if each.classes:
+        return each.label, "", [str(each.shown(state)) for state in states]
     values = [each.of(state) for state in states]
     if each.kind == "angle":
         bars = [_bar(state, _DEGREE, name) for state in states]

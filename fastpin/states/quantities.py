@@ -196,6 +196,7 @@ def sizes(state: State) -> dict[str, float]:
         "moment": problem.hole_radius * force,
         "energy": problem.hole_radius * strain * force,
         "ratio": 1.0,
+        "class": 1.0,
     }
 
 

@@ -567,7 +567,7 @@ def test_the_last_cycle_is_told_and_written(cyclic: Path, tmp_path: Path, capsys
     cyclic.write_text(held.replace("repeat = 12  ", "repeat = 40  "))
     assert main(["run", str(cyclic), "-o", stored, "--slip-sums", "--between", "1", "--cycle-csv", str(table)]) == 0
     out = capsys.readouterr().out
-    line = next(line for line in out.splitlines() if line.startswith("from corner 118 to 121: slip range up to "))
+    line = next(line for line in out.splitlines() if line.startswith("from corner 118 to 121: "))
     assert re.search(r"slip distance up to [\d.]+ um at .* deg, friction energy up to [\d.]+ m?J/m\^2 at ", line)
     assert "times ..." in out  # the states of the cycle are read although the table leaves out some states
     rows = list(csv.DictReader(table.read_text().splitlines()))

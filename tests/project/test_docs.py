@@ -123,7 +123,7 @@ def test_the_example_of_figures_draws_them(tmp_path: Path, monkeypatch: pytest.M
     (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict[str, Any] = {}
     exec(compile(code, "figures.md", "exec"), names)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cycle.gif", "map.svg", "tractions.pdf"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cycle.gif", "loops.pdf", "map.svg", "tractions.pdf"]
     assert names["axes"].texts
     for kind in PLOT_OPTIONS:
         assert f"`{kind}`" in text, kind

@@ -42,7 +42,9 @@ def test_a_cycle_without_slip_sums_says_what_it_knows() -> None:
     found = document(bare)
     assert found["largest_slip_distance"] is found["largest_friction_energy"] is None
     assert not found["slip_range_is_exact"]
-    assert cycle_line(bare).startswith("from corner 5 to 7: slip range up to ")
+    assert cycle_line(bare).startswith(
+        "from corner 5 to 7: partial slip (read from the kept states), slip range up to "
+    )
     assert "energy" not in cycle_line(bare)
     assert "at the kept states" in cycle_line(bare)
 
