@@ -30,7 +30,7 @@ from fastpin.figures.words import (
     shown_unit,
     without_rounding,
 )
-from fastpin.model.checks import choice, instance
+from fastpin.model.checks import choice, instance, items, string
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
@@ -220,7 +220,8 @@ def plot_loops(
     each: Sequence[Any] = cycle if several else [cycle]  # type: ignore[assignment]
     cycles = [_cycle_of(one) for one in each]
     check_loops(cycles, abscissa)
-    return look.drawn(lambda: _draw_loops(cycles, look, abscissa, list(names)))
+    named = [string("names", name) for name in items("names", names, "a list of names")]
+    return look.drawn(lambda: _draw_loops(cycles, look, abscissa, named))
 
 
 def check_loops(cycles: Sequence[LoadCycle], abscissa: Abscissa | None = None) -> None:
