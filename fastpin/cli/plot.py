@@ -233,9 +233,7 @@ def _loops(options: argparse.Namespace, title: str) -> Made:
         if doubt := figures.load_cycle.area_doubt(cycle):
             say(f"note: {doubt}", file=sys.stderr)
     names = [f"cycle {number:,}" for number in cycles]
-    curves = [
-        Curve({"cycle": number}, report.cycle.loop_curve(cycle).columns) for number, cycle in cycles.items()
-    ]
+    curves = [Curve({"cycle": number}, report.cycle.loop_curve(cycle).columns) for number, cycle in cycles.items()]
 
     def write(path: Path) -> None:
         figures.plot_loops(list(cycles.values()), path, title, abscissa=abscissa, names=names)
