@@ -316,6 +316,14 @@ class Problem:
         return self.pin_body != Disk() or self.plate_body != Plate()
 
     @property
+    def pin_radius(self) -> float:
+        """Radius of the free pin, m: hole radius less clearance, both before a bush is pressed in.
+
+        NaN in a dimensionless problem: its clearance has another unit than its radius.
+        """
+        return math.nan if self.dimensionless else self.hole_radius - self.clearance
+
+    @property
     def assembled_clearance(self) -> float:
         """Radial clearance, m, after the bush was pressed in; the given clearance without a bush."""
         return self.clearance + self.joint.press_fit[1]

@@ -124,10 +124,10 @@ def case(page: Shared) -> Section:
     elsewhere = ("pin", "plate", *(["loads"] if page.source.initial.any() else []))  # they have sections of their own
     rows = [row for row in case_rows(found) if row[0] not in elsewhere]
     if not problem.dimensionless:
-        clearance = problem.assembled_clearance
+        assembled = " after the press fit" if problem.press_fit_pressure else ""
         rows += [
-            ("pin radius", unit["length"].text(problem.hole_radius - clearance)),
-            ("clearance / radius", f"{clearance / problem.hole_radius:.4g}"),
+            ("pin radius", unit["length"].text(problem.pin_radius)),
+            (f"clearance{assembled} / radius", f"{problem.assembled_clearance / problem.hole_radius:.4g}"),
         ]
     known = page.source.knows_options
     options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}

@@ -125,6 +125,15 @@ def test_bad_fields_of_bodies_are_refused_in_one_sentence(make, field, words):
     assert raised.value.field == field
 
 
+def test_the_pin_radius_does_not_change_with_the_press_fit():
+    pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))
+    bush = Bushing(Material(103e9, 0.34), 12.5e-3, 30e-6)
+    for body in (Plate(), bush):
+        for clearance in (15e-6, 0.0, -20e-6):
+            assert Problem(pair, 10e-3, clearance, 0.2, plate_body=body).pin_radius == 10e-3 - clearance
+    assert math.isnan(Problem.from_load_parameter(pair, 0.1, 0.2).pin_radius)
+
+
 def test_the_interference_of_a_dimensionless_bush_may_be_larger_than_its_radius():
     bush = Bushing(BRONZE, 1.25, interference=3.0)
     found = Problem.from_load_parameter(PAIR, 5.0, 0.3, plate_body=bush)
