@@ -387,7 +387,7 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
         if line:
             say(line)
-    for line in cycle_lines(case.problem, result.cycles):
+    for line in cycle_lines(case.problem, result.cycles, shown):
         say(line)
     if cycle is not None:
         say(report.cycle.cycle_line(cycle))

@@ -82,7 +82,7 @@ def overview(page: Shared) -> Section:
         unit = units(problem)["traction"]
         sentences = [f"largest contact pressure in these states: {unit.text(largest.peak_pressure, 5)}"]
         sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
-        sentences += cycle_lines(problem, source.result.cycles)
+        sentences += cycle_lines(problem, source.result.cycles, states)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue, states)]
         if len(states) < source.points.size:

@@ -6,7 +6,7 @@ Angles are in degrees from the bottom of the hole, counter-clockwise positive (t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +30,7 @@ from fastpin.report.table import (
     table_of_lines,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
-from fastpin.states.quantities import QUANTITIES, load_point
+from fastpin.states.quantities import QUANTITIES, load_point, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
 from fastpin.states.zones import is_all_round
@@ -322,27 +322,35 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
     return f"{text}\nnote: the bush would slip: it needs a friction of {needed:.3g}, not {fit.friction:g}"
 
 
-def cycle_lines(problem: Problem, cycles: Sequence[Cycle]) -> list[str]:
-    """Return one line of text for each block of cycles: how the cycles changed tractions, energy and rotation."""
-    lines = [_block_line(problem, block) for block in consecutive_cycles(cycles)]
+def cycle_lines(problem: Problem, cycles: Sequence[Cycle], states: Sequence[State] = ()) -> list[str]:
+    """Return one line of text for each block of cycles: how the cycles changed tractions, energy and rotation.
+
+    What is rounding beside the natural sizes of the `states` is 0.
+    """
+    found = [sizes(state) for state in states]
+    natural = {kind: max((each[kind] for each in found), default=0.0) for kind in ("energy", "rotation")}
+    lines = [_block_line(problem, block, natural) for block in consecutive_cycles(cycles)]
     if len(lines) > MAX_ROWS // 2:
         lines[MAX_ROWS // 4 : -MAX_ROWS // 4] = [f"... {len(lines) - MAX_ROWS // 2} more blocks of cycles ..."]
     return lines
 
 
-def _first_and_last(values: list[float], unit: Unit, digits: int) -> list[str]:
-    """Return the first and the last value as text. Values below :data:`ROUNDING` of the largest become 0."""
-    noise = ROUNDING * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+def _first_and_last(values: list[float], unit: Unit, digits: int, natural: float) -> list[str]:
+    """Return the first and the last value as text.
+
+    Values below :data:`ROUNDING` of the largest, or of the size `natural`, become 0.
+    """
+    noise = ROUNDING * max(natural, max((abs(value) for value in values if math.isfinite(value)), default=0.0))
     cleaned = [0.0 if abs(value) <= noise else value for value in (values[0], values[-1])]
     return ["not known" if math.isnan(value) else unit.text(value, digits) for value in cleaned]
 
 
-def _block_line(problem: Problem, cycles: list[Cycle]) -> str:
+def _block_line(problem: Problem, cycles: list[Cycle], natural: Mapping[str, float]) -> str:
     first, last = cycles[0], cycles[-1]
     steady = periodic_from(cycles)
     unit = units(problem)
-    dissipation = _first_and_last([cycle.dissipation for cycle in cycles], unit["energy"], 4)
-    turned = _first_and_last([cycle.rotation_change for cycle in cycles], unit["rotation"], 3)
+    dissipation = _first_and_last([cycle.dissipation for cycle in cycles], unit["energy"], 4, natural["energy"])
+    turned = _first_and_last([cycle.rotation_change for cycle in cycles], unit["rotation"], 3, natural["rotation"])
     state = f"periodic from cycle {steady.number} on" if steady else "not yet periodic"
     corners = f"{last.length} corner{'s' if last.length > 1 else ''}"
     where = f"to corner {last.corner + 1:,}"

@@ -12,6 +12,7 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.report.cycle import MOST_STOPS, cycle_line, document, fatigue_line, write_csv
+from fastpin.report.states import cycle_lines
 from fastpin.report.summary import json_ready
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -85,6 +86,15 @@ def test_fatigue_is_told_without_a_life_if_constants_for_it_are_missing() -> Non
     result = in_sheet(FatigueConstants(yield_strength=3e8))
     assert "life" not in fatigue_line(result.states, result.cycles[-1])
     assert "Smith-Watson-Topper" in fatigue_line(result.states, result.cycles[-1])
+
+
+def test_rotation_of_a_symmetric_cycle_is_rounding() -> None:
+    """Its natural size tells: all cycles turn the pin by some 1e-20 rad."""
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
+    result = solve(Problem(pair, 0.01, 2e-5, 0.4), LoadHistory([{"P": 1e6}, {"P": 2e5}]).repeated(2), nodes=61)
+    assert any(cycle.rotation_change != 0.0 for cycle in result.cycles)
+    (line,) = cycle_lines(result.problem, result.cycles, result.states)
+    assert line.endswith("turned 0 rad and 0 rad")
 
 
 def test_no_fatigue_is_told_without_constants_or_states() -> None:
