@@ -182,7 +182,7 @@ class Bushing:
         object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
         object.__setattr__(self, "interference", not_negative("interference", self.interference))
         if not isinstance(self.inside, (Plate, Ring)):
-            raise InputError("inside", "must be a Plate or a Ring")
+            raise InputError("inside", "must be a Plate or a Ring: a bush sits in an infinite plate or a ring")
         if self.friction is not None:
             object.__setattr__(self, "friction", not_negative("friction", self.friction))
 

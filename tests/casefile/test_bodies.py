@@ -171,6 +171,11 @@ def test_bodies_beside_dundurs_parameters(tmp_path):
             3,
             'outer_radius: belongs to kind = "ring" or "bushing", not to kind = "compliance"',
         ),
+        (
+            BUSH + 'file = "lug.json"\nkind = "bushing"\n',
+            5,
+            'file: belongs to kind = "compliance", not to kind = "bushing"; a bush sits in an infinite plate or a ring',
+        ),
         (BUSH + "interference = -1e-6\n", 5, "interference: must not be negative, not -1e-06"),
         (BUSH + "interference = 2e-2\n", 5, "interference: must be smaller than the outer radius 0.0125 of the bush"),
         (BUSH + "friction = -1\n", 5, "friction: must not be negative, not -1"),
