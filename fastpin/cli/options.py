@@ -229,7 +229,7 @@ def add_plot(commands: Any) -> None:
     )
     plot.add_argument("--sketch", action="store_const", const=True, help="tractions: add a small sketch of the joint")
     plot.add_argument("--rate", metavar="N", type=literal, help="animation: states a second (default 4)")
-    plot.add_argument("--body", help="plate, pin, or (hoop and map) both")
+    plot.add_argument("--body", help="plate, pin, seat (the plate round a bush), or (hoop and map) both")
     plot.add_argument("--component", help="map: von_mises (default), largest, hoop, radial, shear, sxx, ...")
     plot.add_argument("--extent", metavar="RADII", type=literal, help="map: outer radius (default 2)")
     plot.add_argument("--angle", metavar="DEG", type=literal, help="profile: place (default: the largest hoop stress)")

@@ -268,8 +268,10 @@ def _fatigue(options: argparse.Namespace, title: str) -> Made:
     result = _result(options)
     cycle = damage.cycle_states(result, result.cycles[-1])
     criterion: Any = "smith-watson-topper" if options.criterion is None else options.criterion
-    found = damage.fatigue(cycle, criterion, **_given(options, "body", "depth"))
-    return lambda path: figures.plot_fatigue(found, path, title), _curves([report.fatigue.fatigue_curve(found)])
+    bodies = report.cycle.fatigue_bodies(cycle[0].problem, criterion) if options.body is None else [options.body]
+    found = [damage.fatigue(cycle, criterion, body, **_given(options, "depth")) for body in bodies]
+    curves = [report.fatigue.fatigue_curve(one) for one in found]
+    return lambda path: figures.plot_fatigue(found, path, title), _curves(curves)
 
 
 KINDS: dict[str, Callable[[argparse.Namespace, str], Made]] = {

@@ -30,6 +30,7 @@ from fastpin.cli.terminal import (
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
@@ -384,7 +385,8 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
         rows, found = part.rows, dict(zip(part.places, result.states, strict=True))
         shown = [found[place] for place in rows.printed]
     say(*state_table(case.problem, shown, rows).split("\n"))
-    for line in (hoop_line(case.problem, shown), bush_line(case.problem, shown)):
+    lines = [hoop_line(case.problem, shown, body) for body in EDGES]
+    for line in (*lines, bush_line(case.problem, shown)):
         if line:
             say(line)
     for line in cycle_lines(case.problem, result.cycles, shown):
@@ -392,7 +394,7 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
     if cycle is not None:
         say(report.cycle.cycle_line(cycle))
     states = result.states if cycle is None else cycle.states
-    if result.cycles and (line := report.cycle.fatigue_line(states, result.cycles[-1])):
+    for line in report.cycle.fatigue_lines(states, result.cycles[-1]) if result.cycles else ():
         say(line)
     for note in note_lines(case, result):
         say(f"note: {note}")

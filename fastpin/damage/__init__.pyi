@@ -13,6 +13,7 @@ from .criteria import smith_watson_topper as smith_watson_topper
 from .distance import critical_distance as critical_distance
 from .distance import fatigue_at_distance as fatigue_at_distance
 from .hot_spots import CRITERIA as CRITERIA
+from .hot_spots import NO_CRACK as NO_CRACK
 from .hot_spots import Fatigue as Fatigue
 from .hot_spots import HotSpot as HotSpot
 from .hot_spots import cycle_states as cycle_states

@@ -14,12 +14,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.damage.hot_spots import Criterion, Fatigue, checked_depths, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.damage.hot_spots import NO_CRACK, Criterion, Fatigue, cycle_stops, evaluated, fatigue, stress_history
+from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
-from fastpin.model.checks import choice, numbers, positive
+from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
-from fastpin.model.points import BODIES, Body, Points
+from fastpin.model.points import Body, Points, near_rim, owner_of
 from fastpin.states.state import State
+from fastpin.states.stress import check_body
 
 Method = Literal["point", "line", "area"]
 
@@ -93,34 +95,44 @@ def fatigue_at_distance(
     Raises
     ------
     InputError
-        See :func:`fatigue`; also if the method is unknown, constants for L are missing, or the length reaches beyond
-        the body or its bush.
+        See :func:`fatigue`; also if the method is unknown, constants for L are missing, the length reaches beyond the
+        body or its bush, or no `theta` is given and the parameter is 0 on the whole edge.
     """
     choice("method", method, METHODS)
-    choice("body", body, BODIES)
     stops = cycle_stops(states)
+    problem = stops[0].problem
+    material = check_body(problem, body)
+    given = material.fatigue or FatigueConstants()
+    if constants is not None:
+        given = instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+    if length is None:
+        names = ("threshold_range", "limit_range")
+        length = critical_distance(*given.required(names, f'method "{method}"', owner_of(problem, body)))
+    length = positive("length", length)
     if theta is None:
         theta = fatigue(stops, criterion, body, constants=constants).hot_spot.theta
-    angles, problem = numbers("theta", theta), stops[0].problem
-    given = getattr(problem.surfaces, body).fatigue if constants is None else constants
-    if length is None:
-        given = given or FatigueConstants()
-        length = critical_distance(*given.required(("threshold_range", "limit_range"), f'method "{method}"', body))
-    length = positive("length", length)
+        if math.isnan(theta):
+            raise InputError("theta", f"must be given: the edge has no hot spot, {NO_CRACK}")
+    angles = numbers("theta", theta)
     radius = problem.hole_radius
-    depth, turn, weights = _places(method, length / radius, body)
+    depth, turn, weights = _places(method, length / radius, near_rim(problem, body), body)
     points = Points.at_depth(depth * radius, np.ravel(angles)[:, None] + turn)
-    checked_depths(problem, points, body)
+    if body == "plate" and is_beyond_bush(problem, points.depths(problem, body)).any():
+        raise InputError("length", f"{length:g} reaches beyond the bush: a mean over two materials has no meaning")
     history = stress_history(stops, points, body).reshape(len(stops), *points.shape, 4)
     place = angles, np.full(angles.shape, 0.5 * length if method == "point" else 0.0)
     return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
 
 
-def _places(method: Method, length: float, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _places(method: Method, length: float, edge: float, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Depths and angles of the points of a mean, counted from a point on the edge, and their weights, each (q,).
 
-    Depths and `length` are in units of the radius. The points crowd towards the edge, where the stress has a root.
+    Depths, `length` and the radius `edge` of the body's edge are in units of the hole's radius. The points crowd
+    towards the edge, where the stress has a root.
     """
+    if edge != 1.0:
+        depth, turn, weights = _places(method, length / edge, 1.0, body)
+        return edge * depth, turn, weights
     if method == "point":
         return np.array([0.5 * length]), np.zeros(1), np.ones(1)
     u, part = np.polynomial.legendre.leggauss(GAUSS)
@@ -128,7 +140,7 @@ def _places(method: Method, length: float, body: Body) -> tuple[np.ndarray, np.n
     if method == "line":
         return 2.0 * length * u**2, np.zeros(GAUSS), 2.0 * u * part
     away = AREA_RADIUS * length * u**2
-    sign = 1.0 if body == "plate" else -1.0
+    sign = -1.0 if body == "pin" else 1.0
     widest = np.arccos(np.clip(-0.5 * sign * away, -1.0, 1.0))
     swing = np.outer(widest, 2.0 * u - 1.0)  # angles from the inward normal
     distance = np.broadcast_to(away[:, None], swing.shape)

@@ -1,8 +1,9 @@
-"""Fatigue of plate or pin over one load cycle: parameters, planes, lives and hot spots."""
+"""Fatigue of plate, bush or pin over one load cycle: parameters, planes, lives and hot spots."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.damage import criteria, lives
+from fastpin.damage.criteria import Planes
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
 from fastpin.kernels.threads import in_threads
@@ -17,7 +19,7 @@ from fastpin.model.angles import near_bottom
 from fastpin.model.checks import choice, instance, instances, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
-from fastpin.model.points import Body, Points
+from fastpin.model.points import Body, Points, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
@@ -31,20 +33,29 @@ Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland
 CRITERIA = ("smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van")
 """The criteria; :mod:`fastpin.damage.criteria` has their formulas and sources."""
 
+NO_CRACK = "the parameter is 0 everywhere: no crack is expected"
+"""Words in place of a hot spot."""
+
+WITH_LIFE = ("smith-watson-topper", "fatemi-socie")
+"""The criteria that give a life."""
+
+ROUNDING = 1e-9
+"""A parameter below this part of its natural size is rounding: its place and plane have no meaning."""
+
 EVERYWHERE = 360
 """Angles round the whole edge, besides the nodes and the ends of zones."""
 
 
 class HotSpot(NamedTuple):
-    """The point with the largest parameter.
+    """The point with the largest parameter; without a place if the parameter is 0 everywhere.
 
     Attributes
     ----------
     parameter : float
     theta : float
-        Angle of the point, rad.
+        Angle of the point, rad; NaN without a place.
     depth : float
-        Distance from the edge, m.
+        Distance from the edge, m; NaN without a place.
     plane : float
         Angle of the worst plane's normal from the +x axis, rad; NaN for a criterion without planes.
     life : float
@@ -68,7 +79,7 @@ class Fatigue(ReadOnly):
     criterion : str
         One of :data:`CRITERIA`.
     body : str
-        "plate" or "pin".
+        "plate", "pin" or "seat".
     theta, depth : ndarray
         Angles of the points, rad, and distances from the edge, m.
     parameter : ndarray
@@ -80,7 +91,8 @@ class Fatigue(ReadOnly):
         Cycles, infinite where the parameter is 0; None if the criterion has no life or the material no constants for
         it.
     limit : float or None
-        Parameter at the fatigue limit, Pa; None for "smith-watson-topper" and "fatemi-socie".
+        Parameter at the fatigue limit, Pa; None for "smith-watson-topper" and "fatemi-socie". An array if the points
+        lie in the bush and in the plate round it.
     """
 
     problem: Problem
@@ -91,10 +103,12 @@ class Fatigue(ReadOnly):
     parameter: np.ndarray
     plane: np.ndarray | None
     life: np.ndarray | None
-    limit: float | None
+    limit: float | np.ndarray | None
 
     def __repr__(self) -> str:
         spot = self.hot_spot
+        if math.isnan(spot.theta):
+            return f"<Fatigue of the {self.body}, {self.criterion}: the parameter is 0 everywhere>"
         found = f"{spot.parameter:.5g} at theta {spot.theta:.5f} rad, depth {spot.depth:.4g} m"
         life = "" if self.life is None else f", life {spot.life:.4g} cycles"
         return f"<Fatigue of the {self.body}, {self.criterion}: largest parameter {found}{life}>"
@@ -112,6 +126,8 @@ class Fatigue(ReadOnly):
     @property
     def hot_spot(self) -> HotSpot:
         """The point with the largest parameter; the first one of equal points."""
+        if not self.parameter.any():
+            return HotSpot(0.0, math.nan, math.nan, math.nan, math.nan if self.life is None else math.inf)
         at = np.unravel_index(int(np.argmax(self.parameter)), self.parameter.shape)
         optional = (np.nan if array is None else float(array[at]) for array in (self.plane, self.life))
         return HotSpot(float(self.parameter[at]), float(self.theta[at]), float(self.depth[at]), *optional)
@@ -126,7 +142,7 @@ def fatigue(
     depth: ArrayLike | None = None,
     constants: FatigueConstants | None = None,
 ) -> Fatigue:
-    """Fatigue of plate or pin over one load cycle, at points on its edge or inside.
+    """Fatigue of plate, bush or pin over one load cycle, at points on an edge or inside.
 
     The states are the stops of the cycle. Between two stops the stresses are unknown: keep states between the corners,
     ``solve(..., between=10)``. The order of the states makes no difference.
@@ -137,8 +153,9 @@ def fatigue(
         All stops of one cycle of one problem, at least two.
     criterion : str
         One of :data:`CRITERIA`.
-    body : {"plate", "pin"}
-        The plate's material is that of its surface: of the bush if there is one.
+    body : {"plate", "pin", "seat"}
+        "plate" begins at the hole. With a bush its edge is the bore of the bush, and points beyond the bush take the
+        constants of the plate. "seat" is the plate round the bush: its edge is the seat of the bush.
     points : Points, optional
         Unless given, the points lie all round the edge: at the nodes, at the ends of all contact and stick zones, and
         at each degree.
@@ -150,8 +167,8 @@ def fatigue(
     Raises
     ------
     InputError
-        If the states are no cycle of one problem, a point lies outside the body or beyond a bush or its stress is
-        infinite, both points and depth are given, the body is rigid, or the material lacks constants of the criterion.
+        If the states are no cycle of one problem, a point lies outside the body or its stress is infinite, both points
+        and depth are given, the body is rigid, or the material lacks constants of the criterion.
     """
     stops = cycle_stops(states)
     if points is None:
@@ -160,23 +177,9 @@ def fatigue(
         raise InputError("depth", "can't be given together with points")
     check_body(stops[0].problem, body)
     instance("points", points, Points, "fastpin.Points")
-    place = points.theta, checked_depths(stops[0].problem, points, body) * stops[0].problem.hole_radius
+    place = points.theta, points.depths(stops[0].problem, body) * stops[0].problem.hole_radius
     history = stress_history(stops, points, body)
     return evaluated(history, stops[0], criterion, body, place, constants)
-
-
-def checked_depths(problem: Problem, points: Points, body: Body) -> np.ndarray:
-    """Depths of points in units of R, in the shape of the points.
-
-    Raises
-    ------
-    InputError
-        If a point lies outside the body, or beyond a bush: the constants of the plate are those of the bush.
-    """
-    depth = points.depths(problem, body)
-    if body == "plate" and is_beyond_bush(problem, depth).any():
-        raise InputError("points", "must lie in the bush: the fatigue constants of the plate are those of its bush")
-    return depth
 
 
 def stress_history(states: Sequence[State], points: Points, body: Body = "plate") -> np.ndarray:
@@ -289,7 +292,10 @@ def damage_sum(
     found = [fatigue(one, criterion, body, points=points, constants=constants).life for one in chosen]
     known = [life for life in found if life is not None]
     if len(known) < len(found):
-        raise InputError("criterion", f"the {body}'s material has no constants for a life by {criterion}")
+        raise InputError(
+            "criterion",
+            f"the {owner_of(chosen[0][0].problem, body)}'s material has no constants for a life by {criterion}",
+        )
     counts = np.full(len(known), whole_number("repeats", repeats, 1))
     return points.theta, lives.miner(counts, np.array(known))
 
@@ -302,33 +308,63 @@ def evaluated(
     place: tuple[np.ndarray, np.ndarray],
     constants: FatigueConstants | None,
 ) -> Fatigue:
-    """The criterion on a history of stresses; `place` holds angles and depths of its points, in their shape."""
-    material = getattr(state.problem.surfaces, body)
-    given = (
-        material.fatigue
-        if constants is None
-        else instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
-    )
-    given = given or FatigueConstants()
+    """The criterion on a history of stresses; `place` holds angles and depths of its points, in their shape.
+
+    The points may lie in a bush and in the plate round it: each takes the constants of its material.
+    """
     choice("criterion", criterion, CRITERIA)
-    by_planes = criterion in ("smith-watson-topper", "fatemi-socie")
-    values = _with_life if by_planes else _with_limit
-    parameter, plane, life, limit = values(history, criterion, material, given, body)
-    shaped = [None if array is None else array.reshape(place[0].shape) for array in (parameter, plane, life)]
-    assert shaped[0] is not None
-    return Fatigue(state.problem, criterion, body, *place, shaped[0], shaped[1], shaped[2], limit)
+    if constants is not None:
+        instance("constants", constants, FatigueConstants, "fastpin.model.FatigueConstants")
+    problem = state.problem
+    depth = np.broadcast_to(place[1], place[0].shape).ravel() / problem.hole_radius
+    beyond = is_beyond_bush(problem, depth) if body == "plate" else np.zeros(depth.shape, dtype=bool)
+    where: list[tuple[np.ndarray, Body]] = [(~beyond, body), (beyond, "seat")]
+    parts: list[tuple[np.ndarray, _Found]] = []
+    for chosen, part in [one for one in where if one[0].any()] or where[:1]:
+        material = material_of(problem, part)
+        given = (material.fatigue if constants is None else constants) or FatigueConstants()
+        values = _with_life if criterion in WITH_LIFE else _with_limit
+        parts.append((chosen, values(history[:, chosen], criterion, material, given, owner_of(problem, part))))
+    shape, limit = place[0].shape, parts[0][1].limit
+    parameter = _together([(chosen, one.parameter) for chosen, one in parts], shape)
+    plane = _together([(chosen, one.plane) for chosen, one in parts], shape)
+    life = _together([(chosen, one.life) for chosen, one in parts], shape)
+    limits = None if len(parts) == 1 else _together([(chosen, one.limit) for chosen, one in parts], shape)
+    assert parameter is not None
+    return Fatigue(problem, criterion, body, *place, parameter, plane, life, limit if limits is None else limits)
 
 
-_Found = tuple[np.ndarray, np.ndarray | None, np.ndarray | None, float | None]
+class _Found(NamedTuple):
+    """What a criterion finds at points of one material; see :class:`Fatigue`."""
+
+    parameter: np.ndarray
+    plane: np.ndarray | None
+    life: np.ndarray | None
+    limit: float | None
+
+
+def _together(
+    parts: Iterable[tuple[np.ndarray, np.ndarray | float | None]], shape: tuple[int, ...]
+) -> np.ndarray | None:
+    """The values of the chosen points of each part, in the shape of all points; NaN for the parts without values."""
+    known = [(chosen, values) for chosen, values in parts if values is not None]
+    if not known:
+        return None
+    found = np.full(known[0][0].shape, np.nan)
+    for chosen, values in known:
+        found[chosen] = values
+    return found.reshape(shape)
 
 
 def _with_life(
-    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: Body
+    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: str
 ) -> _Found:
     """Parameter, plane and life; the life is None if the constants do not give one."""
+    largest = float(np.abs(history).max(initial=0.0))
     if criterion == "smith-watson-topper":
         found = criteria.smith_watson_topper(history, material.E, material.nu)
         axial = ("fatigue_strength", "strength_exponent", "fatigue_ductility", "ductility_exponent")
+        found = _without_rounding(found, largest**2 / material.E)
         known = [getattr(given, name) for name in axial]
         life = None if None in known else lives.smith_watson_topper_life(found.parameter, material.E, *known)
     else:
@@ -337,22 +373,29 @@ def _with_life(
         torsional = (
             "shear_fatigue_strength", "shear_strength_exponent", "shear_fatigue_ductility", "shear_ductility_exponent"
         )  # fmt: skip
+        found = _without_rounding(found, largest / material.shear_modulus)
         known = [getattr(given, name) for name in torsional]
         life = None if None in known else lives.fatemi_socie_life(found.parameter, material.shear_modulus, *known)
-    return found.parameter, found.angle, life, None
+    return _Found(found.parameter, found.angle, life, None)
+
+
+def _without_rounding(found: Planes, natural: float) -> Planes:
+    """Planes with the parameter 0, and no angle, where the parameter is rounding beside its `natural` size."""
+    noise = found.parameter <= ROUNDING * natural
+    return Planes(np.where(noise, 0.0, found.parameter), np.where(noise, np.nan, found.angle))
 
 
 def _with_limit(
-    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: Body
+    history: np.ndarray, criterion: Criterion, material: Material, given: FatigueConstants, body: str
 ) -> _Found:
     """Parameter, plane and limit, from the fatigue limits under bending and torsion."""
     limits = given.required(("bending_limit", "torsion_limit"), criterion, body)
     if criterion == "findley":
         k, limit = criteria.findley_limit(*limits)
         found = criteria.findley(history, k)
-        return found.parameter, found.angle, None, limit
+        return _Found(found.parameter, found.angle, None, limit)
     if criterion == "crossland":
         alpha, limit = criteria.crossland_limit(*limits)
-        return criteria.crossland(history, alpha), None, None, limit
+        return _Found(criteria.crossland(history, alpha), None, None, limit)
     a, limit = criteria.dang_van_limit(*limits)
-    return criteria.dang_van(history, a), None, None, limit
+    return _Found(criteria.dang_van(history, a), None, None, limit)

@@ -17,7 +17,7 @@ from fastpin.elasticity.walls import LEAST_BORE, pin_wall, plate_walls, traction
 from fastpin.model.bodies import Plate
 from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOADS, REMOTE
-from fastpin.model.points import ROUNDING
+from fastpin.model.points import ROUNDING, Body
 from fastpin.model.problem import Problem
 
 SERIES = 50
@@ -40,7 +40,7 @@ def plate_stress(
     depth : ndarray, shape (m,)
         Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
     """
-    kolosov, joint, none = problem.surfaces.plate_kolosov, problem.joint, np.zeros(3)
+    kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)
     far = remote if isinstance(problem.plate_body, Plate) else none
     walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))
     if walls is None or walls.lug is None:
@@ -50,16 +50,35 @@ def plate_stress(
         elif isinstance(problem.plate_body, Compliance):
             found[1] += _compliance_hoop(problem.plate_body, kolosov, tractions, remote, theta)
         return found
-    assert joint.bush is not None
     found, beyond = np.empty((3, theta.size)), is_beyond_bush(problem, depth)
     inside = ~beyond
     found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])
     found[:, inside] += walls.surface.polar(theta[inside], 1.0 + depth[inside])
-    radius = (1.0 + depth[beyond]) / joint.bush
-    found[:, beyond] = walls.lug.polar(theta[beyond], radius)
+    below = 1.0 + depth[beyond] - (problem.joint.bush or 1.0)
+    found[:, beyond] = seat_stress(problem, tractions, remote, theta[beyond], below)
+    return found
+
+
+def seat_stress(
+    problem: Problem, tractions: Tractions, remote: np.ndarray, theta: np.ndarray, depth: np.ndarray
+) -> np.ndarray:
+    """Stresses (srr, stt, srt) in the plate round a bush, shape (3, m). The press fit is included.
+
+    Parameters
+    ----------
+    problem, tractions, remote, theta
+        See :func:`plate_stress`.
+    depth : ndarray, shape (m,)
+        Distances of the points from the seat of the bush, in units of R; at least 0.
+    """
+    joint, walls = problem.joint, plate_walls(problem, tractions, tuple(float(value) for value in remote))
+    assert joint.bush is not None
+    assert walls is not None
+    assert walls.lug is not None
+    below = depth / joint.bush
+    found = walls.lug.polar(theta, 1.0 + below)
     if isinstance(joint.lug, Plate):
-        kirsch = hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta[beyond], radius - 1.0)
-        found[:, beyond] += kirsch
+        found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta, below)
     return found
 
 
@@ -69,11 +88,16 @@ def is_beyond_bush(problem: Problem, depth: np.ndarray) -> np.ndarray:
     return np.zeros(depth.shape, dtype=bool) if bush is None else 1.0 + depth > bush * (1.0 + ROUNDING)
 
 
-def press_fit_hoop(problem: Problem) -> float:
-    """Hoop stress at the hole that the press fit of a bush leaves, in the unit of its pressure; 0 without a bush."""
+def press_fit_hoop(problem: Problem, body: Body = "plate") -> float:
+    """Hoop stress that the press fit of a bush leaves on the edge of "plate" or "seat"; 0 without a bush.
+
+    It is in the unit of the press fit's pressure.
+    """
     bush, pressure = problem.joint.bush, problem.press_fit_pressure
     if bush is None or pressure == 0.0:
         return 0.0
+    if body == "seat":
+        return float(seat_stress(problem, Tractions(()), np.zeros(3), np.zeros(1), np.zeros(1))[1, 0])
     return -2.0 * pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
 
 

@@ -1,8 +1,9 @@
-"""Figures of fatigue along the edge of hole or pin."""
+"""Figures of fatigue along the edge of hole, pin or seat."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fastpin.damage import Fatigue
+from fastpin.damage import NO_CRACK, Fatigue
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import COLOURS, angle_axis, line
 from fastpin.figures.words import ANGLE, caption, quantity, short
 from fastpin.model.angles import from_bottom
-from fastpin.model.checks import instance
+from fastpin.model.checks import instance, instances
 from fastpin.model.units import scaled, units
 from fastpin.report.case import edge_body
 
@@ -28,7 +29,7 @@ LEAST = 0.02
 
 
 def plot_fatigue(
-    found: Fatigue,
+    found: Fatigue | Sequence[Fatigue],
     path: str | Path | None = None,
     title: str = "",
     width: float = 6.7,
@@ -43,64 +44,105 @@ def plot_fatigue(
 
     Parameters
     ----------
-    found : Fatigue
-        Of points at one depth, such as from :meth:`fastpin.Result.fatigue`.
+    found : Fatigue or sequence of Fatigue
+        Of points at one depth, such as from :meth:`fastpin.Result.fatigue`. Several bodies, such as a bush and the
+        plate round it, share the panels.
     path, title, width, dpi, ax
         See :func:`fastpin.plot_tractions`.
 
     Raises
     ------
     InputError
-        If `found` is no fatigue of points at one depth. Also see :func:`fastpin.plot_tractions`.
+        If `found` is no fatigue of points at one depth, or of several problems or criteria. Also see
+        :func:`fastpin.plot_tractions`.
     """
-    instance("found", found, Fatigue, "a fatigue result, such as result.fatigue(...)")
-    if np.ptp(found.depth) > 0.0:
+    wanted = "a fatigue result, such as result.fatigue(...)"
+    each = [instance("found", found, Fatigue, wanted)] if not isinstance(found, (list, tuple)) else list(found)
+    each = instances("found", each, Fatigue, wanted)
+    if not each:
+        raise InputError("found", f"must be {wanted}, not an empty list")
+    if any(one.criterion != each[0].criterion or one.problem != each[0].problem for one in each):
+        raise InputError("found", "must be of one problem and one criterion")
+    if any(np.ptp(one.depth) > 0.0 for one in each):
         raise InputError("found", "must be of points at one depth")
     look = Look(path, title, width, dpi, ax)
-    return look.drawn(lambda: _draw(found, look))
+    return look.drawn(lambda: _draw(each, look))
 
 
-def _draw(found: Fatigue, look: Look) -> Sheet:
-    sheet = look.sheet([2.2] * (1 if found.life is None else 2), extra=1.2)
+def _draw(found: Sequence[Fatigue], look: Look) -> Sheet:
+    lives = [one for one in found if one.life is not None and np.isfinite(one.life).any()]
+    sheet = look.sheet([2.2] * (2 if lives else 1), extra=1.2)
     axes = sheet.axes
     sheet.grid()
-    theta, parameter = found.theta.ravel(), found.parameter.ravel()
-    angle = np.array([from_bottom(place) for place in theta.tolist()])
-    order, spot = np.argsort(angle), found.hot_spot
-    angle, parameter = angle[order], parameter[order]
-    top = axes[0, 0]
-    factor, unit = scaled([spot.parameter], found.unit)
-    parameter = factor * parameter
-    top.plot(angle, parameter, **line(0))
-    top.plot(from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=COLOURS[1])
-    top.set_ylabel(quantity(f"parameter of\n{found.criterion}", unit))
-    lowest, highest = float(parameter.min()), float(parameter.max())
-    top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0) or 1.0)
-    where = f"hot spot at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
-    handles = [Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=COLOURS[1])]
-    if found.plane is not None:
-        _draw_planes(top, angle, parameter, (found.plane.ravel() - theta)[order])
-        handles.append(Line2D([], [], color="0.3", linewidth=1.0, label="worst planes"))
-    if found.limit is not None and found.limit < 3.0 * spot.parameter:
-        top.axhline(factor * found.limit, **line(2, 1))
-        handles.append(Line2D([], [], label="fatigue limit", **line(2, 1)))
-    if found.life is not None:
-        life = found.life.ravel()[order]
-        axes[1, 0].semilogy(angle, np.where(np.isfinite(life), life, np.nan), **line(0))
+    top, handles = axes[0, 0], list[Line2D]()
+    factor, unit = scaled([one.hot_spot.parameter for one in found], found[0].unit)
+    names = [edge_body(one.problem, one.body) for one in found]
+    for place, one in enumerate(found):
+        handles += _draw_parameter(top, one, factor, place, names[place] if len(found) > 1 else "")
+    values = np.concatenate([factor * one.parameter.ravel() for one in found])
+    lowest, highest = float(values.min()), float(values.max())
+    if values.any():
+        top.set_ylim(min(1.15 * lowest, 0.0), max(1.15 * highest, 0.0))
+    else:
+        top.set_yticks([0.0])  # no other value has a meaning
+    top.set_ylabel(quantity(f"parameter of\n{found[0].criterion}", unit))
+    for one in lives:
+        _draw_life(axes[1, 0], one, found.index(one))
+    if lives:
+        shortest = min(float(np.nanmin(one.life)) for one in lives if one.life is not None)
         axes[1, 0].set_ylabel("life (cycles)")
-        shortest = float(np.nanmin(life))
-        if math.isfinite(shortest):
-            axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
+        axes[1, 0].set_ylim(0.5 * shortest, 1e4 * shortest)
     for panel in axes[:, 0]:
         panel.set_xlim(-180.0, 180.0)
         angle_axis(panel)
     axes[-1, 0].set_xlabel(ANGLE)
     sheet.figure.align_ylabels(axes)
-    sheet.legend(handles, len(handles))
-    depth = float(found.depth.ravel()[0])
-    place = "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
-    sheet.head(look.title, f"{edge_body(found.problem, found.body)}, {place}", caption=caption(found.problem))
+    sheet.legend(handles, min(len(handles), 3))
+    heading = "; ".join(f"{name}, {_place(one)}" for name, one in zip(names, found, strict=True))
+    sheet.head(look.title, heading, caption=caption(found[0].problem))
     return sheet
+
+
+def _place(found: Fatigue) -> str:
+    depth = float(found.depth.ravel()[0])
+    return "on the edge" if depth == 0.0 else f"{short(depth, units(found.problem)['length'])} below the edge"
+
+
+def _by_angle(found: Fatigue) -> tuple[np.ndarray, np.ndarray]:
+    """The angles from the bottom, deg, in increasing order, and the order of the points."""
+    angle = np.array([from_bottom(place) for place in found.theta.ravel().tolist()])
+    order = np.argsort(angle)
+    return angle[order], order
+
+
+def _draw_parameter(panel: Axes, found: Fatigue, factor: float, place: int, name: str) -> list[Line2D]:
+    """Draw one curve with its hot spot, planes and limit, and return the entries of the legend."""
+    (angle, order), spot = _by_angle(found), found.hot_spot
+    parameter, colour = factor * found.parameter.ravel()[order], COLOURS[2 * place + 1]
+    panel.plot(angle, parameter, **line(2 * place))
+    before = f"{name}: " if name else ""
+    handles = [Line2D([], [], label=name, **line(2 * place))] if name else []
+    if math.isnan(spot.theta):
+        return [*handles, Line2D([], [], linestyle="none", label=f"{before}{NO_CRACK}")]
+    panel.plot(from_bottom(spot.theta), factor * spot.parameter, "o", markersize=4.5, color=colour)
+    where = f"{before}hot spot at {from_bottom(spot.theta):.1f} deg".replace("-", "−")
+    handles.append(Line2D([], [], label=where, linestyle="none", marker="o", markersize=4.5, color=colour))
+    if found.plane is not None:
+        _draw_planes(panel, angle, parameter, (found.plane.ravel() - found.theta.ravel())[order])
+        if place == 0:
+            handles.append(Line2D([], [], color="0.3", linewidth=1.0, label="worst planes"))
+    limit = None if found.limit is None else float(np.ravel(found.limit)[0])  # all points have one material
+    if limit is not None and limit < 3.0 * spot.parameter:
+        panel.axhline(factor * limit, **line(2 * place + 2, 1))
+        handles.append(Line2D([], [], label=f"{before}fatigue limit", **line(2 * place + 2, 1)))
+    return handles
+
+
+def _draw_life(panel: Axes, found: Fatigue, place: int) -> None:
+    assert found.life is not None
+    angle, order = _by_angle(found)
+    life = found.life.ravel()[order]
+    panel.semilogy(angle, np.where(np.isfinite(life), life, np.nan), **line(2 * place))
 
 
 def _draw_planes(panel: Axes, angle: np.ndarray, parameter: np.ndarray, turned: np.ndarray) -> None:

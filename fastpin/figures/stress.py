@@ -54,7 +54,7 @@ def plot_hoop_stress(
     states: StateChoice = None,
     ax: Axes | None = None,
 ) -> Figure:
-    """Draw the hoop stress round the hole (upper panel) and round the pin (lower panel).
+    """Draw the hoop stress round the hole, of the plate at the seat of a bush, and round the pin, a panel each.
 
     A dot marks the largest hoop stress of each state; an open dot if the nodes do not resolve the peak. Angles are in
     degrees from the bottom of the hole, counter-clockwise positive. Tension is positive.
@@ -63,8 +63,8 @@ def plot_hoop_stress(
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    body : {"both", "plate", "pin"}
-        "both" leaves out a rigid body.
+    body : {"both", "plate", "seat", "pin"}
+        "both" draws all that the problem has, without rigid bodies.
     path, title, width, dpi, states, ax
         See :func:`fastpin.plot_tractions`.
 
@@ -98,7 +98,8 @@ def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
             angle = math.degrees(peak.angle) + 90.0
             panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
         panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
-        panel.set_ylabel(quantity(f"hoop stress of the {edge_body(states[0].problem, body)}", label))
+        words = edge_body(states[0].problem, body).replace("plate at", "plate\nat")
+        panel.set_ylabel(quantity(f"hoop stress of the {words}", label))
         panel.set_xlim(-180.0, 180.0)
         angle_axis(panel)
     axes[-1, 0].set_xlabel(ANGLE)
@@ -132,7 +133,7 @@ def plot_stress_profile(
     ----------
     result : State, Result or sequence of State
         Of one problem and on one grid.
-    body : {"plate", "pin"}
+    body : {"plate", "pin", "seat"}
     angle : float, optional
         The place in degrees from the bottom; that of each state's largest hoop stress unless given.
     depth : float

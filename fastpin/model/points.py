@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.bodies import Ring, Tube
+from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.checks import choice, in_one_shape, instance, numbers
 from fastpin.model.compliance import Compliance
+from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-Body = Literal["plate", "pin"]
+Body = Literal["plate", "pin", "seat"]
 
 ROUNDING = 1e-14
 """Distance from the edge that is rounding, in units of the hole's radius."""
@@ -26,8 +27,14 @@ ROUNDING = 1e-14
 MOST_ANGLE = 1e6
 """Largest size of an angle, rad. Beyond, a turn has too few digits."""
 
-BODIES = ("plate", "pin")
-"""The bodies in contact."""
+BODIES = ("plate", "pin", "seat")
+"""Bodies with an edge: the plate with its hole, the pin, and the plate round a bush, whose edge is the bush's seat.
+
+The edge of "plate" is that of the hole. With a bush it is the bore of the bush, and the plate's own edge is "seat".
+"""
+
+EDGES: tuple[Body, ...] = ("plate", "seat")
+"""The edges of holes: that of the pin's hole, and that of the plate's own hole round a bush."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +51,8 @@ class Points(ReadOnly):
     radius : ndarray or None
         Distances from the centre, m; None for points by depth.
     depth : ndarray or None
-        Distances from the edge, m, into the body; None for points by radius. No digit is lost close to the edge.
+        Distances from the body's edge, m, into the body; None for points by radius. No digit is lost close to the
+        edge. The edge of the body "seat" is the seat of a bush.
 
     Raises
     ------
@@ -89,7 +97,7 @@ class Points(ReadOnly):
         return self.theta.shape
 
     def depths(self, problem: Problem, body: Body) -> np.ndarray:
-        """Depths below the edge in units of the hole's radius, shape of the points.
+        """Depths below the body's edge in units of the hole's radius, shape of the points.
 
         Raises
         ------
@@ -97,9 +105,9 @@ class Points(ReadOnly):
             If a point lies outside the body, or inside a plate that a compliance describes.
         """
         instance("problem", problem, Problem, "a Problem")
-        choice("body", body, BODIES)
-        radius, far = problem.hole_radius, far_rim(problem, body)
-        wall = abs(far - 1.0) if far is not None else math.inf
+        material_of(problem, body)
+        radius, near, far = problem.hole_radius, near_rim(problem, body), far_rim(problem, body)
+        wall = abs(far - near) if far is not None else math.inf
         if self.depth is not None:
             depth = self.depth / radius
             if np.any(depth > wall + ROUNDING * max(1.0, wall)):
@@ -107,17 +115,54 @@ class Points(ReadOnly):
                 raise InputError("depth", f"must be at most the {name} of {wall * radius:g} in the {body}")
         else:
             assert self.radius is not None
-            depth = (self.radius - radius) / radius * (1.0 if body == "plate" else -1.0)
-            depth = np.where(np.abs(depth) < ROUNDING, 0.0, depth)
+            depth = (self.radius - near * radius) / radius * (-1.0 if body == "pin" else 1.0)
+            depth = np.where(np.abs(depth) < ROUNDING * near, 0.0, depth)
             if np.any(depth < 0.0):
-                side = "at least" if body == "plate" else "at most"
-                raise InputError("radius", f"must be {side} the hole's radius of {radius:g} in the {body}")
+                side, edge = "at most" if body == "pin" else "at least", "seat" if body == "seat" else "hole"
+                raise InputError("radius", f"must be {side} the {edge}'s radius of {near * radius:g} in the {body}")
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
         if body == "plate" and isinstance(problem.plate_body, Compliance) and np.any(depth > 0.0):
             raise InputError("points", "a compliance gives the stress on the edge of the hole only")
         return np.minimum(depth, wall)
+
+
+def bodies_of(problem: Problem) -> tuple[Body, ...]:
+    """The bodies of :data:`BODIES` that a problem has, from the hole outwards, then the pin."""
+    return ("plate", "seat", "pin") if isinstance(problem.plate_body, Bushing) else ("plate", "pin")
+
+
+def material_of(problem: Problem, body: Body) -> Material:
+    """The material of a body at its edge: of "plate" the bush if there is one, of "seat" the plate round it.
+
+    Raises
+    ------
+    InputError
+        If there is no such body.
+    """
+    if choice("body", body, BODIES) != "seat":
+        return problem.surfaces.pin if body == "pin" else problem.surfaces.plate
+    if problem.joint.bush is None:
+        raise InputError("body", '"seat" is the edge of the plate round a bush; this plate has no bush')
+    return problem.pair.plate
+
+
+def owner_of(problem: Problem, body: Body) -> str:
+    """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
+    if body == "plate" and isinstance(problem.plate_body, Bushing):
+        return "bush"
+    return "plate" if body == "seat" else body
+
+
+def elastic_bodies(problem: Problem) -> tuple[Body, ...]:
+    """The bodies of a problem that have a stress: all that are not rigid."""
+    return tuple(body for body in bodies_of(problem) if not material_of(problem, body).is_rigid)
+
+
+def near_rim(problem: Problem, body: Body) -> float:
+    """Radius of a body's edge over the hole's radius: above 1 at the seat of a bush."""
+    return problem.joint.bush or 1.0 if body == "seat" else 1.0
 
 
 def far_rim(problem: Problem, body: Body) -> float | None:

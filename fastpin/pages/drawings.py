@@ -13,6 +13,7 @@ import numpy as np
 from fastpin import figures
 from fastpin.damage import Fatigue
 from fastpin.model.case import Case
+from fastpin.model.points import bodies_of
 from fastpin.model.units import named_loads
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
@@ -75,10 +76,11 @@ def stick_slip(album: Album, states: Sequence[State]) -> Picture:
 
 
 def hoop(album: Album, states: Sequence[State]) -> Picture:
-    """Draw the hoop stress round hole and pin."""
+    """Draw the hoop stress round hole and pin, and of the plate at the seat of a bush."""
+    seat = ", the seat of the bush" if "seat" in bodies_of(states[0].problem) else ""
     words = Words(
         f"Line charts of the hoop stress over the angle round the hole, at load points {_points(states)}.",
-        "Hoop stress round the hole and round the pin. Dots mark the largest value of each state.",
+        f"Hoop stress round the hole{seat} and the pin. Dots mark the largest value of each state.",
     )
     return album.picture(lambda path: figures.plot_hoop_stress(states, path), *words)
 
@@ -122,13 +124,14 @@ def cycles(album: Album, result: Result) -> Picture:
     return album.picture(lambda path: figures.plot_cycles(result, path), *words)
 
 
-def fatigue(album: Album, found: Fatigue) -> Picture:
-    """Draw the parameter of a criterion along the edge, and the life."""
-    body = edge_body(found.problem, found.body)
+def fatigue(album: Album, found: Sequence[Fatigue]) -> Picture:
+    """Draw the parameter of a criterion along the edges, and the life."""
+    edges = " and along the edge of the ".join(edge_body(one.problem, one.body) for one in found)
+    life = " and the life" if any(one.life is not None for one in found) else ""
     words = Words(
-        f"Line chart of the {found.criterion} parameter along the edge of the {body}.",
-        f"Parameter {found.criterion} along the edge of the {body}, with its hot spot"
-        f"{' and the life' if found.life is not None else ''}. Short lines are the worst planes.",
+        f"Line chart of the {found[0].criterion} parameter along the edge of the {edges}.",
+        f"Parameter {found[0].criterion} along the edge of the {edges}, with its hot spot{life}. Short lines are the "
+        "worst planes.",
     )
     return album.picture(lambda path: figures.plot_fatigue(found, path), *words)
 

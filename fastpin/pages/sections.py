@@ -16,13 +16,14 @@ from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.loads import named_load
 from fastpin.model.materials import Material
+from fastpin.model.points import EDGES
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
 from fastpin.pages.source import Source
 from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
-from fastpin.report.case import case_rows, corner_columns, hole_body
+from fastpin.report.case import case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
 from fastpin.report.notes import note_lines, solver_line, way_on
@@ -81,10 +82,12 @@ def overview(page: Shared) -> Section:
         largest = max(states, key=lambda state: state.peak_pressure)
         unit = units(problem)["traction"]
         sentences = [f"largest contact pressure in these states: {unit.text(largest.peak_pressure, 5)}"]
-        sentences += [hoop_line(problem, states), *bush_line(problem, states).splitlines()]
+        sentences += [hoop_line(problem, states, body) for body in EDGES]
+        sentences += [*bush_line(problem, states).splitlines()]
         sentences += cycle_lines(problem, source.result.cycles, states)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
-        sentences += [] if isinstance(source.fatigue, str) else [hot_spot_line(source.fatigue, states)]
+        known = [] if isinstance(source.fatigue, str) else source.fatigue
+        sentences += [hot_spot_line(found, states) for found in known]
         if len(states) < source.points.size:
             words = f"The sentences on states are on the {len(states)} states in the table of key figures."
             parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not among them."))
@@ -326,8 +329,8 @@ def stresses(page: Shared) -> Section:
     if not drawn:
         return Section("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = _drawn(lambda: drawings.hoop(page.album, drawn))
-    if line := hoop_line(problem, drawn):
-        parts.append(Text(_sentence(line)))
+    lines = [hoop_line(problem, drawn, body) for body in EDGES]
+    parts += [Text(_sentence(line)) for line in lines if line]
     if problem.surfaces.plate.is_rigid:
         largest = max(drawn, key=lambda state: state.peak_pressure)
     else:
@@ -341,10 +344,13 @@ def fatigue(page: Shared) -> Section:
     found = page.source.fatigue
     if isinstance(found, str):
         return Section("fatigue", "Fatigue", [Text(found, "missing")])
-    parts: list[Part] = [drawings.fatigue(page.album, found), Text(_sentence(hot_spot_line(found, page.source.drawn)))]
-    if found.life is None:
-        words = f"There is no life: the material of the {hole_body(found.problem)} lacks constants for it."
-        parts.append(Text(f"{words} The key fatigue of a case file gives them; see docs/fatigue.md.", "missing"))
+    parts: list[Part] = [drawings.fatigue(page.album, found)]
+    for one in found:
+        parts.append(Text(_sentence(hot_spot_line(one, page.source.drawn))))
+        if one.life is None:
+            words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
+            words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."
+            parts.append(Text(words, "missing"))
     return Section("fatigue", "Fatigue", parts)
 
 

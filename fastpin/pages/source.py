@@ -19,7 +19,7 @@ from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.case import hole_body
-from fastpin.report.cycle import MOST_STOPS
+from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
@@ -226,9 +226,10 @@ class Source:
         return self._cycle if isinstance(self._cycle, str) else ""
 
     @cached_property
-    def fatigue(self) -> Fatigue | str:
-        """Fatigue of plate or bush over the last cycle; or a sentence that says why it is not known."""
+    def fatigue(self) -> list[Fatigue] | str:
+        """Fatigue of plate and bush over the last cycle; or a sentence that says why it is not known."""
         body = hole_body(self.case.problem)
+        bodies = fatigue_bodies(self.case.problem, CRITERION)
         if self.case.problem.surfaces.plate.is_rigid:
             return f"The {body} is rigid: it has no stress and no fatigue."
         if self.cycle is None:
@@ -238,7 +239,7 @@ class Source:
             how = f"fastpin plot {self.path} fatigue" if self.path else f'result.fatigue("{CRITERION}")'
             return f"The last cycle has {count:,} states; fatigue of more than {MOST_STOPS} takes long. Left to: {how}"
         try:
-            return fatigue(self.cycle.states, CRITERION)
+            return [fatigue(self.cycle.states, CRITERION, one) for one in bodies]
         except InputError as error:
             return f"There is no fatigue: {error.field} {error.reason}."
 

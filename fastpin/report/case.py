@@ -107,8 +107,8 @@ def hole_body(problem: Problem) -> str:
 
 
 def edge_body(problem: Problem, body: str) -> str:
-    """Return the word for the body whose edge "plate" or "pin" names: the edge of the hole may be that of a bush."""
-    return hole_body(problem) if body == "plate" else body
+    """Return words for the body whose edge "plate", "seat" or "pin" names: the hole may be in a bush."""
+    return {"plate": hole_body(problem), "seat": "plate at the seat"}.get(body, body)
 
 
 def _corners(count: int) -> str:

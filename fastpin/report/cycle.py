@@ -10,18 +10,23 @@ from typing import Any
 import numpy as np
 
 from fastpin.damage import Fatigue, cycle_states, fatigue
+from fastpin.damage.hot_spots import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.loads import LOAD_KIND
+from fastpin.model.points import EDGES, Body, elastic_bodies, material_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.report.case import ROUNDING, hole_body
+from fastpin.report.case import ROUNDING, edge_body
 from fastpin.report.curves import Curve
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.states.quantities import load_point, sizes
 from fastpin.states.state import State
 from fastpin.storage.files import replacing
+
+SWT: Criterion = "smith-watson-topper"
+"""The criterion of printed texts and pages."""
 
 MOST_STOPS = 100
 """Most states of a cycle whose fatigue is printed unasked: some tenths of a second."""
@@ -47,30 +52,40 @@ def cycle_line(cycle: LoadCycle) -> str:
     return f"from corner {cycle.first:,} to {cycle.last:,}: {regime}, {', '.join(parts)}"
 
 
-def fatigue_line(states: Sequence[State], cycle: Cycle) -> str:
-    """Return a line of text: the hot spot of plate or bush by Smith, Watson and Topper, its plane and its life.
+def fatigue_lines(states: Sequence[State], cycle: Cycle) -> list[str]:
+    """Return lines of text: the hot spots of plate and bush by Smith, Watson and Topper, their planes and lives.
 
-    It is empty if the plate has no fatigue constants, if the states lack a corner of the cycle, or if the cycle has
-    more than :data:`MOST_STOPS` states.
+    A body without fatigue constants has no line. There is none if the states lack a corner of the cycle, or if the
+    cycle has more than :data:`MOST_STOPS` states.
     """
     try:
         stops = cycle_states(states, cycle)
     except InputError:
-        return ""
-    problem = stops[0].problem
-    if problem.surfaces.plate.is_rigid or problem.surfaces.plate.fatigue is None or not 2 <= len(stops) <= MOST_STOPS:
-        return ""
-    return hot_spot_line(fatigue(stops, "smith-watson-topper"), stops)
+        return []
+    if not 2 <= len(stops) <= MOST_STOPS:
+        return []
+    bodies = [body for body in fatigue_bodies(stops[0].problem, SWT) if material_of(stops[0].problem, body).fatigue]
+    return [hot_spot_line(fatigue(stops, SWT, body), stops) for body in bodies]
+
+
+def fatigue_bodies(problem: Problem, criterion: str) -> list[Body]:
+    """The edges of holes whose fatigue is reported by a criterion: those with constants; else the pin's hole.
+
+    By Smith, Watson and Topper the parameter needs no constants.
+    """
+    elastic = [body for body in EDGES if body in elastic_bodies(problem)]
+    known = [body for body in elastic if criterion == SWT or material_of(problem, body).fatigue]
+    return known or ["plate"]
 
 
 def hot_spot_line(found: Fatigue, states: Sequence[State]) -> str:
-    """Return a line of text: the hot spot of plate or bush over the last cycle, its plane, and its life if known.
+    """Return a line of text: the hot spot of a body over the last cycle, its plane, and its life if known.
 
     The criterion of `found` is "smith-watson-topper". A parameter that is rounding beside the pressures of the states
     is 0.
     """
     spot, problem = found.hot_spot, found.problem
-    name = f"fatigue of the {hole_body(problem)} in the last cycle, Smith-Watson-Topper"
+    name = f"fatigue of the {edge_body(problem, found.body)} in the last cycle, Smith-Watson-Topper"
     pressure = max((state.peak_pressure for state in states), default=0.0)
     if spot.parameter <= ROUNDING * problem.surfaces.beta_star * pressure**2:
         return f"{name}: none, no plane has both tension and a changing strain"

@@ -14,9 +14,10 @@ import numpy as np
 from fastpin.model.angles import from_bottom, interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, instances
+from fastpin.model.points import Body, elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
-from fastpin.report.case import ROUNDING, hole_body, load_columns
+from fastpin.report.case import ROUNDING, edge_body, load_columns
 from fastpin.report.table import (
     MAX_ROWS,
     Column,
@@ -271,32 +272,32 @@ def quantity_column(
     return each.label, label, [f"{value * factor:.{digits}g}{bar}" for value, bar in zip(cleaned, bars, strict=True)]
 
 
-def hoop_line(problem: Problem, states: Sequence[State]) -> str:
-    """Return a line of text: the largest hoop stress of plate or bush in the states, and its stress concentrations.
+def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -> str:
+    """Return a line of text: the largest hoop stress of a body in the states, and its stress concentrations.
 
-    It is empty for a rigid plate, and if no state is in contact.
+    It is empty without the body, for a rigid one, and if no state is in contact.
     """
-    if problem.surfaces.plate.is_rigid or not any(state.in_contact for state in states):
+    if body not in elastic_bodies(problem) or not any(state.in_contact for state in states):
         return ""
     distinct: dict[Hashable, State] = {}
     for state in states:  # Steady cycles repeat their states, and a peak takes some milliseconds.
         distinct.setdefault(_identity(state), state)
-    state = max(distinct.values(), key=lambda state: state.peak_hoop_stress().value)
-    peak = state.peak_hoop_stress()
+    state = max(distinct.values(), key=lambda state: state.peak_hoop_stress(body).value)
+    peak = state.peak_hoop_stress(body)
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     factor, unit = units(problem)["traction"].scale([peak.value])
     text = (
-        f"largest hoop stress of the {hole_body(problem)} in these states: "
-        f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop')} {unit}"
+        f"largest hoop stress of the {edge_body(problem, body)} in these states: "
+        f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop' if body == 'plate' else 'peak_hoop_seat')} {unit}"
         f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     )
-    ratios = {"bearing": peak.kt_bearing, "remote": peak.kt_gross}
+    ratios = {"bearing": peak.kt_bearing, "net-section": peak.kt_net, "remote": peak.kt_gross}
     known = [f"Kt {value:.4g} on the {name} stress" for name, value in ratios.items() if math.isfinite(value)]
     parts = {"remote": peak.kt_bypass_part, "bearing": peak.kt_bearing_part}
-    if len(known) == len(parts):
-        terms = [f"{value:.4g} x {name} stress" for name, value in parts.items()]
-        if peak.press_fit:
-            terms.append(f"{units(problem)['traction'].text(peak.press_fit, 4)} of the press fit")
+    terms = [f"{value:.4g} x {name} stress" for name, value in parts.items() if math.isfinite(value)]
+    if peak.press_fit:
+        terms.append(f"{units(problem)['traction'].text(peak.press_fit, 4)} of the press fit")
+    if known and len(terms) > 1:
         known.append(f"it is {' + '.join(terms)}")
     return "; ".join([text, *known])
 

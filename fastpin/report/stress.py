@@ -11,7 +11,8 @@ from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
 from fastpin.model.compliance import Compliance
-from fastpin.model.points import BODIES, ROUNDING, Body, Points, far_rim
+from fastpin.model.points import BODIES, ROUNDING, Body, Points, elastic_bodies, far_rim, material_of, near_rim
+from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
@@ -54,7 +55,7 @@ def component_of(stress: Stress, component: str) -> np.ndarray:
 
 
 def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
-    """The bodies to draw: "plate", "pin", or "both", which leaves out a rigid body.
+    """The bodies to draw: "plate", "pin", "seat", or "both": all that the problem has, without rigid ones.
 
     Raises
     ------
@@ -63,11 +64,11 @@ def bodies_of(state: State, body: str = "both") -> tuple[Body, ...]:
     """
     if choice("body", body, (*BODIES, "both")) != "both":
         return (body,)  # type: ignore[return-value]
-    return tuple(each for each in BODIES if not getattr(state.problem.surfaces, each).is_rigid)  # type: ignore[misc]
+    return elastic_bodies(state.problem)
 
 
 def hoop_curves(states: Sequence[State], body: str = "both") -> list[Curve]:
-    """The hoop stress round hole and pin: a curve for each body and state.
+    """The hoop stress round hole, seat of a bush and pin: a curve for each body and state.
 
     Columns: the angle in degrees from the bottom, -180 to 180, and the hoop stress in Pa or F/R.
     """
@@ -92,7 +93,7 @@ def depth_curves(
     Parameters
     ----------
     states : sequence of State
-    body : {"plate", "pin"}
+    body : {"plate", "pin", "seat"}
     angle : float, optional
         Degrees from the bottom; the place of the state's largest hoop stress unless given.
     depth : float
@@ -103,9 +104,9 @@ def depth_curves(
     InputError
         If an argument is out of range.
     """
-    choice("body", body, BODIES)
+    material_of(states[0].problem, body)
     deepest = number("depth", depth)
-    _check_depth(deepest, body, far_rim(states[0].problem, body))
+    _check_depth(deepest, states[0].problem, body)
     unit = units(states[0].problem)
     radius, curves = states[0].problem.hole_radius, []
     below = deepest * radius * np.linspace(0.0, 1.0, DEPTHS) ** 3
@@ -120,9 +121,10 @@ def depth_curves(
     return curves
 
 
-def _check_depth(depth: float, body: Body, far: float | None) -> None:
-    """Check the depth of a profile, in hole radii. `far` is the radius of the body's other rim, see ``far_rim``."""
-    wall = math.inf if far is None else abs(far - 1.0)
+def _check_depth(depth: float, problem: Problem, body: Body) -> None:
+    """Check the depth of a profile, in hole radii."""
+    far = far_rim(problem, body)
+    wall = math.inf if far is None else abs(far - near_rim(problem, body))
     inside = depth < wall if far == 0.0 else depth <= wall * (1.0 + ROUNDING)  # a force may act at the centre of a pin
     if depth > 0.0 and inside:
         return
@@ -147,6 +149,7 @@ def field_curves(
     component : str
         A name of :data:`COMPONENTS`.
     body : {"plate", "pin", "both"}
+        The plate holds its bush.
     extent : float
         Outer radius of the plate's part, in units of the hole's radius; above 1, at most 100. A ring ends at its rim.
     fineness : int
@@ -162,7 +165,8 @@ def field_curves(
     if not 1.0 < outer <= 100.0:
         raise InputError("extent", f"must be above 1 and at most 100 radii, not {outer:g}")
     unit, radius, curves = units(state.problem), state.problem.hole_radius, []
-    drawn = bodies_of(state, body)
+    choice("body", body, ("plate", "pin", "both"))
+    drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
     if body == "both" and isinstance(state.problem.plate_body, Compliance):
         drawn = tuple(each for each in drawn if each == "pin")  # the stress inside the plate is unknown
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)

@@ -42,6 +42,7 @@ FLOORS = {
     "rotation": 0.15,
     "displacement": 0.1,
     "energy": 0.06,
+    "traction": 0.6,
 }
 """Floors of all other quantities, by name or kind.
 
@@ -130,8 +131,9 @@ def _floor(name: str, state: State) -> float:
         peak = abs(QUANTITIES[name].of(state))
         floor = PEAK_FLOORS[int(peak > (1.0 + 1e-12) * float(traction[top]))]
         return floor * max(peak - float(beside.min()), 0.0)
-    if name == "peak_hoop" or kind == "ratio":
-        part = HOOP_FLOOR / closed if state.peak_hoop_stress().resolved else UNRESOLVED
+    if name in ("peak_hoop", "peak_hoop_seat") or kind == "ratio":
+        resolved = state.peak_hoop_stress("seat" if name == "peak_hoop_seat" else "plate").resolved
+        part = HOOP_FLOOR / closed if resolved else UNRESOLVED
         return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))

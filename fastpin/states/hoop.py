@@ -1,4 +1,4 @@
-"""The largest hoop stress round hole and pin, and stress concentrations."""
+"""The largest hoop stress round hole, pin and the seat of a bush, and stress concentrations."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ import numpy as np
 from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import angle_between, near_bottom
-from fastpin.model.points import Body
+from fastpin.model.bodies import Ring
+from fastpin.model.points import Body, near_rim
+from fastpin.model.problem import Problem
 from fastpin.states.error_bars import UNRESOLVED
 from fastpin.states.state import State
 from fastpin.states.stress import HoopPeak, open_hole_hoop
@@ -54,15 +56,25 @@ def hoop_peak(state: State, body: Body) -> HoopPeak:
     value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
     resolved = _is_resolved(state, body, value, angle)
     force = math.hypot(state.resultants["P"], state.resultants["Q"])
-    bearing, gross, bypass, press_fit = force / (2.0 * state.problem.hole_radius), 0.0, 0.0, 0.0
-    if body == "plate":
+    edge = near_rim(state.problem, body) * state.problem.hole_radius
+    bearing, gross, bypass, press_fit = force / (2.0 * edge), 0.0, 0.0, 0.0
+    if body != "pin":
         sxx, syy, sxy = (state.load[name] for name in ("sxx", "syy", "sxy"))
         mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
         gross = mean + math.copysign(radius, mean)
-        bypass = open_hole_hoop(state.problem, np.array([sxx, syy, sxy]), angle)
-        press_fit = press_fit_hoop(state.problem)
+        bypass = open_hole_hoop(state.problem, np.array([sxx, syy, sxy]), angle, body)
+        press_fit = press_fit_hoop(state.problem, body)
     place = angle if state.in_contact or value != 0.0 else math.nan
-    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit)
+    section = _net_section(state.problem, body)
+    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
+
+
+def _net_section(problem: Problem, body: Body) -> float:
+    """Width W - D of the net section beside the hole of a ring, m; infinite for any other plate, a bush, the pin."""
+    lug, own = problem.joint.lug, "seat" if problem.joint.bush else "plate"
+    if body != own or not isinstance(lug, Ring):
+        return math.inf
+    return 2.0 * (lug.outer_radius - near_rim(problem, body) * problem.hole_radius)
 
 
 def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[float, float]:
@@ -86,6 +98,8 @@ def _is_resolved(state: State, body: Body, value: float, angle: float) -> bool:
     if 0 < np.count_nonzero(closed) < LEAST_NODES:
         return False
     spacing = float(state.grid.weights[closed].max(initial=0.0))
+    if body == "seat":  # the stress has no cusp a wall away from the contact
+        return spacing < near_rim(state.problem, body) - 1.0
     refined = state.refined
     if refined.unresolved:
         places = np.array(refined.unresolved)

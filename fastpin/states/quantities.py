@@ -11,6 +11,7 @@ import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.model.bodies import Bushing
+from fastpin.model.points import Body, elastic_bodies
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
 from fastpin.states.zones import Interval, is_all_round
@@ -59,11 +60,12 @@ def _integral(state: State, traction: np.ndarray) -> float:
     return state.problem.hole_radius * float(state.grid.weights @ traction)
 
 
-def _hoop(read: Callable[[HoopPeak], float]) -> Callable[[State], float]:
-    """A reading of the largest hoop stress of the plate; NaN for a rigid plate."""
+def _hoop(read: Callable[[HoopPeak], float], body: Body = "plate") -> Callable[[State], float]:
+    """A reading of the largest hoop stress on the edge of a body; NaN without the body, or if it is rigid."""
 
     def of(state: State) -> float:
-        return math.nan if state.problem.surfaces.plate.is_rigid else read(state.peak_hoop_stress())
+        is_stressed = body in elastic_bodies(state.problem)
+        return read(state.peak_hoop_stress(body)) if is_stressed else math.nan
 
     return of
 
@@ -99,6 +101,9 @@ QUANTITIES: dict[str, Quantity] = {
     "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle)),
     "kt_gross": Quantity("Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross)),
     "kt_bearing": Quantity("Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing)),
+    "kt_net": Quantity("Kt net", "ratio", _hoop(lambda peak: peak.kt_net)),
+    "peak_hoop_seat": Quantity("peak hoop seat", "traction", _hoop(lambda peak: peak.value, "seat")),
+    "peak_hoop_seat_angle": Quantity("peak hoop seat at", "angle", _hoop(lambda peak: peak.angle, "seat")),
     "joint_ux": Quantity("joint ux", "displacement", lambda state: state.joint_displacement()["ux"]),
     "joint_uy": Quantity("joint uy", "displacement", lambda state: state.joint_displacement()["uy"]),
     "bush_open_margin": Quantity("bush open margin", "traction", _bush(lambda fit: fit.open_margin)),
@@ -107,8 +112,10 @@ QUANTITIES: dict[str, Quantity] = {
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 
-"peak_hoop" is the largest hoop stress of the plate round the hole, "kt_gross" and "kt_bearing" are its ratios to the
-remote stress and to the bearing stress, see :class:`fastpin.states.HoopPeak`. All are NaN for a rigid plate.
+"peak_hoop" is the largest hoop stress round the hole, with a bush in the bore of the bush. "kt_gross", "kt_bearing" and
+"kt_net" are its ratios to the remote stress, the bearing stress and the net-section stress, see
+:class:`fastpin.states.HoopPeak`. "peak_hoop_seat" is the largest hoop stress of the plate round a bush, at the seat of
+the bush, NaN without a bush. All are NaN for a rigid body.
 "joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
 :class:`fastpin.states.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
 :class:`fastpin.states.Regime`, :attr:`State.regime`.

@@ -340,13 +340,14 @@ class State(ReadOnly):
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
 
         The remote stress, the force on the pin and the moment at its centre are included, and so is the press fit of a
-        bush. The plate holds its bush: points beyond the outer radius of the bush lie in the body round it. A
-        compliance gives the stress on the edge of the hole only.
+        bush. The body "plate" holds its bush: points beyond the outer radius of the bush lie in the plate round it. The
+        body "seat" is this plate alone: its points are counted from the seat of the bush. A compliance gives the stress
+        on the edge of the hole only.
 
         Parameters
         ----------
         points : Points
-        body : {"plate", "pin"}
+        body : {"plate", "pin", "seat"}
         straight : bool
             Whether the tractions are straight lines between the nodes everywhere. Otherwise they follow power laws at
             contact edges and stick-slip borders, see :attr:`refined`.
@@ -361,11 +362,13 @@ class State(ReadOnly):
         return states.stress.stress_at(self.problem, tractions, self.load, points, body)
 
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
-        """The hoop stress on the edge of the hole or of the pin, Pa; tension is positive.
+        """The hoop stress on the edge of the hole, of the pin, or of the plate at the seat of a bush, Pa.
+
+        Tension is positive. With a bush, "plate" is the bore of the bush, and "seat" the plate round it.
 
         Parameters
         ----------
-        body : {"plate", "pin"}
+        body : {"plate", "pin", "seat"}
         theta : array_like, optional
             Angles, rad; the nodes unless given.
         straight : bool
@@ -374,21 +377,21 @@ class State(ReadOnly):
         Raises
         ------
         InputError
-            If an angle is no finite number, or the body is rigid.
+            If an angle is no finite number, the body is rigid, or there is no bush.
         """
         return self.stress(Points.at_depth(0.0, self.theta if theta is None else theta), body, straight).hoop
 
     def peak_hoop_stress(self, body: Body = "plate") -> HoopPeak:
-        """The largest hoop stress round the hole or the pin, its place, and the stress concentrations.
+        """The largest hoop stress round the hole, the pin or the seat of a bush, its place and stress concentrations.
 
         Raises
         ------
         InputError
-            If the body is rigid.
+            If the body is rigid, or there is no bush.
         """
         states.stress.check_body(self.problem, body)
         is_kept = "refined" in self.__dict__
-        peak = self._plate_peak if body == "plate" else self._pin_peak
+        peak: HoopPeak = getattr(self, f"_{body}_peak")
         if not is_kept:  # the refined tractions of many states would fill the memory
             self.__dict__.pop("refined", None)
         return peak
@@ -400,6 +403,10 @@ class State(ReadOnly):
     @cached_property
     def _pin_peak(self) -> HoopPeak:
         return states.hoop.hoop_peak(self, "pin")
+
+    @cached_property
+    def _seat_peak(self) -> HoopPeak:
+        return states.hoop.hoop_peak(self, "seat")
 
     @property
     def displacement(self) -> dict[str, float]:

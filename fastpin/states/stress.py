@@ -9,18 +9,21 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, press_fit_hoop
+from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, press_fit_hoop, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.bodies import Disk, Plate
-from fastpin.model.checks import choice, instance
+from fastpin.model.checks import instance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material
-from fastpin.model.points import BODIES, ROUNDING, Body, Points
+from fastpin.model.points import ROUNDING, Body, Points, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.states.zones import runs, unrolled
+
+NEGLIGIBLE = 1e-9
+"""A nominal stress below this part of the peak is rounding: there is no concentration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ class Stress:
 
 @dataclass(frozen=True)
 class HoopPeak:
-    """The largest hoop stress round the hole or the pin, and the stresses of the joint.
+    """The largest hoop stress round the hole, the pin or the seat of a bush, and the stresses of the joint.
 
     Attributes
     ----------
@@ -106,7 +109,7 @@ class HoopPeak:
         earlier border, or at an earlier border itself; also if less than 40 nodes are in contact. The value may then be
         off by some 10 %.
     bearing_stress : float
-        Force on the pin over the projected area, F/(2 R), Pa.
+        Force on the pin over the projected area, F/(2 R), Pa; at the seat of a bush with the radius of the seat.
     gross_stress : float
         Principal remote stress of largest magnitude, with its sign, Pa; 0 for the pin. The own loads of a compliance
         count as remote stresses.
@@ -114,8 +117,14 @@ class HoopPeak:
         Hoop stress of the open hole under the remote stress at the same place, Pa; 0 for the pin. The hole is that of
         the problem's plate: of a ring, of a bush, or of a compliance under its own loads.
     press_fit : float
-        Hoop stress that the press fit of a bush leaves at the hole, Pa; 0 without a bush, and for the pin. It is in the
+        Hoop stress that the press fit of a bush leaves at the edge, Pa; 0 without a bush, and for the pin. It is in the
         peak, but in no concentration by parts: no load causes it.
+    net_stress : float
+        Force on the pin over the net section, F/(W - D), Pa. W is the outer diameter of a ring, and D the diameter of
+        the ring's own hole. 0 for any other plate, for the pin, and for the bush in a ring.
+
+    A ratio is NaN if its nominal stress is zero or rounding. It is NaN too if a press fit keeps the whole edge in
+    compression.
     """
 
     value: float
@@ -125,16 +134,22 @@ class HoopPeak:
     gross_stress: float
     bypass: float
     press_fit: float = 0.0
+    net_stress: float = 0.0
 
     @property
     def kt_gross(self) -> float:
         """The peak over the gross remote stress; NaN without remote stress."""
-        return _over(self.value, self.gross_stress)
+        return self._over(self._concentrated, self.gross_stress)
 
     @property
     def kt_bearing(self) -> float:
         """The peak over the bearing stress; NaN without a force on the pin."""
-        return _over(self.value, self.bearing_stress)
+        return self._over(self._concentrated, self.bearing_stress)
+
+    @property
+    def kt_net(self) -> float:
+        """The peak over the net-section stress, as handbooks of lugs have it; NaN without a ring or a force."""
+        return self._over(self._concentrated, self.net_stress)
 
     @property
     def kt_bypass_part(self) -> float:
@@ -142,16 +157,21 @@ class HoopPeak:
 
         peak = kt_bypass_part * gross_stress + kt_bearing_part * bearing_stress + press_fit.
         """
-        return _over(self.bypass, self.gross_stress)
+        return self._over(self.bypass, self.gross_stress)
 
     @property
     def kt_bearing_part(self) -> float:
         """The rest of the peak, which the pin causes, over the bearing stress; NaN without a force on the pin."""
-        return _over(self.value - self.bypass - self.press_fit, self.bearing_stress)
+        return self._over(self.value - self.bypass - self.press_fit, self.bearing_stress)
 
+    @property
+    def _concentrated(self) -> float:
+        """The peak; NaN where a press fit keeps the whole edge in compression: no stress is concentrated there."""
+        return math.nan if self.press_fit < 0.0 and self.value < 0.0 else self.value
 
-def _over(one: float, other: float) -> float:
-    return one / other if other != 0.0 else math.nan
+    def _over(self, stress: float, nominal: float) -> float:
+        """A stress over a nominal stress; NaN if the nominal stress is zero or rounding beside the peak."""
+        return stress / nominal if abs(nominal) > NEGLIGIBLE * abs(self.value) else math.nan
 
 
 def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np.ndarray) -> Tractions:
@@ -168,16 +188,18 @@ def tractions_of(grid: Grid, status: np.ndarray, pressure: np.ndarray, shear: np
 
 
 def check_body(problem: Problem, body: Body) -> Material:
-    """The material of a body that has a stress: of the plate the material at the hole, which may be a bush.
+    """The material at the edge of a body that has a stress.
 
     Raises
     ------
     InputError
-        If `body` is no body, or the body is rigid.
+        If the problem has no such body, or the body is rigid.
     """
-    material: Material = getattr(problem.surfaces, choice("body", body, BODIES))
+    material = material_of(problem, body)
     if material.is_rigid:
-        raise InputError("body", f"the {body} is rigid: its stress is not determined")
+        raise InputError(
+            "body", f"the {'plate round the bush' if body == 'seat' else body} is rigid: its stress is not determined"
+        )
     return material
 
 
@@ -192,12 +214,14 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     if body == "pin" and problem.pin_load == "centre" and isinstance(problem.pin_body, Disk) and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")
     ratio: float | np.ndarray = material.nu
-    if body == "plate":
-        ratio = _ratios_in_plate(problem, theta, depth)
-        remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
-        components = plate_stress(problem, tractions, remote, theta, depth)
-    else:
+    if body == "pin":
         components = pin_stress(problem, tractions, theta, depth)
+    else:
+        _check_reaction(problem, theta, near_rim(problem, body) + depth)
+        ratio = ratio if body == "seat" else _ratios_in_plate(problem, depth)
+        remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
+        stress = seat_stress if body == "seat" else plate_stress
+        components = stress(problem, tractions, remote, theta, depth)
     radial, hoop, shear = (component.reshape(points.shape) for component in components)
     axial = np.zeros(points.shape)
     if problem.surfaces.plane == "strain":
@@ -205,31 +229,38 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     return Stress(points.theta, radial, hoop, shear, axial)
 
 
-def _ratios_in_plate(problem: Problem, theta: np.ndarray, depth: np.ndarray) -> float | np.ndarray:
+def _check_reaction(problem: Problem, theta: np.ndarray, radius: np.ndarray) -> None:
+    """Refuse points of the plate, at these radii over R, at which a reaction acts."""
+    lug = problem.joint.lug
+    if isinstance(lug, Plate) and lug.reaction is not None:
+        place = complex(*lug.reaction) / problem.hole_radius
+        if np.any(np.abs(radius * np.exp(1j * theta) - place) < ROUNDING * abs(place)):
+            raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
+
+
+def _ratios_in_plate(problem: Problem, depth: np.ndarray) -> float | np.ndarray:
     """Poisson's ratio at points of the plate, or one for all.
 
     Raises
     ------
     InputError
-        If the plate beyond a bush is rigid, or a reaction acts at a point.
+        If a point lies beyond a bush, and the plate there is rigid.
     """
-    joint = problem.joint
-    if isinstance(joint.lug, Plate) and joint.lug.reaction is not None:
-        place = complex(*joint.lug.reaction) / problem.hole_radius
-        if np.any(np.abs((1.0 + depth) * np.exp(1j * theta) - place) < ROUNDING * abs(place)):
-            raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
     beyond = is_beyond_bush(problem, depth)
     if not beyond.any():
         return problem.surfaces.plate.nu
-    if joint.pair.plate.is_rigid:
+    if problem.pair.plate.is_rigid:
         raise InputError("points", "the plate round the bush is rigid: its stress is not determined")
-    return np.where(beyond, joint.pair.plate.nu, problem.surfaces.plate.nu)
+    return np.where(beyond, problem.pair.plate.nu, problem.surfaces.plate.nu)
 
 
-def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float) -> float:
-    """Hoop stress of the open hole under a remote stress (sxx, syy, sxy) at an angle, Pa, without a press fit."""
+def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float, body: Body = "plate") -> float:
+    """Hoop stress of the open hole under a remote stress (sxx, syy, sxy) at an angle, Pa, without a press fit.
+
+    It is that on the edge of the `body` "plate" or "seat".
+    """
     if isinstance(problem.plate_body, Plate):
         sxx, syy, sxy = (float(value) for value in remote)
         return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
-    whole = plate_stress(problem, Tractions(()), remote, np.array([angle]), np.zeros(1))
-    return float(whole[1, 0]) - press_fit_hoop(problem)
+    stress, place = seat_stress if body == "seat" else plate_stress, (np.array([angle]), np.zeros(1))
+    return float(stress(problem, Tractions(()), remote, *place)[1, 0]) - press_fit_hoop(problem, body)

@@ -24,6 +24,7 @@ import numpy as np
 from fastpin.errors import FastpinError, InputError, printable
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import number
+from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.quantities import QUANTITIES, size
@@ -44,12 +45,21 @@ SPANS = ("history", "cycle")
 ROUNDING = 1e-9
 """Largest slip range without slip, in parts of the natural size of displacements."""
 
-SWT, FATEMI_SOCIE = "smith-watson-topper", "fatemi-socie"
+CRITERIA_KINDS = {
+    "smith-watson-topper": "stress times strain",
+    "fatemi-socie": "rotation",
+    "findley": "traction",
+    "crossland": "traction",
+    "dang-van": "traction",
+}
+"""The kinds of the parameters of fatigue, see :class:`CycleQuantity`, by criterion."""
+
+WITH_LIFE = ("smith-watson-topper", "fatemi-socie")
 """The criteria of fatigue that have a life."""
 
 _PACKAGE = Path(__file__).parents[1]
 
-_HOT_SPOTS: WeakKeyDictionary[Result, dict[str, HotSpot]] = WeakKeyDictionary()
+_HOT_SPOTS: WeakKeyDictionary[Result, dict[tuple[str, Body], HotSpot]] = WeakKeyDictionary()
 
 
 class CycleQuantity(NamedTuple):
@@ -71,6 +81,17 @@ class CycleQuantity(NamedTuple):
     classes: Mapping[int, str] = MappingProxyType({})
 
 
+def _hot_spot_quantities(criterion: str, body: Body) -> dict[str, CycleQuantity]:
+    """Parameter, angle and, if the criterion has one, life at the hot spot of a body, by the end of their names."""
+    found = {
+        "": CycleQuantity(CRITERIA_KINDS[criterion], lambda result: _hot_spot(result, criterion, body).parameter),
+        "_angle": CycleQuantity("angle", lambda result: _hot_spot(result, criterion, body).theta),
+    }
+    if criterion in WITH_LIFE:
+        found["_life"] = CycleQuantity("life", lambda result: _life(result, criterion, body))
+    return {ending if body == "plate" else f"{ending}_{body}": quantity for ending, quantity in found.items()}
+
+
 CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     "dissipation": CycleQuantity("energy", lambda result: result.cycles[-1].dissipation),
     "rotation_change": CycleQuantity("rotation", lambda result: result.cycles[-1].rotation_change),
@@ -80,25 +101,20 @@ CYCLE_QUANTITIES: dict[str, CycleQuantity] = {
     "largest_slip_range_angle": CycleQuantity("angle", lambda result: _slip_range(result)[1]),
     "largest_friction_energy": CycleQuantity("energy density", lambda result: _friction_energy(result)[0]),
     "largest_friction_energy_angle": CycleQuantity("angle", lambda result: _friction_energy(result)[1]),
-    "smith_watson_topper": CycleQuantity("stress times strain", lambda result: _hot_spot(result, SWT).parameter),
-    "smith_watson_topper_angle": CycleQuantity("angle", lambda result: _hot_spot(result, SWT).theta),
-    "smith_watson_topper_life": CycleQuantity("life", lambda result: _life(result, SWT)),
-    "fatemi_socie": CycleQuantity("rotation", lambda result: _hot_spot(result, FATEMI_SOCIE).parameter),
-    "fatemi_socie_angle": CycleQuantity("angle", lambda result: _hot_spot(result, FATEMI_SOCIE).theta),
-    "fatemi_socie_life": CycleQuantity("life", lambda result: _life(result, FATEMI_SOCIE)),
-    "findley": CycleQuantity("traction", lambda result: _hot_spot(result, "findley").parameter),
-    "findley_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "findley").theta),
-    "crossland": CycleQuantity("traction", lambda result: _hot_spot(result, "crossland").parameter),
-    "crossland_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "crossland").theta),
-    "dang_van": CycleQuantity("traction", lambda result: _hot_spot(result, "dang-van").parameter),
-    "dang_van_angle": CycleQuantity("angle", lambda result: _hot_spot(result, "dang-van").theta),
+    **{
+        f"{criterion.replace('-', '_')}{ending}": quantity
+        for body in ("plate", "seat")
+        for criterion in CRITERIA_KINDS
+        for ending, quantity in _hot_spot_quantities(criterion, body).items()
+    },
     "regime": CycleQuantity("class", lambda result: _regime(result), REGIMES),
 }
 """The quantities of the last cycle, by name.
 
 The first four are those of :class:`fastpin.states.cycles.Cycle`. The next four are the largest values of a node in
 :class:`fastpin.states.LoadCycle`. "regime" is :attr:`fastpin.states.LoadCycle.regime`. The others belong to the hot
-spot on the edge of the plate, see :func:`fastpin.damage.fatigue`.
+spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that end with "_seat", such as
+"smith_watson_topper_life_seat", belong to the plate round a bush, at the seat of the bush.
 """
 
 
@@ -363,20 +379,22 @@ def _friction_energy(result: Result) -> tuple[float, float]:
     return float(cycle.friction_energy.max()), cycle.angle_of_largest(cycle.friction_energy)
 
 
-def _hot_spot(result: Result, criterion: str) -> HotSpot:
-    """The hot spot on the edge of the plate. It is kept while the result lives: several outcomes read it."""
+def _hot_spot(result: Result, criterion: str, body: Body) -> HotSpot:
+    """The hot spot on the edge of a body. It is kept while the result lives: several outcomes read it."""
     found = _HOT_SPOTS.setdefault(result, {})
-    if criterion not in found:
+    if (criterion, body) not in found:
         _states_of_cycle(result)
-        found[criterion] = result.fatigue(criterion).hot_spot
-    return found[criterion]
+        found[criterion, body] = result.fatigue(criterion, body).hot_spot
+    return found[criterion, body]
 
 
-def _life(result: Result, criterion: str) -> float:
+def _life(result: Result, criterion: str, body: Body) -> float:
     """The life at the hot spot, cycles; NaN if it is infinite."""
-    life = _hot_spot(result, criterion).life
+    life = _hot_spot(result, criterion, body).life
     if math.isnan(life):
-        raise FastpinError(f"the plate's material has no constants for a life by {criterion}")
+        raise FastpinError(
+            f"the {owner_of(result.problem, body)}'s material has no constants for a life by {criterion}"
+        )
     return life if math.isfinite(life) else math.nan
 
 

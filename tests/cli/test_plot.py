@@ -98,7 +98,7 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         ),
         (["map", "--extent", "0.5"], "--extent: must be above 1 and at most 100 radii, not 0.5"),
         (["map", "--component", "x"], "--component: must be "),
-        (["profile", "--body", "both"], '--body: must be "plate" or "pin"'),
+        (["profile", "--body", "both"], '--body: must be "plate", "pin" or "seat"'),
         (["fatigue", "--criterion", "crossland"], "crossland needs bending_limit, torsion_limit of the plate"),
         (["hoop", "-o", "hoop.txt"], "--output: must be the name of a figure, which ends in .png, .pdf or .svg, not"),
     ],

@@ -6,7 +6,7 @@ import pytest
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
 from fastpin.damage import fatigue
 from fastpin.figures.load_cycle import area_doubt
-from fastpin.model import Bushing, Ring, Tube
+from fastpin.model import Bushing, FatigueConstants, Ring, Tube
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 
 
@@ -81,9 +81,35 @@ def test_the_edge_of_the_hole_may_be_that_of_a_bush():
     bush = Bushing(MATERIALS["2024-T3"], 12e-3, 10e-6)
     joint = solve(Problem(pair, 10e-3, 20e-6, 0.3, plate_body=bush), [{"P": 1e6}, {"P": 5e5}], nodes=61)
     labels = [panel.get_ylabel() for panel in figures.plot_hoop_stress(joint).axes]
-    assert labels == ["hoop stress of the bush (MPa)", "hoop stress of the pin (MPa)"]
+    seat = "hoop stress of the plate\nat the seat (MPa)"
+    assert labels == ["hoop stress of the bush (MPa)", seat, "hoop stress of the pin (MPa)"]
     assert "below the edge of the bush" in figures.plot_stress_profile(joint).get_suptitle()
     assert figures.plot_fatigue(fatigue(joint, "smith-watson-topper")).get_suptitle() == "bush, on the edge"
+
+
+def test_fatigue_of_bush_and_seat_share_the_panels():
+    constants = FatigueConstants(
+        fatigue_strength=1317e6, strength_exponent=-0.126, fatigue_ductility=0.19, ductility_exponent=-0.52
+    )
+    pair = MaterialPair(MATERIALS["steel"], Material(71e9, 0.33, fatigue=constants))
+    bush = Bushing(Material(103e9, 0.34), 12.5e-3, 40e-6)
+    joint = solve(Problem(pair, 10e-3, 60e-6, 0.3, plate_body=bush), [{"P": 1e6}, {"P": 5e5}], nodes=61)
+    found = [fatigue(joint, "smith-watson-topper", body) for body in ("plate", "seat")]
+    figure = figures.plot_fatigue(found)
+    assert figure.get_suptitle() == "bush, on the edge; plate at the seat, on the edge"
+    parameter, life = figure.axes
+    assert [len(curve.get_ydata()) for curve in parameter.lines[:2]] == [one.theta.size for one in found]
+    assert len(life.lines) == 1
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "bush: the parameter is 0 everywhere: no crack is expected" in words
+    assert any(each.startswith("plate at the seat: hot spot at ") for each in words)
+    # alone, an axis without a scale
+    (panel,) = figures.plot_fatigue(found[0]).axes
+    assert panel.get_yticks().tolist() == [0.0]
+    other = fatigue(joint, "crossland", "seat", constants=FatigueConstants(bending_limit=1e8, torsion_limit=7e7))
+    for wrong, reason in (([found[0], other], "one problem and one criterion"), ([], "not an empty list")):
+        with pytest.raises(InputError, match=reason):
+            figures.plot_fatigue(wrong)
 
 
 def test_a_point_force_does_not_set_the_colours_of_a_map():
@@ -228,8 +254,8 @@ def test_fatigue_along_the_edge(result):
     ("draw", "message"),
     [
         (lambda r: figures.plot_hoop_stress([]), "states: there is no state"),
-        (lambda r: figures.plot_hoop_stress(r, body="hub"), 'body: must be "plate", "pin" or "both"'),
-        (lambda r: figures.plot_stress_profile(r, body="both"), 'body: must be "plate" or "pin"'),
+        (lambda r: figures.plot_hoop_stress(r, body="hub"), 'body: must be "plate", "pin", "seat" or "both"'),
+        (lambda r: figures.plot_stress_profile(r, body="both"), 'body: must be "plate", "pin" or "seat"'),
         (lambda r: figures.plot_stress_profile(r, depth=0.0), "depth: must be above 0"),
         (lambda r: figures.plot_stress_profile(r, angle="a"), "angle: must be a number"),
         (lambda r: figures.plot_stress_field(r.states), "state: must be a State"),

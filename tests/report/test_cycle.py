@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from fastpin.model.angles import from_bottom
+from fastpin.model.bodies import Bushing
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.report.cycle import MOST_STOPS, cycle_line, document, fatigue_line, write_csv
+from fastpin.report.cycle import MOST_STOPS, cycle_line, document, fatigue_lines, write_csv
 from fastpin.report.states import cycle_lines
 from fastpin.report.summary import json_ready
 from fastpin.solver.result import Result
@@ -75,7 +77,7 @@ def in_sheet(fatigue: FatigueConstants | None, **options: object) -> Result:
 def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
     result = in_sheet(MATERIALS["2024-T3"].fatigue)
     spot = result.fatigue("smith-watson-topper").hot_spot
-    line = fatigue_line(result.states, result.cycles[-1])
+    (line,) = fatigue_lines(result.states, result.cycles[-1])
     assert line.startswith("fatigue of the plate in the last cycle, Smith-Watson-Topper: ")
     assert f"{spot.parameter / 1e3:.4g} kPa at {from_bottom(spot.theta):z.2f} deg" in line
     assert f"normal of the plane {spot.plane * 57.29577951308232:z.2f} deg from +x" in line
@@ -84,8 +86,23 @@ def test_the_fatigue_of_the_plate_is_told_with_plane_and_life() -> None:
 
 def test_fatigue_is_told_without_a_life_if_constants_for_it_are_missing() -> None:
     result = in_sheet(FatigueConstants(yield_strength=3e8))
-    assert "life" not in fatigue_line(result.states, result.cycles[-1])
-    assert "Smith-Watson-Topper" in fatigue_line(result.states, result.cycles[-1])
+    assert "life" not in fatigue_lines(result.states, result.cycles[-1])[0]
+    assert "Smith-Watson-Topper" in fatigue_lines(result.states, result.cycles[-1])[0]
+
+
+def test_fatigue_of_bush_and_plate_is_told_if_they_have_constants() -> None:
+    known, bronze = MATERIALS["2024-T3"].fatigue, Material(103e9, 0.34)
+    history = LoadHistory([{"P": 1e6}, {"P": 2e5}]).repeated(2)
+    for bush, bodies in (
+        (bronze, ["plate at the seat"]),
+        (replace(bronze, fatigue=known), ["bush", "plate at the seat"]),
+    ):
+        pair = MaterialPair(MATERIALS["steel"], Material(70e9, 0.33, "", known))
+        result = solve(Problem(pair, 0.01, 2e-5, 0.4, plate_body=Bushing(bush, 0.0125)), history, nodes=61)
+        lines = fatigue_lines(result.states, result.cycles[-1])
+        assert [line.partition(" in the last")[0] for line in lines] == [f"fatigue of the {body}" for body in bodies]
+        spot = result.fatigue("smith-watson-topper", "seat").hot_spot
+        assert lines[-1].endswith(f", life {spot.life:.3g} cycles")
 
 
 def test_rotation_of_a_symmetric_cycle_is_rounding() -> None:
@@ -99,10 +116,10 @@ def test_rotation_of_a_symmetric_cycle_is_rounding() -> None:
 
 def test_no_fatigue_is_told_without_constants_or_states() -> None:
     bare = in_sheet(None)
-    assert fatigue_line(bare.states, bare.cycles[-1]) == ""
+    assert fatigue_lines(bare.states, bare.cycles[-1]) == []
     result = in_sheet(MATERIALS["2024-T3"].fatigue, between=60)
     assert len(result.cycle().states) > MOST_STOPS
-    assert fatigue_line(result.states, result.cycles[-1]) == ""
+    assert fatigue_lines(result.states, result.cycles[-1]) == []
     corners = [state for state in result if state.fraction == 1.0]
-    assert fatigue_line(corners, result.cycles[-1]) != ""
-    assert fatigue_line(corners[:-1], result.cycles[-1]) == ""
+    assert fatigue_lines(corners, result.cycles[-1])
+    assert fatigue_lines(corners[:-1], result.cycles[-1]) == []

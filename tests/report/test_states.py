@@ -73,6 +73,6 @@ def test_no_hoop_stress_is_told_of_a_rigid_plate_or_without_contact() -> None:
 def test_repeated_states_are_looked_at_once(states: list[State], monkeypatch: pytest.MonkeyPatch) -> None:
     copies = [replace(state) for state in states] * 5
     line, looked, peak = hoop_line(states[0].problem, states), [], State.peak_hoop_stress
-    monkeypatch.setattr(State, "peak_hoop_stress", lambda state: looked.append(state) or peak(state))
+    monkeypatch.setattr(State, "peak_hoop_stress", lambda state, body: looked.append(state) or peak(state, body))
     assert hoop_line(states[0].problem, copies) == line
     assert len({id(state) for state in looked}) == len(states)

@@ -195,6 +195,9 @@ def test_maps_end_at_the_rims():
 # --- fatigue ---------------------------------------------------------------------------------------------------
 
 
+BRONZE_BUSH = Bushing(Material(1.5e11, 0.34), 0.0125)
+
+
 def test_fatigue_takes_the_constants_of_the_bush():
     constants = FatigueConstants(bending_limit=5e8, torsion_limit=3e8)
     bush = Bushing(Material(1.5e11, 0.34, fatigue=constants), 0.0125, interference=1e-6)
@@ -203,12 +206,14 @@ def test_fatigue_takes_the_constants_of_the_bush():
     states = solve(Problem(pair, 0.01, 3e-5, 0.3, plate_body=bush), history, nodes=101, arc=ARC)
     found = fatigue(states, "crossland")
     assert found.limit is not None
-    words = "points: must lie in the bush: the fatigue constants of the plate are those of its bush"
     assert fatigue(states, "crossland", points=Points.at_radius(0.0125, 0.0)).parameter.shape == ()
     with pytest.raises(InputError) as caught:
         fatigue(states, "crossland", points=Points.at_radius([0.012, 0.013], 0.0))
-    assert str(caught.value) == words
+    assert str(caught.value) == "fatigue: crossland needs bending_limit, torsion_limit of the plate's material"
+    bare = solve(Problem(pair, 0.01, 3e-5, 0.3, plate_body=BRONZE_BUSH), history, nodes=101, arc=ARC)
+    with pytest.raises(InputError, match="crossland needs bending_limit, torsion_limit of the bush's material"):
+        fatigue(bare, "crossland")
     with pytest.raises(InputError) as caught:
         fatigue_at_distance(states, "crossland", "line", theta=-1.0, length=0.002)
-    assert str(caught.value) == words
+    assert str(caught.value) == "length: 0.002 reaches beyond the bush: a mean over two materials has no meaning"
     assert fatigue_at_distance(states, "crossland", "line", theta=-1.0, length=0.001).parameter > 0.0

@@ -348,7 +348,7 @@ def test_contacts_round_the_circle_and_across_its_end():
         (Points.at_radius(0.9, 0.0), "plate", "radius: must be at least the hole's radius of 1 in the plate"),
         (Points.at_radius(1.1, 0.0), "pin", "radius: must be at most the hole's radius of 1 in the pin"),
         (Points.at_depth(1.1, 0.0), "pin", "depth: must be at most the radius of 1 in the pin"),
-        (Points.at_radius(1.1, 0.0), "hub", 'body: must be "plate" or "pin"'),
+        (Points.at_radius(1.1, 0.0), "hub", 'body: must be "plate", "pin" or "seat"'),
         ([1.0, 2.0], "plate", "points: must be fastpin.Points"),
     ],
 )

@@ -54,6 +54,21 @@ def result() -> Result:
     return fastpin.solve(problem(), HISTORY, nodes=61, slip_sums=True)
 
 
+def test_outcomes_at_the_seat_of_a_bush(result: Result) -> None:
+    bush = fastpin.model.Bushing(fastpin.Material(103e9, 0.34, "", CONSTANTS), 3e-3, 5e-6)
+    history = fastpin.LoadHistory([{"P": 4e5}, {"P": 1e5}]).repeated(2)
+    bushed = fastpin.solve(problem(plate_body=bush), history, nodes=61)
+    for criterion in CRITERIA:
+        found = bushed.fatigue(criterion.replace("_", "-"), "seat").hot_spot
+        assert value_of(outcome(f"{criterion}_seat"), bushed).value == found.parameter
+        assert value_of(outcome(f"{criterion}_angle_seat"), bushed).value == found.theta
+        if f"{criterion}_life_seat" in CYCLE_QUANTITIES:
+            assert value_of(outcome(f"{criterion}_life_seat"), bushed).value == found.life
+        assert found.parameter != bushed.fatigue(criterion.replace("_", "-")).hot_spot.parameter
+    reason = value_of(outcome("findley_seat"), result).reason
+    assert reason == 'body: "seat" is the edge of the plate round a bush; this plate has no bush'
+
+
 def outcome(name: str) -> Outcome:
     return outcomes_from({"it": {"cycle": name}})["it"]
 
