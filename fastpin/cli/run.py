@@ -29,12 +29,14 @@ from fastpin.cli.terminal import (
 )
 from fastpin.errors import InputError
 from fastpin.model.case import Case, check_keep
-from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.model.doubts import has_strengths, pressure_doubts, warn_of
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
+from fastpin.states.state import State
+from fastpin.states.yielding import worst_states, yield_doubts
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -271,6 +273,8 @@ def _write_result(
     """
     code, error = _report_end(case, options, result, ended)
     warn_of(pressure_doubts(case.problem, case.history, _pressures(options, result)), 2)
+    if has_strengths(case.problem):
+        warn_of(yield_doubts(case.problem, case.history, _worst(options, result)), 2)
     cycle = _known_cycle(case, options, result, part)
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
@@ -300,6 +304,13 @@ def _pressures(options: argparse.Namespace, result: solver.Result | None) -> Ite
     if result is None or options.output is None:
         return (state.pressure for state in result or ())
     return [np.array([storage.largest_pressure(options.output)])]
+
+
+def _worst(options: argparse.Namespace, result: solver.Result | None) -> Iterable[State]:
+    """Return the states that are likely to have the largest stresses."""
+    if result is None or options.output is None:
+        return worst_states(() if result is None else result.states)
+    return storage.load(options.output, storage.worst_stored(options.output))
 
 
 def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:

@@ -15,6 +15,7 @@ import math
 import operator
 import warnings
 from collections.abc import Iterable, Iterator
+from contextvars import ContextVar
 
 import numpy as np
 
@@ -87,6 +88,18 @@ MOST_ANGLE = 4.0 * math.pi
 LEAST_STRENGTH = 1e-5
 """Strength in parts of Young's modulus, below which it is probably in MPa: a pure soft metal yields at 1e-4."""
 
+EDGES = {
+    "hole": ("plate", "at the hole of the plate"),
+    "bore of the bush": ("bush", "in the bore of the bush"),
+    "rim of the bush": ("bush", "on the outer rim of the bush"),
+    "seat": ("plate", "of the plate at the seat of the bush"),
+    "pin": ("pin", "on the surface of the pin"),
+    "bore of the pin": ("pin", "in the bore of the pin"),
+}
+"""Edges of the bodies: the name of the body, and words for the place."""
+
+_GIVEN: ContextVar[bool] = ContextVar("given", default=False)
+
 _STRENGTHS = (
     "yield_strength", "fatigue_strength", "shear_fatigue_strength", "bending_limit", "torsion_limit", "limit_range",
 )  # fmt: skip
@@ -105,7 +118,10 @@ def doubts(
         if abs(angle) > MOST_ANGLE:
             found.append(InputWarning("arc", f"{angle:g} rad is more than two turns; angles are in rad"))
     if has_units:
-        found += _of_sizes(problem)
+        by_sizes = [*_of_sizes(problem)]
+        found += by_sizes
+        if not {"clearance", "interference"} & {doubt.field for doubt in by_sizes}:
+            found += _of_assembly(problem)
         by_loads = [] if history is None else [*_of_loads(problem, history)]
         found += by_loads
         if all(doubt.field != "E" for doubt in by_loads):
@@ -124,7 +140,7 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
     pressures : iterable of ndarray, shape (n,)
         Contact pressures at the nodes of each state, Pa. An array that comes again is looked at once.
     """
-    if problem.dimensionless or max(_strains(problem, history.largest).values(), default=0.0) > MOST_STRAIN:
+    if not are_loads_plausible(problem, history):
         return []
     found = []
     distinct = {id(pressure): pressure for pressure in pressures}
@@ -150,6 +166,41 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
     return found
 
 
+def are_loads_plausible(problem: Problem, history: LoadHistory) -> bool:
+    """Whether stresses can be compared with strengths: there are units, and the loads do not strain bodies by 0.1."""
+    return not problem.dimensionless and max(_strains(problem, history.largest).values(), default=0.0) <= MOST_STRAIN
+
+
+def has_strengths(problem: Problem) -> bool:
+    """Whether the yield strength of a body is known."""
+    return any(material.known_yield_strength is not None for _, material in _materials(problem))
+
+
+def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> InputWarning | None:
+    """A warning if the von Mises `stress`, Pa, at an edge of :data:`EDGES` exceeds the yield strength there.
+
+    `where` tells the angle and the load, for example "before any load".
+    """
+    name, words = EDGES[edge]
+    material = dict(_materials(problem))[name]
+    strength = material.known_yield_strength
+    if strength is None or not stress > strength >= LEAST_STRENGTH * material.E:
+        return None
+    return InputWarning(
+        "von Mises stress",
+        f"{_mega(stress)} {words}, {where}, is above the yield strength {_mega(strength)} of the {name}; "
+        f"fastpin is elastic, but a real {name} yields there",
+    )
+
+
+def _of_assembly(problem: Problem) -> Iterator[InputWarning]:
+    """Doubts about the stresses of press fits, before any load."""
+    for edge, stress in problem.joint.assembly_stresses(problem.assembled_clearance).items():
+        found = yield_doubt(problem, edge, stress, "before any load")
+        if found is not None:
+            yield found
+
+
 def warn_of(found: Iterable[InputWarning], stacklevel: int) -> None:
     """Give warnings. `stacklevel` counts the calls up to the line of the user, as for :func:`warnings.warn`."""
     for doubt in found:
@@ -159,9 +210,18 @@ def warn_of(found: Iterable[InputWarning], stacklevel: int) -> None:
 @contextlib.contextmanager
 def doubts_given() -> Iterator[None]:
     """Within, no doubts are given: they were given before, for the whole study of many runs."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", InputWarning)
-        yield
+    token = _GIVEN.set(True)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputWarning)
+            yield
+    finally:
+        _GIVEN.reset(token)
+
+
+def are_given() -> bool:
+    """Whether this is within :func:`doubts_given`. Doubts that take long are not looked for there."""
+    return _GIVEN.get()
 
 
 def _has_units(problem: Problem) -> bool:

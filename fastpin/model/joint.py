@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -13,10 +13,46 @@ from fastpin.kernels import harmonics
 from fastpin.kernels.harmonics import FREE, HELD, First
 from fastpin.model.bodies import Bushing, PinBody, Plate, PlateBody, Ring, Tube
 from fastpin.model.compliance import Compliance
-from fastpin.model.materials import MaterialPair
+from fastpin.model.materials import MaterialPair, Plane
 
 PinLoad = Literal["centre", "body"]
 """Kinds of load of a solid pin."""
+
+
+class Uniform(NamedTuple):
+    """Stresses under pressure all round (Lame): s_rr = mean + decaying/r^2, s_tt = mean - decaying/r^2, Pa.
+
+    The radius counts in units of the radius at which the pressure is given.
+    """
+
+    mean: float
+    decaying: float
+
+    @classmethod
+    def of_rim(cls, radial: float, compliance: float, kolosov: float) -> Uniform:
+        """The stresses under s_rr = `radial` at r = 1, where 2G u_r/r is `compliance` times as large."""
+        mean = 2.0 * radial * (1.0 + compliance) / (kolosov + 1.0)
+        return cls(mean, radial - mean)
+
+    @classmethod
+    def of_press_fit(cls, pressure: float, outer: float) -> Uniform:
+        """The stresses of a ring, 1 <= r <= `outer`, under a pressure on its outer rim."""
+        mean = -pressure / ((1.0 - 1.0 / outer) * (1.0 + 1.0 / outer))
+        return cls(mean, -mean)
+
+    def __add__(self, other: object) -> Uniform:
+        assert isinstance(other, Uniform)
+        return Uniform(self.mean + other.mean, self.decaying + other.decaying)
+
+    def radial(self, radius: float) -> float:
+        """s_rr at a radius."""
+        return self.mean + self.decaying / radius**2
+
+    def von_mises(self, radius: float, nu: float, plane: Plane) -> float:
+        """The von Mises stress at a radius."""
+        one, other = self.radial(radius), self.mean - self.decaying / radius**2
+        third = nu * (one + other) if plane == "strain" else 0.0
+        return math.sqrt(0.5 * ((one - other) ** 2 + (other - third) ** 2 + (third - one) ** 2))
 
 
 @dataclass(frozen=True)
@@ -116,6 +152,41 @@ class Joint:
         pressure, moved = harmonics.press_fit(inner, bush.plate_kolosov, bush.plate_compliance, -self.lug_uniform)
         relative = body.interference / body.outer_radius
         return pressure * relative, moved * relative * self.radius
+
+    def assembly_stresses(self, clearance: float) -> dict[str, float]:
+        """Von Mises stresses after the press fits, before any load, by the edges of elastic bodies, Pa (Lame).
+
+        `clearance` is that of the pin after a bush was pressed in, m; a negative one presses pin and hole together.
+        The edges are "hole", "bore of the bush", "rim of the bush", "seat", "pin" and "bore of the pin".
+        """
+        squeeze = max(-clearance, 0.0) / self.radius
+        contact = squeeze / self.uniform_compliance if squeeze else 0.0
+        found: dict[str, float] = {}
+        pin, plate = self.pair.pin, self.pair.plate
+        if not pin.is_rigid:
+            rim = harmonics.uniform(self.bore, self.pair.pin_kolosov, self.bore_kind)
+            inside = Uniform.of_rim(-contact, rim, self.pair.pin_kolosov)
+            found["pin"] = inside.von_mises(1.0, pin.nu, self.pair.plane)
+            if self.bore:
+                found["bore of the pin"] = inside.von_mises(self.bore, pin.nu, self.pair.plane)
+        passed = contact
+        if self.bush is not None:
+            bush, unit = self.surfaces.plate, 0.5 * self.surfaces.plate_compliance
+            kolosov = self.surfaces.plate_kolosov
+            whole = harmonics.uniform_of_layer(self.bush, kolosov, 2.0 * unit, self.lug_uniform) / unit
+            inside = Uniform.of_rim(-contact, whole, kolosov) + Uniform.of_press_fit(self.press_fit[0], self.bush)
+            found["bore of the bush"] = inside.von_mises(1.0, bush.nu, self.pair.plane)
+            found["rim of the bush"] = inside.von_mises(self.bush, bush.nu, self.pair.plane)
+            passed = -inside.radial(self.bush)
+        if not plate.is_rigid:
+            unit = 0.5 * self.pair.plate_compliance
+            if isinstance(self.plate_body, Compliance):
+                whole = -1.0 - 2.0 * float(self.plate_body.matrix[0, 0])
+            else:
+                whole = self.lug_uniform / unit
+            around = Uniform.of_rim(-passed, whole, self.pair.plate_kolosov)
+            found["hole" if self.bush is None else "seat"] = around.von_mises(1.0, plate.nu, self.pair.plane)
+        return found
 
     def displacement_compliances(self, hub: float | None, gauge: float | None) -> tuple[float, float]:
         """The compliances g and k of the hub's displacement relative to the gauge circle, in units of beta*; (T29).

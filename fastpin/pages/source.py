@@ -16,6 +16,7 @@ from fastpin import storage
 from fastpin.damage import Fatigue, fatigue
 from fastpin.errors import InputError
 from fastpin.model.case import Case
+from fastpin.model.doubts import has_strengths
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.case import hole_body
@@ -26,6 +27,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
+from fastpin.states.yielding import worst_states
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
 
@@ -64,6 +66,8 @@ class Source:
         The largest of each kind, over all states.
     pressure : float
         The largest pressure at a node over all states, Pa.
+    worst : list of int
+        Places of the states that are likely to have the largest stresses.
     error : str or None
         Why the run ended early.
     path : Path or None
@@ -81,6 +85,7 @@ class Source:
     origin: list[tuple[str, str]]
     residuals: dict[str, float]
     pressure: float
+    worst: list[int]
     error: str | None = None
     path: Path | None = None
     case_text: str = field(default="", repr=False)
@@ -110,8 +115,9 @@ class Source:
             return storage.load(path, states=list(places)).states
 
         largest = storage.largest_residuals(path), storage.largest_pressure(path)
+        worst = storage.worst_stored(path) if has_strengths(case.problem) else []
         error = storage.stored_error(path)
-        return cls(case, result, points, read, origin, *largest, error, path, knows_options="run" in known)
+        return cls(case, result, points, read, origin, *largest, worst, error, path, knows_options="run" in known)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -134,7 +140,8 @@ class Source:
 
         origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
         points = np.array([load_point(state) for state in result])
-        return cls(case, result, points, read, origin, residuals, pressure, error, knows_options=known)
+        worst = [result.states.index(state) for state in worst_states(result.states)]
+        return cls(case, result, points, read, origin, residuals, pressure, worst, error, knows_options=known)
 
     @cached_property
     def initial(self) -> np.ndarray:

@@ -5,6 +5,7 @@ from .layout import versions as versions
 from .origin import largest_pressure as largest_pressure
 from .origin import largest_residuals as largest_residuals
 from .origin import provenance as provenance
+from .origin import worst_stored as worst_stored
 from .recording import record as record
 from .recording import resume as resume
 from .recording import stored_case as stored_case

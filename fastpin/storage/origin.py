@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from fastpin.model.checks import file_path
+from fastpin.states.yielding import worst_places
 from fastpin.storage.damage import text_of
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import open_result
@@ -60,6 +62,23 @@ def largest_pressure(path: str | Path) -> float:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        rows = file["states/pressure"]
-        parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
-        return max((float(part.max(initial=0.0)) for part in parts), default=0.0)
+        return float(_largest_pressures(file).max(initial=0.0))
+
+
+def worst_stored(path: str | Path) -> list[int]:
+    """Return the places in a file of the states of :func:`fastpin.states.yielding.worst_places`.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        return worst_places(file["states/loads"][()], _largest_pressures(file))
+
+
+def _largest_pressures(file: Any) -> np.ndarray:
+    """The largest pressure at a node of each state of an open file, Pa, shape (states,)."""
+    rows = file["states/pressure"]
+    parts = (rows[begin : begin + STATES_AT_ONCE] for begin in range(0, len(rows), STATES_AT_ONCE))
+    return np.concatenate([np.zeros(0), *(part.max(axis=1, initial=0.0) for part in parts)])

@@ -13,11 +13,13 @@ import pytest
 
 import fastpin
 from fastpin.errors import InputError, OutputError
+from fastpin.model import Bushing, Material, MaterialPair
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.pages import album, write_report
 from fastpin.pages.album import Album
-from fastpin.pages.sections import SECTIONS
+from fastpin.pages.content import Facts, Text
+from fastpin.pages.sections import SECTIONS, Shared, case, overview
 from fastpin.pages.source import MOST_DRAWN, Source
 from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
 from fastpin.report.table import MAX_ROWS
@@ -294,6 +296,23 @@ def test_doubtful_values_and_notes_stand_in_the_overview(tmp_path: Path) -> None
     assert re.search(r"Warning: friction: 4 is above 2[^\n]*\.", words)
     assert "Note: the pin snapped 2 times; work does not balance there." in words
     assert "828 MPa" in words  # the yield strength of the pin
+
+
+@pytest.mark.usefixtures("undrawn")
+@pytest.mark.filterwarnings("ignore::fastpin.errors.InputWarning")
+@pytest.mark.parametrize(("interference", "clearance"), [(30e-6, 15e-6), (0.0, -20e-6), (0.0, 40e-6)])
+def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: float) -> None:
+    bush = Bushing(Material(103e9, 0.34, yield_strength=138e6), 12.5e-3, interference)
+    pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))
+    problem = fastpin.Problem(pair, 10e-3, clearance, 0.2, plate_body=bush)
+    page = Shared(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
+    rows = dict(next(part.rows for part in case(page).parts if isinstance(part, Facts)))
+    assert rows["pin radius"] == f"{1e3 * (10e-3 - clearance):.6g} mm"
+    name = "clearance after the press fit / radius" if interference else "clearance / radius"
+    assert rows[name] == f"{problem.assembled_clearance / 10e-3:.4g}"
+    # the press fit that yields stands in the overview
+    notes = [part.words for part in overview(page).parts if isinstance(part, Text)]
+    assert any("in the bore of the bush, before any load" in note for note in notes) == (clearance < 40e-6)
 
 
 @pytest.mark.usefixtures("undrawn")

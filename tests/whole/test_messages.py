@@ -448,16 +448,26 @@ def test_a_pressure_above_the_yield_strength_is_doubted(
         f"peak pressure: {peak / 1e6:.4g} MPa is above the yield strength 100 MPa of the plate; fastpin is elastic, "
         "but a real contact yields there"
     )
-    assert [str(warning.message) for warning in given] == [sentence]
+    said = [str(warning.message) for warning in given]
+    assert said[0] == sentence
+    (mises,) = said[1:]
+    assert re.fullmatch(
+        r"von Mises stress: [\d.]+ MPa at the hole of the plate, at -?[\d.]+ deg, load point \d, is above the yield "
+        "strength 100 MPa of the plate; fastpin is elastic, but a real plate yields there",
+        mises,
+    )
     path, stored = tmp_path / "case.toml", tmp_path / "a.h5"
     with pytest.warns(InputWarning) as given:
         fastpin.record(case.problem, case.history, stored, nodes=51)
-    assert [(str(warning.message), warning.filename) for warning in given] == [(sentence, __file__)]
+    assert [(str(warning.message), warning.filename) for warning in given] == [(each, __file__) for each in said]
     path.write_text(text)
     for command in (["run", str(path)], ["show", str(stored)], ["report", str(stored), "-o", str(tmp_path / "a.html")]):
         assert main(command) == 0
-        assert capsys.readouterr().err == ("" if command[0] == "report" else f"fastpin: warning: {sentence}\n")
-    assert sentence in (tmp_path / "a.html").read_text()
+        printed = "".join(f"fastpin: warning: {each}\n" for each in said)
+        assert capsys.readouterr().err == ("" if command[0] == "report" else printed)
+    page = (tmp_path / "a.html").read_text()
+    assert sentence in page
+    assert mises in page
     higher = dataclasses.replace(case.problem.pair.plate, yield_strength=2.0 * peak)
     problem = dataclasses.replace(case.problem, pair=fastpin.MaterialPair(case.problem.pair.pin, higher))
     assert pressure_doubts(problem, case.history, [result[0].pressure]) == []

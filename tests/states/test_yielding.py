@@ -1,0 +1,130 @@
+"""Warnings about von Mises stresses above yield strengths: closed forms of press fits, and states."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fastpin import LoadHistory, Material, MaterialPair, Points, Problem, solve
+from fastpin.errors import InputWarning
+from fastpin.model import Bushing, Compliance, Disk, Plate, Ring, Tube
+from fastpin.model.doubts import EDGES, doubts, doubts_given
+from fastpin.states.yielding import edges, worst_places, worst_states, yield_doubts
+
+R, SEAT = 10e-3, 12.5e-3
+STEEL, BRONZE, ALUMINIUM = Material(210e9, 0.3), Material(103e9, 0.34), Material(71e9, 0.33)
+BUSH = Bushing(BRONZE, SEAT, 30e-6)
+AROUND = np.linspace(-3.0, 3.0, 9)
+
+
+def compliance():
+    """A plate that widens more than the infinite one under pressure, and is round otherwise."""
+    matrix = np.zeros((26, 26))
+    matrix[0, 0] = 0.1
+    return Compliance(0.33, "strain", R, matrix)
+
+
+PLATES = {
+    "plate": Plate(),
+    "half": Ring(0.02, "half"),
+    "held": Ring(0.02),
+    "bush": BUSH,
+    "bush in a ring": replace(BUSH, inside=Ring(0.025)),
+    "compliance": compliance(),
+}
+PINS = {"disk": Disk(), "tube": Tube(5e-3), "held": Tube(5e-3, "held")}
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+@pytest.mark.parametrize("plate", PLATES)
+@pytest.mark.parametrize("pin", PINS)
+def test_closed_forms_of_press_fits_are_the_stresses_of_an_unloaded_state(pin, plate, plane):
+    """Pin and hole press on one another; 1 N/m changes the stresses by 1e-7."""
+    body = PLATES[plate] if plate != "compliance" else replace(compliance(), plane=plane)
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM, plane), R, -20e-6, 0.3, pin_body=PINS[pin], plate_body=body)
+    state = solve(problem, [{"P": 1.0}], nodes=101)[-1]
+    expected = problem.joint.assembly_stresses(problem.assembled_clearance)
+    assert sorted(expected) == sorted(edge for edge, _, _ in edges(problem))
+    assert max(expected.values()) > 5e7
+    for edge, part, depth in edges(problem):
+        found = state.stress(Points.at_depth(depth, AROUND), part).von_mises
+        assert found == pytest.approx(expected[edge], abs=1e-6 * max(expected.values()))
+
+
+def test_a_pin_with_clearance_has_no_stress_before_loads():
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3)
+    assert set(problem.joint.assembly_stresses(problem.assembled_clearance).values()) == {0.0}
+
+
+def yielding(interference, clearance=40e-6, bush=138e6, plate=503e6, **more):
+    body = Bushing(replace(BRONZE, yield_strength=bush), SEAT, interference)
+    pair = MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=plate))
+    return Problem(pair, R, clearance, 0.15, plate_body=body, **more)
+
+
+def test_a_press_fit_that_yields_is_noticed_before_any_load():
+    assert doubts(yielding(10e-6)) == []
+    problem = yielding(30e-6)
+    stress = problem.joint.assembly_stresses(problem.assembled_clearance)["bore of the bush"] / 1e6
+    found = [str(doubt) for doubt in doubts(problem)]
+    assert found[0] == (
+        f"von Mises stress: {stress:.4g} MPa in the bore of the bush, before any load, is above the yield strength "
+        "138 MPa of the bush; fastpin is elastic, but a real bush yields there"
+    )
+    assert [words.split(",")[0].partition("MPa ")[2] for words in found[1:]] == ["on the outer rim of the bush"]
+    words = [str(doubt) for doubt in doubts(yielding(30e-6, bush=400e6, plate=60e6))]
+    assert len(words) == 1
+    assert "of the plate at the seat of the bush, before any load, is above the yield strength 60 MPa" in words[0]
+
+
+def test_a_pressed_pin_that_yields_is_noticed_before_any_load():
+    pair = MaterialPair(replace(STEEL, yield_strength=30e6), replace(ALUMINIUM, yield_strength=40e6))
+    found = [str(doubt) for doubt in doubts(Problem(pair, R, -20e-6, 0.3, pin_body=Tube(5e-3)))]
+    assert len(found) == 3
+    places = ("on the surface of the pin", "in the bore of the pin", "at the hole of the plate")
+    assert all(any(place in words for words in found) for place in places)
+
+
+HISTORY = [{"P": 1e6}, {"P": 4e6}, {"P": 2e6}]
+
+
+def test_states_that_yield_are_noticed_with_their_places():
+    problem = yielding(10e-6, plate=90e6)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        result = solve(problem, HISTORY, nodes=101)
+    words = [str(each.message) for each in caught if issubclass(each.category, InputWarning)]
+    mises = [each for each in words if each.startswith("von Mises stress")]
+    assert any("of the plate at the seat of the bush, at " in each and "load point 2" in each for each in mises)
+    found = yield_doubts(problem, LoadHistory(HISTORY), worst_states(result.states))
+    assert [str(doubt) for doubt in found] == mises
+    # a finer search finds no more
+    seat = result[1].stress(Points.at_depth(0.0, np.linspace(-np.pi, np.pi, 721)), "seat").von_mises.max() / 1e6
+    (said,) = (each for each in mises if "at the seat" in each)
+    assert float(said.split()[3]) == pytest.approx(seat, rel=1e-3)
+
+
+def test_nothing_is_said_without_a_strength_or_while_doubts_are_given():
+    plain = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3, plate_body=BUSH)
+    states = solve(plain, HISTORY, nodes=101).states
+    assert yield_doubts(plain, LoadHistory(HISTORY), states) == []
+    problem = yielding(10e-6, plate=90e6)
+    with doubts_given():
+        states = solve(problem, HISTORY, nodes=101).states
+        assert yield_doubts(problem, LoadHistory(HISTORY), states) == []
+    assert yield_doubts(problem, LoadHistory(HISTORY), states) != []
+
+
+def test_the_worst_states():
+    loads = np.array([[1.0, 0.0, 0.0], [2.0, -1.0, 0.0], [0.0, 0.5, 0.0], [0.1, 0.0, 0.0]])
+    assert worst_places(loads, np.array([1.0, 2.0, 3.0, 0.0])) == [1, 2]
+    assert worst_places(loads[:0], np.zeros(0)) == []
+
+
+def test_every_edge_has_words():
+    tube = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3, pin_body=Tube(5e-3), plate_body=BUSH)
+    plain = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3)
+    assert {edge for problem in (tube, plain) for edge, _, _ in edges(problem)} == set(EDGES)
