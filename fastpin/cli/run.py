@@ -35,6 +35,7 @@ from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
+from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
 from fastpin.states.state import State
 from fastpin.states.yielding import worst_states, yield_doubts
 
@@ -235,13 +236,14 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
     if options.json is not None:
         return _write_result(case, options, storage.load(options.output), ended)
     points, cycles = storage.load_points(options.output), storage.load(options.output, states=[]).cycles
-    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states)
-    places = set(rows.printed)
+    peaks = marked_places(storage.marked_extremes(options.output))
+    rows = stored_rows(case.problem, points, cycles, lambda places: storage.load(options.output, places).states, peaks)
+    places = {*rows.printed, *peaks}
     if cycles and len(last := range(points.size)[_places(options, cycles[-1])]) <= report.cycle.MOST_STOPS:
         places |= set(last)  # the fatigue over the last cycle is printed
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
-    part = Part(rows, sorted(places)) if len(places) < points.size else None
+    part = Part(rows, sorted(places), list(peaks))
     return _write_result(case, options, storage.load(options.output, states=sorted(places)), ended, part)
 
 
@@ -254,10 +256,13 @@ class Part(NamedTuple):
         The rows of the table.
     places : list of int
         The places of the states that were read, in increasing order.
+    peaks : list of int
+        The places of the extremes that are printed.
     """
 
     rows: TableRows
     places: list[int]
+    peaks: list[int]
 
 
 def _write_result(
@@ -269,7 +274,7 @@ def _write_result(
 ) -> int:
     """Write the files, then print the states, and return the exit code.
 
-    `ended` is the error that ended the run early. `part` tells which states `result` has, if it lacks some.
+    `ended` is the error that ended the run early. `part` tells which states of a file `result` has.
     """
     code, error = _report_end(case, options, result, ended)
     warn_of(pressure_doubts(case.problem, case.history, _pressures(options, result)), 2)
@@ -390,17 +395,18 @@ def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | N
         say("no state was reached" if result is None or not _reached(result) else "none of the states was to be kept")
         return
     if part is None:
-        rows = table_rows(case.problem, result.states)
-        shown = [result.states[place] for place in rows.printed]
+        found = dict(enumerate(result.states))
+        places = list(marked_places(marked_extremes(KeptStates(result.states))))
+        rows = table_rows(case.problem, result.states, wanted=places)
     else:
-        rows, found = part.rows, dict(zip(part.places, result.states, strict=True))
-        shown = [found[place] for place in rows.printed]
-    say(*state_table(case.problem, shown, rows).split("\n"))
-    lines = [hoop_line(case.problem, shown, body) for body in EDGES]
-    for line in (*lines, bush_line(case.problem, shown)):
+        rows, found, places = part.rows, dict(zip(part.places, result.states, strict=True)), part.peaks
+    say(*state_table(case.problem, [found[place] for place in rows.printed], rows).split("\n"))
+    peaks = [found[place] for place in places]
+    lines = [hoop_line(case.problem, peaks, body) for body in EDGES]
+    for line in (*lines, *bush_line(case.problem, peaks).splitlines()):
         if line:
             say(line)
-    for line in cycle_lines(case.problem, result.cycles, shown):
+    for line in cycle_lines(case.problem, result.cycles, peaks):
         say(line)
     if cycle is not None:
         say(report.cycle.cycle_line(cycle))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,17 +15,19 @@ from scipy.interpolate import PchipInterpolator
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Sheet
-from fastpin.figures.style import MAX_NAMED, Line, line, spread
+from fastpin.figures.style import MAX_NAMED, Line, line
 from fastpin.figures.words import caption, load_text, loads_by_change, point_text, without_rounding
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.solver.result import Result
-from fastpin.states.choice import StateChoice, chosen_places
+from fastpin.states.choice import StateChoice, chosen_places, even_choice
 from fastpin.states.cycles import Cycle
+from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
 from fastpin.states.zones import ALL_ROUND
+from fastpin.storage.origin import marked_extremes
 from fastpin.storage.store import load, load_points
 
 STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)
@@ -47,6 +49,13 @@ LONG_ENTRY = 32
 """Characters of an entry of the legend beyond which two columns of entries would need letters too small to read."""
 
 
+TRACTIONS: tuple[tuple[str, Side], ...] = (("peak_pressure", "largest"), ("peak_shear", "largest magnitude"))
+"""The extremes of figures of tractions."""
+
+HOOP: tuple[tuple[str, Side], ...] = (("peak_hoop", "largest"),)
+"""The extreme of figures of the hoop stress."""
+
+
 class DrawnStates(list[State]):
     """The states that a figure draws.
 
@@ -56,11 +65,15 @@ class DrawnStates(list[State]):
         Number of states from which they were chosen.
     cycles : sequence of Cycle
         The cycles of the history.
+    marks : list of str
+        Words on the extremes that each state has; empty for most.
     """
 
-    def __init__(self, states: Iterable[State], total: int, cycles: Sequence[Cycle] = ()) -> None:
+    def __init__(
+        self, states: Iterable[State], total: int, cycles: Sequence[Cycle] = (), marks: Sequence[str] = ()
+    ) -> None:
         super().__init__(states)
-        self.total, self.cycles = total, cycles
+        self.total, self.cycles, self.marks = total, cycles, list(marks) or [""] * len(self)
 
     @property
     def note(self) -> str:
@@ -78,6 +91,7 @@ def drawn_states(
     most: int = MAX_NAMED,
     in_a_row: bool = False,
     whole: bool = False,
+    extremes: Collection[tuple[str, Side]] = TRACTIONS,
 ) -> DrawnStates:
     """Return the states that a figure draws, at most `most` unless it draws the `whole` choice.
 
@@ -87,6 +101,8 @@ def drawn_states(
         Of one problem and on one grid.
     states, most, in_a_row, whole
         See :func:`drawn_places`.
+    extremes : collection
+        The extremes whose states are drawn, of :data:`fastpin.states.extremes.MARKS`.
 
     Raises
     ------
@@ -100,9 +116,15 @@ def drawn_states(
         raise InputError("result", "its states must all be on one grid")
     cycles = every.cycles if isinstance(every, Result | DrawnStates) else ()
     points = np.array([load_point(state) for state in every])
-    places = drawn_places(points, cycles, states, most, in_a_row, whole)
+    if isinstance(every, DrawnStates) and states is None and len(every) <= most:
+        return every
+
+    def marked() -> dict[int, str]:
+        return marked_places(find_extremes(KeptStates(every), extremes))
+
+    places, marks = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
     total = every.total if isinstance(every, DrawnStates) else len(every)
-    return DrawnStates([every[place] for place in places], total, cycles)
+    return DrawnStates([every[place] for place in places], total, cycles, marks)
 
 
 def drawn_places(
@@ -112,8 +134,9 @@ def drawn_places(
     most: int = MAX_NAMED,
     in_a_row: bool = False,
     whole: bool = False,
-) -> list[int]:
-    """Return the places of the states that a figure draws.
+    marked: Callable[[], dict[int, str]] = dict,
+) -> tuple[list[int], list[str]]:
+    """Return the places of the states that a figure draws, and words on the extremes that they have.
 
     Parameters
     ----------
@@ -122,14 +145,16 @@ def drawn_places(
     cycles : sequence of Cycle
     states : str, number, sequence of numbers or slice, optional
         See :func:`fastpin.states.choice.chosen_places`. Unless given, all states of a short history, and the last cycle
-        of a history with more than `most` states.
+        of a history with more than `most` states, with the states of the extremes.
     most : int
-        Of more states, an even choice is drawn, with the first and the last one.
+        Of more states, an even choice is drawn, with the first and the last one, and the states of the extremes.
     in_a_row : bool
         Whether the first states are drawn instead of an even choice, if the history has cycles. An even choice from
         many cycles would look like a slow cycle.
     whole : bool
         Whether all chosen states are drawn, in the order of the history: the figure joins more than `most` of them.
+    marked : callable
+        ``marked()`` gives the places of the extremes of all states, with words on each.
 
     Raises
     ------
@@ -145,15 +170,26 @@ def drawn_places(
         if states is not None or not len(points):
             raise
         places = chosen_places(points, cycles, "all")  # the states of the last cycle were not kept
-    if whole:
-        return sorted(set(places)) if len(places) > most else places
-    if in_a_row and cycles:
-        return places[:most]
-    return [places[k] for k in spread(len(places), most)]
+    if whole and len(places) > most:
+        places = sorted(set(places))
+        return places, [""] * len(places)
+    if in_a_row:
+        places = places[:most] if cycles else even_choice(places, most)
+        return places, [""] * len(places)
+    marks = marked() if len(places) > most or (states is None and len(places) < len(points)) else {}
+    if states is None:
+        places = sorted({*places, *marks})
+    places = even_choice(places, most, marks)
+    return places, [marks.get(place, "") for place in places]
 
 
 def stored_states(
-    path: Path, states: StateChoice = None, most: int = MAX_NAMED, in_a_row: bool = False, whole: bool = False
+    path: Path,
+    states: StateChoice = None,
+    most: int = MAX_NAMED,
+    in_a_row: bool = False,
+    whole: bool = False,
+    extremes: Collection[tuple[str, Side]] = TRACTIONS,
 ) -> DrawnStates:
     """Return the states that a figure of a result file draws. No others are read.
 
@@ -164,11 +200,16 @@ def stored_states(
     """
     points = load_points(path)
     cycles = load(path, states=[]).cycles
-    places = drawn_places(points, cycles, states, most, in_a_row, whole)
+
+    def marked() -> dict[int, str]:
+        found = marked_extremes(path)
+        return marked_places({each: found[each] for each in extremes if each in found})
+
+    places, marks = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
     neighbours = bool(places) and places == list(range(places[0], places[-1] + 1))
     # A slice is read at once, a list state by state.
     read = load(path, states=slice(places[0], places[-1] + 1) if neighbours else places)
-    return DrawnStates(read.states, len(points), cycles)
+    return DrawnStates(read.states, len(points), cycles, marks)
 
 
 class Frame:
@@ -301,6 +342,8 @@ def name_states(sheet: Sheet, states: DrawnStates, heading: Sequence[str], style
     for first in dict.fromkeys(twins):
         points = ", ".join(point_text(state) for state, twin in zip(states, twins, strict=True) if twin == first)
         parts = ",  ".join(load_text(states, first, name) for name in differing)
+        words = ", ".join(mark for mark, twin in zip(states.marks, twins, strict=True) if mark and twin == first)
+        parts = f"{parts}  ({words})".strip() if words else parts
         handles.append(Line2D([], [], label=f"{points}:  {parts}" if parts else points, **lines[first]))
     handles, columns = _in_columns(handles if len(states) > 1 else [], styles)
     title = ("load point:  loads there" if differing else "load point") if len(states) > 1 else ""

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, Stroke
 
 from fastpin.figures.sheet import Look, Sheet
-from fastpin.figures.states import DrawnStates, drawn_states, name_states, state_lines
+from fastpin.figures.states import HOOP, DrawnStates, drawn_states, name_states, state_lines
 from fastpin.figures.style import angle_axis, line
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
 from fastpin.model.bodies import Disk
@@ -73,7 +73,7 @@ def plot_hoop_stress(
     InputError
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states)
+    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states, extremes=HOOP)
     curves = hoop_curves(drawn, body)
     return look.drawn(lambda: draw_hoop(drawn, curves, look))
 
@@ -146,7 +146,7 @@ def plot_stress_profile(
     InputError
         If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states)
+    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states, extremes=HOOP)
     curves = depth_curves(drawn, body, angle, depth)
     return look.drawn(lambda: draw_profile(drawn, curves, look))
 

@@ -31,7 +31,7 @@ from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_co
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.quantities import size
+from fastpin.states.quantities import load_point, size
 from fastpin.states.state import State
 from fastpin.states.yielding import yield_doubts
 from fastpin.states.zones import is_all_round
@@ -73,26 +73,23 @@ class Shared:
 def overview(page: Shared) -> Section:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
-    states, cycle = source.rows[0], source.cycle
+    cycle = source.cycle
     warnings = [*doubts(problem, source.case.history, source.case.options)]
     warnings += pressure_doubts(problem, source.case.history, [np.array([source.pressure])])
     warnings += yield_doubts(problem, source.case.history, source.read(source.worst))
     parts: list[Part] = [_status(source)]
     parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
     parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]
-    if states:
-        largest = max(states, key=lambda state: state.peak_pressure)
-        unit = units(problem)["traction"]
-        sentences = [f"largest contact pressure in these states: {unit.text(largest.peak_pressure, 5)}"]
-        sentences += [hoop_line(problem, states, body) for body in EDGES]
-        sentences += [*bush_line(problem, states).splitlines()]
-        sentences += cycle_lines(problem, source.result.cycles, states)
+    if source.peaks:
+        largest = max(source.peaks, key=lambda state: state.peak_pressure)
+        pressure = units(problem)["traction"].text(largest.peak_pressure, 5)
+        sentences = [f"largest contact pressure in all kept states: {pressure}, load point {load_point(largest):.5g}"]
+        sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
+        sentences += [*bush_line(problem, source.peaks).splitlines()]
+        sentences += cycle_lines(problem, source.result.cycles, source.peaks)
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         known = [] if isinstance(source.fatigue, str) else source.fatigue
-        sentences += [hot_spot_line(found, states) for found in known]
-        if len(states) < source.points.size:
-            words = f"The sentences on states are on the {len(states)} states in the table of key figures."
-            parts.append(Text(f"{words} The other {source.points.size - len(states):,} states are not among them."))
+        sentences += [hot_spot_line(found, source.peaks) for found in known]
         parts.append(Items([_sentence(line) for line in sentences if line]))
     parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
     return Section("overview", "Overview", parts)
@@ -331,12 +328,13 @@ def stresses(page: Shared) -> Section:
     if not drawn:
         return Section("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = _drawn(lambda: drawings.hoop(page.album, drawn))
-    lines = [hoop_line(problem, drawn, body) for body in EDGES]
+    peaks = page.source.peaks
+    lines = [hoop_line(problem, peaks, body) for body in EDGES]
     parts += [Text(_sentence(line)) for line in lines if line]
     if problem.surfaces.plate.is_rigid:
-        largest = max(drawn, key=lambda state: state.peak_pressure)
+        largest = max(peaks, key=lambda state: state.peak_pressure)
     else:
-        largest = max(drawn, key=lambda state: state.peak_hoop_stress().value)
+        largest = max(peaks, key=lambda state: state.peak_hoop_stress().value)
     parts += _drawn(lambda: drawings.stress_map(page.album, largest))
     return Section("stresses", "Stresses", parts)
 
@@ -348,7 +346,7 @@ def fatigue(page: Shared) -> Section:
         return Section("fatigue", "Fatigue", [Text(found, "missing")])
     parts: list[Part] = [drawings.fatigue(page.album, found)]
     for one in found:
-        parts.append(Text(_sentence(hot_spot_line(one, page.source.drawn))))
+        parts.append(Text(_sentence(hot_spot_line(one, page.source.peaks))))
         if one.life is None:
             words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."

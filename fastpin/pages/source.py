@@ -15,6 +15,7 @@ import numpy as np
 from fastpin import storage
 from fastpin.damage import Fatigue, fatigue
 from fastpin.errors import InputError
+from fastpin.figures.states import DrawnStates
 from fastpin.model.case import Case
 from fastpin.model.doubts import has_strengths
 from fastpin.model.loads import LOADS
@@ -23,7 +24,9 @@ from fastpin.report.case import hole_body
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
+from fastpin.states.choice import even_choice
 from fastpin.states.cycles import Cycle
+from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_places
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
@@ -41,7 +44,7 @@ MOST_MAPPED = 60
 """Most states of a map that begins with the history. The first cycles of most histories fit."""
 
 MOST_CORNERS = 100_000
-"""Most corners in which a closed part without repeated blocks, or the largest force, is looked for."""
+"""Most corners in which a closed part without repeated blocks is looked for."""
 
 PIECE = 1 << 20
 """Bytes of a file that are read at once for its hash."""
@@ -60,6 +63,8 @@ class Source:
         Load points of all states.
     read : callable
         ``read(places)`` gives the states at these places, in increasing order.
+    extremes : callable
+        ``extremes()`` gives the extremes of all states.
     origin : list of (str, str)
         Where the result comes from: names and values.
     residuals : dict of str to float
@@ -82,6 +87,7 @@ class Source:
     result: Result
     points: np.ndarray
     read: Callable[[Sequence[int]], list[State]]
+    extremes: Callable[[], Found]
     origin: list[tuple[str, str]]
     residuals: dict[str, float]
     pressure: float
@@ -117,7 +123,12 @@ class Source:
         largest = storage.largest_residuals(path), storage.largest_pressure(path)
         worst = storage.worst_stored(path) if has_strengths(case.problem) else []
         error = storage.stored_error(path)
-        return cls(case, result, points, read, origin, *largest, worst, error, path, knows_options="run" in known)
+
+        def extremes() -> Found:
+            return storage.marked_extremes(path)
+
+        told = "run" in known
+        return cls(case, result, points, read, extremes, origin, *largest, worst, error, path, knows_options=told)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -140,8 +151,12 @@ class Source:
 
         origin = [("solved by", _named_versions(versions())), ("file", "none: a result in memory")]
         points = np.array([load_point(state) for state in result])
+
+        def extremes() -> Found:
+            return marked_extremes(KeptStates(result.states)) if result.states else {}
+
         worst = [result.states.index(state) for state in worst_states(result.states)]
-        return cls(case, result, points, read, origin, residuals, pressure, worst, error, knows_options=known)
+        return cls(case, result, points, read, extremes, origin, residuals, pressure, worst, error, knows_options=known)
 
     @cached_property
     def initial(self) -> np.ndarray:
@@ -170,25 +185,34 @@ class Source:
     @cached_property
     def rows(self) -> tuple[list[State], dict[int, str]]:
         """The states of the table, and words on those left out, by the row before which they are left out."""
-        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.read)
+        rows = stored_rows(self.case.problem, self.points, self.result.cycles, self.read, self.marks)
         return self.read(rows.printed), rows.gaps
 
     @cached_property
-    def drawn(self) -> list[State]:
-        """At most :data:`MOST_DRAWN` states for figures: all corners if they are few, else those of the last cycle."""
+    def marks(self) -> dict[int, str]:
+        """The places of the extremes of all states, with words on each."""
+        return marked_places(self.extremes())
+
+    @cached_property
+    def peaks(self) -> list[State]:
+        """The states of the extremes."""
+        return self.read(list(self.marks))
+
+    @cached_property
+    def drawn(self) -> DrawnStates:
+        """At most :data:`MOST_DRAWN` states for figures: all corners if they are few, else those of the last cycle.
+
+        The states of the extremes are among them.
+        """
         places = np.arange(self.points.size)
         corners = places[self.points % 1.0 == 0.0]
         if self.cycle is not None and max(corners.size, 1) > MOST_DRAWN:
             places = places[(self.points > self.cycle.first) & (self.points <= self.cycle.last)]
             corners = places[self.points[places] % 1.0 == 0.0]
         places = corners if corners.size else places
-        if not places.size:
-            return []
-        chosen = places[np.linspace(0, places.size - 1, min(places.size, MOST_DRAWN)).round().astype(int)]
-        largest = self._largest_force(places)
-        if largest is not None and largest not in chosen:
-            chosen[np.argmin(np.abs(chosen[:-1] - largest))] = largest
-        return self.read(np.unique(chosen).tolist())
+        chosen = even_choice(sorted({*places.tolist(), *self.marks}), MOST_DRAWN, self.marks)
+        marks = [self.marks.get(place, "") for place in chosen]
+        return DrawnStates(self.read(chosen), self.points.size, self.result.cycles, marks)
 
     @cached_property
     def mapped(self) -> list[State]:
@@ -196,13 +220,6 @@ class Source:
         if self.cycle is not None and len(self.cycle.states) > MOST_DRAWN:
             return list(self.cycle.states)
         return self.read(range(min(self.points.size, MOST_MAPPED)))
-
-    def _largest_force(self, places: np.ndarray) -> int | None:
-        """Return the place of the state with the largest force on the pin, of several; None if that is not known."""
-        if len(self.case.history) > MOST_CORNERS or places.size <= MOST_DRAWN:
-            return None
-        loads = self.case.history.values(self.initial)[np.floor(self.points[places]).astype(int) - 1]
-        return int(places[np.argmax(np.hypot(loads[:, 0], loads[:, 1]))])
 
     @cached_property
     def _cycle(self) -> LoadCycle | str:

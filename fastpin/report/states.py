@@ -6,7 +6,7 @@ Angles are in degrees from the bottom of the hole, counter-clockwise positive (t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,7 @@ from fastpin.report.table import (
     repeats,
     row_numbers,
     table_of_lines,
+    with_rows,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point, sizes
@@ -91,7 +92,11 @@ class TableRows:
 
 
 def table_rows(
-    problem: Problem, states: Sequence[State], rows: np.ndarray | None = None, points: np.ndarray | None = None
+    problem: Problem,
+    states: Sequence[State],
+    rows: np.ndarray | None = None,
+    points: np.ndarray | None = None,
+    wanted: Collection[int] = (),
 ) -> TableRows:
     """Find the rows that a table of states prints. Rows that repeat the rows before become one line.
 
@@ -104,6 +109,8 @@ def table_rows(
         The place in `states` of a state like the one of each row. By default each state has a row.
     points : ndarray, shape (rows,), optional
         Load points of the rows; those of the states by default.
+    wanted : collection of int
+        Rows that are not left out: the states of the extremes.
     """
     if points is None:
         points = np.array([load_point(state) for state in states])
@@ -111,16 +118,20 @@ def table_rows(
     numbers, first = np.unique(same, return_index=True)
     rows = same if rows is None else same[rows]
     if numbers.size > MOST_COMPARED:
-        return TableRows(cut_lines(rows.size), points)
+        return TableRows(with_rows(cut_lines(rows.size), wanted), points)
     if numbers.size < rows.size or repeats(row_numbers(tuple(state.load.values()) for state in states)):
         columns = state_columns(problem, [states[place] for place in first.tolist()])
         cells = zip(*(cells for name, _, cells in columns if name not in OWN_COLUMNS), strict=True)
         rows = row_numbers(cells)[rows]
-    return TableRows(folded_lines(rows), points)
+    return TableRows(with_rows(folded_lines(rows), wanted), points)
 
 
 def stored_rows(
-    problem: Problem, points: np.ndarray, cycles: Sequence[Cycle], read: Callable[[list[int]], Sequence[State]]
+    problem: Problem,
+    points: np.ndarray,
+    cycles: Sequence[Cycle],
+    read: Callable[[list[int]], Sequence[State]],
+    wanted: Collection[int] = (),
 ) -> TableRows:
     """As :func:`table_rows`, for a stored result. Few of its states are read.
 
@@ -133,12 +144,14 @@ def stored_rows(
         All cycles of the result.
     read : callable
         ``read(places)`` gives the states at these places, in increasing order.
+    wanted : collection of int
+        See :func:`table_rows`.
     """
     alike = _places_alike(points, cycles)
     places, rows = np.unique(alike, return_inverse=True)
     if places.size > MOST_COMPARED:
-        return TableRows(cut_lines(points.size), points)
-    return table_rows(problem, read(places.tolist()), rows, points)
+        return TableRows(with_rows(cut_lines(points.size), wanted), points)
+    return table_rows(problem, read(places.tolist()), rows, points, wanted)
 
 
 def _places_alike(points: np.ndarray, cycles: Sequence[Cycle]) -> np.ndarray:
@@ -273,9 +286,10 @@ def quantity_column(
 
 
 def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -> str:
-    """Return a line of text: the largest hoop stress of a body in the states, and its stress concentrations.
+    """Return a line of text: the largest hoop stress of a body in all kept states, and its stress concentrations.
 
-    It is empty without the body, for a rigid one, and if no state is in contact.
+    `states` are all kept states, or those of their extremes. It is empty without the body, for a rigid one, and without
+    contact.
     """
     if body not in elastic_bodies(problem) or not any(state.in_contact for state in states):
         return ""
@@ -287,7 +301,7 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
     resolved = "" if peak.resolved else " (not resolved by the nodes)"
     factor, unit = units(problem)["traction"].scale([peak.value])
     text = (
-        f"largest hoop stress of the {edge_body(problem, body)} in these states: "
+        f"largest hoop stress of the {edge_body(problem, body)} in all kept states: "
         f"{peak.value * factor:.4g}{_bar(state, factor, 'peak_hoop' if body == 'plate' else 'peak_hoop_seat')} {unit}"
         f"{resolved} at {_angle(peak.angle)} deg, load point {_point(state)}"
     )
@@ -303,7 +317,10 @@ def hoop_line(problem: Problem, states: Sequence[State], body: Body = "plate") -
 
 
 def bush_line(problem: Problem, states: Sequence[State]) -> str:
-    """Return a line of text: whether the press fit holds the bush in all states; empty without a bush or contact."""
+    """Return a line of text: whether the press fit holds the bush in all kept states; empty without a bush or contact.
+
+    `states` are all kept states, or those of their extremes.
+    """
     if not isinstance(problem.plate_body, Bushing) or not any(state.in_contact for state in states):
         return ""
     fits = [(state, state.bush_fit()) for state in states]
@@ -317,7 +334,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
             "these states hold for a bonded bush"
         )
     needed = max(fit.least_friction for _, fit in fits)
-    text = f"smallest pressure between bush and plate: {unit.text(fit.open_margin, 4)} {where}"
+    text = f"smallest pressure between bush and plate in all kept states: {unit.text(fit.open_margin, 4)} {where}"
     if fit.friction is None or fit.friction >= needed:
         return f"{text}; the bush sticks with a friction of {needed:.3g} or more"
     return f"{text}\nnote: the bush would slip: it needs a friction of {needed:.3g}, not {fit.friction:g}"

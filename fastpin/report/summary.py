@@ -16,10 +16,11 @@ from fastpin.model.history import Block
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
-from fastpin.model.units import DEGREE, units
+from fastpin.model.units import DEGREE, Unit, units
 from fastpin.report import cycle as cycle_report
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
+from fastpin.states.extremes import READINGS
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
@@ -81,6 +82,7 @@ def document(
         "solver": case.options.keywords(),
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
+        "extremes": {} if result is None else _extremes_summary(result),
         "cycles": [] if result is None else [_cycle_summary(problem, row) for row in result.cycles],
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
@@ -127,14 +129,10 @@ def _state_summary(state: State) -> dict[str, Any]:
     resultants, bars, plate = state.resultants, state.error_bars, state.problem.surfaces.plate
     unit = units(state.problem)
 
-    def in_units(name: str, value: float) -> float:
-        """A quantity that is in degrees already, if it is an angle, in printed units."""
-        return unit.get(quantity(name).kind, DEGREE).factor * value
-
     def shown(name: str) -> float | str:
         """A quantity: angles and widths in degrees, a class in words."""
         value = QUANTITIES[name].shown(state)
-        return value if isinstance(value, str) else in_units(name, in_degrees(name, value))
+        return value if isinstance(value, str) else _in_units(unit, name, in_degrees(name, value))
 
     return {
         "load_point": load_point(state),
@@ -150,7 +148,26 @@ def _state_summary(state: State) -> dict[str, Any]:
         "energy": unit["energy"].factor * state.energy,
         "resultants": printed_loads(state.problem, resultants),
         "residuals": state.residuals,
-        "error_bars": bars and {name: in_units(name, bar_in_degrees(name, bar)) for name, bar in bars.items()},
+        "error_bars": bars and {name: _in_units(unit, name, bar_in_degrees(name, bar)) for name, bar in bars.items()},
+    }
+
+
+def _in_units(unit: Mapping[str, Unit], name: str, value: float) -> float:
+    """A quantity that is in degrees already, if it is an angle, in printed units."""
+    kind = READINGS[name].kind if name in READINGS else quantity(name).kind
+    return unit.get(kind, DEGREE).factor * value
+
+
+def _extremes_summary(result: Result) -> dict[str, Any]:
+    """Return the extremes of all quantities over all states, with the units of the states."""
+    unit = units(result.problem)
+
+    def shown(name: str, value: float) -> float:
+        return _in_units(unit, name, in_degrees(name, value) if name in QUANTITIES else value)
+
+    return {
+        name: {side: each._asdict() | {"value": shown(name, each.value)} for side, each in pair._asdict().items()}
+        for name, pair in result.extremes().items()
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Collection, Hashable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -91,6 +91,24 @@ def _begin(line: int | Repeat) -> int:
 
 def _end(line: int | Repeat) -> int:
     return line.end if isinstance(line, Repeat) else line + 1
+
+
+def with_rows(lines: Iterable[Line], rows: Collection[int]) -> list[Line]:
+    """Return the lines of a table in which these rows are not left out. Repeated rows stay one line."""
+    found: list[Line] = []
+    at = 0
+    for line in lines:
+        if isinstance(line, LeftOut):
+            end = at + line.rows
+            for row in sorted(row for row in rows if at <= row < end):
+                found += [LeftOut(row - at), row] if row > at else [row]
+                at = row + 1
+            found += [LeftOut(end - at)] if end > at else []
+            at = end
+        else:
+            found.append(line)
+            at = _end(line)
+    return found
 
 
 def row_numbers(keys: Iterable[Hashable]) -> np.ndarray:

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from fastpin.states.extremes import Extremes  # this module imports compiled code
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Restart(ReadOnly):
@@ -160,6 +162,33 @@ class Result(Sequence[State]):
             if not points or points[place] != corner:
                 raise InputError("cycle", f"the state at corner {corner} was not kept, or not loaded")
         return tuple(states)
+
+    def extremes(self) -> dict[str, Extremes]:
+        """The smallest and the largest value of each quantity over all states of the result, and where they occur.
+
+        Each value equals the reading of its state, to the last bit. Few states are read for it. What happens between
+        two kept states is not known.
+
+        Returns
+        -------
+        dict of str to Extremes
+            By the names of :data:`fastpin.states.QUANTITIES` without angles and Kt, and "bush_least_friction", the
+            friction that just holds the bush. An entry has ``smallest`` and ``largest``, each with ``value`` (SI units,
+            with sign), ``place`` (the place of the state in the result) and ``load_point``. The shear traction of
+            largest magnitude is the larger one of the two. A quantity that the problem does not have is left out: the
+            hoop stress of a rigid plate, and the margins of a bush. A result without states has no extremes.
+
+        Raises
+        ------
+        InputError
+            If the states are on different grids.
+        """
+        import fastpin
+
+        if any(not np.array_equal(state.theta, self.grid.theta) for state in self):
+            raise InputError("result", "all states must be on the grid of the result")
+        extremes = fastpin.states.extremes
+        return extremes.all_extremes(extremes.KeptStates(self.states)) if self.states else {}
 
     def plot(self, path: str | Path | None = None, states: StateChoice = None, **options: Any) -> Any:
         """Draw the tractions, and return the matplotlib figure.

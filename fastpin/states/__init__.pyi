@@ -1,3 +1,4 @@
+from . import extremes as extremes
 from . import hoop as hoop
 from . import joint as joint
 from . import refined as refined

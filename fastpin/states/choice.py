@@ -6,7 +6,7 @@ choose states in Python (``states=``) and on the command line (``--states``).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -92,6 +92,19 @@ def chosen_places(points: np.ndarray, cycles: Sequence[Cycle], chosen: StateChoi
     wanted = _points_of(chosen)
     found = {ends: _places(points, ends) for ends in dict.fromkeys(wanted)}
     return [place for ends in wanted for place in found[ends]]
+
+
+def even_choice(places: Sequence[int], most: int, kept: Collection[int] = ()) -> list[int]:
+    """Return at most `most` of some places, in order: those of `kept` among them, and others evenly spread.
+
+    The first and the last place are among the others.
+    """
+    if len(places) <= most:
+        return list(places)
+    chosen = [place for place in places if place in kept][:most]
+    others = [place for place in places if place not in chosen]
+    spread = np.linspace(0, len(others) - 1, most - len(chosen)).round().astype(int)
+    return sorted({*chosen, *(others[k] for k in spread.tolist())})
 
 
 def check_choice(chosen: StateChoice, history: LoadHistory) -> None:

@@ -4,6 +4,7 @@ from .journal import is_being_written as is_being_written
 from .layout import versions as versions
 from .origin import largest_pressure as largest_pressure
 from .origin import largest_residuals as largest_residuals
+from .origin import marked_extremes as marked_extremes
 from .origin import provenance as provenance
 from .origin import worst_stored as worst_stored
 from .recording import record as record

@@ -8,6 +8,7 @@
 ``/solver``             attributes: method and options; ``statistics``
 ``/states``             one array for each quantity, one row for each state: (states,), (states, n) or (states, names)
 ``/cycles``             one array for each quantity, one row for each cycle; empty if the history has no cycles
+``/extremes``           of a complete run with many states: the places of its extremes, see extremes.py
 ``/restart``            restarts to continue from: ``start``, ``latest`` and the corners of the option ``save_after``
 ======================  ============================================================================================
 

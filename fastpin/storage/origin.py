@@ -1,4 +1,4 @@
-"""Where a stored result comes from, and how well all of its states meet the contact conditions."""
+"""Where a stored result comes from, how well all of its states meet the contact conditions, and their extremes."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from fastpin.model.checks import file_path
+from fastpin.states.extremes import Found
 from fastpin.states.yielding import worst_places
 from fastpin.storage.damage import text_of
+from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
 from fastpin.storage.store import open_result
 
@@ -63,6 +65,18 @@ def largest_pressure(path: str | Path) -> float:
     """
     with open_result(file_path("path", path)) as file:
         return float(_largest_pressures(file).max(initial=0.0))
+
+
+def marked_extremes(path: str | Path) -> Found:
+    """Return the extremes of all states of a file that texts and figures show, see fastpin/states/extremes.py.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        return read_extremes(file)
 
 
 def worst_stored(path: str | Path) -> list[int]:

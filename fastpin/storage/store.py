@@ -32,9 +32,11 @@ from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.inputs import note_input
 from fastpin.solver.result import Restart, Result
 from fastpin.solver.task import Task
+from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
 from fastpin.storage import hdf5, packed
 from fastpin.storage.damage import reading, text_of
+from fastpin.storage.extremes import write_extremes
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import check_exists, check_writable, replacing
 from fastpin.storage.journal import open_h5
@@ -101,6 +103,8 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
     large = len(result) * result.grid.size > MOST_IN_MEMORY
     with replacing(path, result=True) as temporary, written_h5(temporary, large) as file:
         _write(file, result, error)
+        if result.complete and result.states:
+            write_extremes(file, KeptStates(result.states))
         if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)
 

@@ -24,6 +24,7 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
 from fastpin.storage import hdf5
 from fastpin.storage.damage import reading
+from fastpin.storage.extremes import write_extremes
 from fastpin.storage.file_objects import written_h5
 from fastpin.storage.files import forget_temporaries, replacing
 from fastpin.storage.journal import JournaledFile, check_beside, is_empty, not_readable
@@ -264,6 +265,8 @@ class FileRecorder:
         self._h5.attrs.pop("error", None)
         if error is not None:
             self._h5.attrs["error"] = error
+        elif run.complete:
+            write_extremes(self._h5)
         self._commit()
         self._close()
         clear_checkpoints(self.path)

@@ -218,7 +218,7 @@ def test_run_prints_a_line_for_each_state(solved: list[dict[str, Any]], capsys: 
     assert first[:3] == ["1", "2.42", "0"]
     assert float(first[3]) == pytest.approx(100.0, rel=1e-3)  # MPa
     assert len(lines) == 8
-    assert lines[-2].startswith("largest hoop stress of the plate in these states: ")
+    assert lines[-2].startswith("largest hoop stress of the plate in all kept states: ")
     assert "81 nodes" in lines[-1]
 
 
@@ -597,8 +597,8 @@ def test_hoop_stress_and_fatigue_are_told(cyclic: Path, tmp_path: Path, capsys: 
     lines = capsys.readouterr().out.splitlines()
     result = fastpin.load(stored)
     assert len(result) == 121
-    hoop = next(line for line in lines if line.startswith("largest hoop stress of the plate in these states: "))
-    assert f" {max(state.peak_hoop_stress().value for state in result[:30]) / 1e6:.4g} MPa" in hoop
+    hoop = next(line for line in lines if line.startswith("largest hoop stress of the plate in all kept states: "))
+    assert f" {max(state.peak_hoop_stress().value for state in result) / 1e6:.4g} MPa" in hoop
     fatigue = next(line for line in lines if line.startswith("fatigue of the plate in the last cycle"))
     assert fatigue.endswith(f"life {result.fatigue('smith-watson-topper').hot_spot.life:.3g} cycles")
     assert main(["show", stored]) == 0

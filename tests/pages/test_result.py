@@ -168,11 +168,16 @@ def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
     assert len(read) == MAX_ROWS + MOST_DRAWN + 1  # one tells the load at the beginning
 
 
-def test_the_largest_force_of_a_long_history_is_drawn() -> None:
+def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
     corners = [{"P": 3e6 if k == 77 else 1e6 + 100.0 * k} for k in range(200)]
-    drawn = Source.of_result(sample_result(corners, nodes=21)).drawn
-    assert 77 in [state.step for state in drawn]
-    assert [state.step for state in drawn][-1] == 199
+    source = Source.of_result(fastpin.solve(sample_result().problem, corners, nodes=61))
+    assert source.marks == {77: "largest pressure, largest shear, largest hoop stress"}
+    assert [state.step for state in source.peaks] == [77]
+    assert [state.step for state in source.drawn][-1] == 199
+    assert dict(zip((state.step for state in source.drawn), source.drawn.marks, strict=True))[77] == source.marks[77]
+    states, gaps = source.rows
+    assert 77 in [state.step for state in states]
+    assert gaps == {20: "57 more", 21: "102 more"}
 
 
 def test_the_last_closed_part_of_a_history_without_blocks_is_its_cycle() -> None:

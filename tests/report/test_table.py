@@ -10,7 +10,17 @@ import pytest
 
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.report.states import state_table, stored_rows
-from fastpin.report.table import MAX_ROWS, folded_lines, printed_rows, row_numbers, table, table_of_lines
+from fastpin.report.table import (
+    MAX_ROWS,
+    LeftOut,
+    Repeat,
+    folded_lines,
+    printed_rows,
+    row_numbers,
+    table,
+    table_of_lines,
+    with_rows,
+)
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.quantities import load_point
@@ -137,3 +147,12 @@ def test_loads_that_are_rounding_are_printed_as_0() -> None:
     result = sample_result([{"P": 1e6, "Q": 1e-8}, {"P": 1e6, "Q": 5.0}])
     cells = [row.split()[2] for row in state_table(result.problem, list(result)).splitlines()[2:]]
     assert cells == ["0", "5e-06"]
+
+
+def test_wanted_rows_are_not_left_out() -> None:
+    lines = [0, 1, LeftOut(5), 7, Repeat(8, 2, 3), LeftOut(2), 16]
+    assert with_rows(lines, ()) == lines
+    assert with_rows(lines, (0, 9, 40)) == lines
+    assert with_rows(lines, (6, 2, 4, 15)) == [
+        0, 1, 2, LeftOut(1), 4, LeftOut(1), 6, 7, Repeat(8, 2, 3), LeftOut(1), 15, 16
+    ]  # fmt: skip

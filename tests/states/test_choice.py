@@ -10,6 +10,7 @@ from fastpin.states.choice import (
     check_choice,
     chosen_cycles,
     chosen_places,
+    even_choice,
     missing_corners,
     span_of,
     states_between,
@@ -132,3 +133,11 @@ def test_states_of_a_cycle():
     assert [state.step for state in states_between(result, 2, 4)] == [1, 2, 3]
     assert missing_corners(result, 2, 4) == []
     assert missing_corners(result[2:4], 2, 5) == [2, 5]
+
+
+def test_an_even_choice_has_the_kept_places() -> None:
+    places = list(range(0, 100, 2))
+    assert even_choice(places, 5) == [0, 24, 48, 74, 98]
+    assert even_choice(places, 5, (36, 37)) == [0, 32, 36, 66, 98]
+    assert even_choice(places[:4], 5, (2,)) == [0, 2, 4, 6]
+    assert even_choice(places, 3, places) == [0, 2, 4]

@@ -1,0 +1,242 @@
+"""The extremes of a result: the smallest and the largest value of each quantity, and the states that have them.
+
+A reading of a state may take milliseconds. So the nodal values of all states give bounds of the readings first, see
+:mod:`fastpin.states.reading_bounds`. Then the states are read in the order of their bounds, until no other state can
+have a more extreme value. So an extreme is the reading of its state, to the last bit. Equal states are read once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+
+from fastpin.model.bodies import Bushing
+from fastpin.model.grid import Grid
+from fastpin.model.points import elastic_bodies
+from fastpin.model.problem import Problem
+from fastpin.states.marks import Marks
+from fastpin.states.quantities import QUANTITIES, Quantity, load_point
+from fastpin.states.reading_bounds import NUMBERS, Block, Bounds
+from fastpin.states.state import State
+
+Side = Literal["smallest", "largest", "largest magnitude"]
+"""Which extreme of a quantity, as the ``take`` of an outcome."""
+
+AT_ONCE = 256
+"""States whose nodal values are in memory at once, and most states that are read at once."""
+
+
+def _least_friction(state: State) -> float:
+    """Return the friction that just holds the bush, see ``BushFit.least_friction``; NaN without a bush."""
+    return state.bush_fit().least_friction if isinstance(state.problem.plate_body, Bushing) else math.nan
+
+
+NODE_VALUES = ("pressure", "shear", "status")
+"""Fields of a state of which a block has all nodes."""
+
+READINGS: dict[str, Quantity] = {
+    **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
+    "bush_least_friction": Quantity("bush least friction", "ratio", _least_friction),
+}
+"""The quantities that have extremes.
+
+A place on a circle and a class are neither large nor small. The ratios Kt grow without bound while the load falls to
+zero.
+"""
+
+MARKS: dict[tuple[str, Side], str] = {
+    ("peak_pressure", "largest"): "largest pressure",
+    ("peak_shear", "largest magnitude"): "largest shear",
+    ("peak_hoop", "largest"): "largest hoop stress",
+    ("peak_hoop_seat", "largest"): "largest hoop stress at the seat",
+    ("bush_open_margin", "smallest"): "bush nearest to opening",
+    ("bush_least_friction", "largest"): "bush nearest to slip",
+}
+"""The extremes that texts, tables and figures show, with their words."""
+
+
+class Extreme(NamedTuple):
+    """An extreme of a quantity over the kept states of a result.
+
+    Attributes
+    ----------
+    value : float
+        In the unit of the quantity.
+    place : int
+        Place of the state in the result, from 0; the first of equal states.
+    load_point : float
+        Load point of the state: 1 at the first corner, 1.5 halfway to the second one.
+    """
+
+    value: float
+    place: int
+    load_point: float
+
+
+class Extremes(NamedTuple):
+    """The smallest and the largest value of a quantity over the kept states of a result, with sign."""
+
+    smallest: Extreme
+    largest: Extreme
+
+
+Found = dict[tuple[str, Side], Extreme]
+"""Extremes by quantity and side."""
+
+
+class Kept(Protocol):
+    """All kept states of a result. Few of them are read as a whole.
+
+    Attributes
+    ----------
+    problem : Problem
+    grid : Grid
+    points : ndarray, shape (states,)
+        Load points.
+    """
+
+    problem: Problem
+    grid: Grid
+    points: np.ndarray
+
+    def blocks(self) -> Iterator[Block]:
+        """Give the nodal values of all states, in order."""
+
+    def read(self, places: Sequence[int]) -> list[State]:
+        """Read the states at these places, in increasing order."""
+
+
+class KeptStates:
+    """States in memory as :class:`Kept`. All are of one problem and on one grid; there is at least one."""
+
+    def __init__(self, states: Sequence[State]) -> None:
+        self.problem, self.grid = states[0].problem, states[0].grid
+        self.points = np.array([load_point(state) for state in states])
+        self._states = states
+
+    def blocks(self) -> Iterator[Block]:
+        """Give the nodal values of all states, in order."""
+        for begin in range(0, len(self._states), AT_ONCE):
+            some = self._states[begin : begin + AT_ONCE]
+            marks = [(state.marks or Marks()).arrays(self.grid.size) for state in some]
+            pressure, shear, status = (np.array([getattr(state, name) for state in some]) for name in NODE_VALUES)
+            yield Block(
+                pressure,
+                shear,
+                status,
+                np.array([list(state.load.values()) for state in some]),
+                tuple(np.array([arrays[k] for arrays in marks]) for k in range(2)),
+                {name: np.array([getattr(state, name) for state in some]) for name in NUMBERS},
+            )
+
+    def read(self, places: Sequence[int]) -> list[State]:
+        """Read the states at these places."""
+        return [self._states[place] for place in places]
+
+
+def all_extremes(kept: Kept) -> dict[str, Extremes]:
+    """Find the extremes of all quantities that the states have; see :meth:`fastpin.Result.extremes`."""
+    sides: tuple[Side, Side] = ("smallest", "largest")
+    found = find_extremes(kept, [(name, side) for name in READINGS for side in sides])
+    names = [name for name in READINGS if (name, "largest") in found]
+    return {name: Extremes(*(found[name, side] for side in sides)) for name in names}
+
+
+def marked_extremes(kept: Kept) -> Found:
+    """Find the extremes of :data:`MARKS`."""
+    return find_extremes(kept, MARKS)
+
+
+def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
+    """Find extremes by quantity and side. Those that the problem does not have are left out.
+
+    A place that has the same tractions and loads as an earlier one is not read.
+    """
+    wanted, found = [pair for pair in wanted if exists(kept.problem, pair[0])], Found()
+    if not wanted or not kept.points.size:
+        return found
+    different = Different(kept, {name for name, _ in wanted})
+    for name, side in wanted:
+        extreme = different.extreme(name, side)
+        if extreme is not None:
+            found[name, side] = extreme
+    return found
+
+
+def exists(problem: Problem, name: str) -> bool:
+    """Whether the states of a problem have a quantity."""
+    if name == "bush_slip_margin":
+        return isinstance(problem.plate_body, Bushing) and problem.plate_body.friction is not None
+    if name.startswith("bush_"):
+        return isinstance(problem.plate_body, Bushing)
+    edges = {"peak_hoop": "plate", "peak_hoop_seat": "seat"}
+    return name not in edges or edges[name] in elastic_bodies(problem)
+
+
+def marked_places(found: Found) -> dict[int, str]:
+    """Return the places of the extremes of :data:`MARKS` with words on each, in order."""
+    words: dict[int, list[str]] = {}
+    for pair, extreme in found.items():
+        words.setdefault(extreme.place, []).append(MARKS[pair])
+    return {place: ", ".join(words[place]) for place in sorted(words)}
+
+
+class Different:
+    """The different states of a result, with bounds of their readings.
+
+    Parameters
+    ----------
+    kept : Kept
+    names : set of str
+        The quantities that will be asked for.
+    """
+
+    def __init__(self, kept: Kept, names: set[str]) -> None:
+        self._kept = kept
+        first: dict[bytes, int] = {}
+        numbers: dict[str, list[np.ndarray]] = {name: [] for name in NUMBERS if name in names}
+        bounds, begin = Bounds(kept.problem, kept.grid, names), 0
+        for block in kept.blocks():
+            rows = [row for row, key in enumerate(_keys(block)) if first.setdefault(key, begin + row) == begin + row]
+            bounds.add(block, rows)
+            for name, parts in numbers.items():
+                parts.append(block.numbers[name])
+            begin += len(block.pressure)
+        places, every = np.array(list(first.values())), np.arange(begin)
+        self._bounds = {name: (places, low, high) for name, (low, high) in bounds.found().items()}
+        for name, parts in numbers.items():
+            values = np.concatenate(parts)  # energies differ in states that are equal otherwise
+            self._bounds[name] = every, values, values
+
+    def extreme(self, name: str, side: Side) -> Extreme | None:
+        """Return the extreme of a quantity. It is None if the quantity is NaN in all states."""
+        places, low, high = self._bounds[name]
+        most = {"smallest": -low, "largest": high, "largest magnitude": np.maximum(-low, high)}[side]
+        best, place, found = -math.inf, -1, math.nan
+        order = np.lexsort((places, -most))
+        begin, size = 0, 1
+        while begin < order.size and (place < 0 or most[order[begin]] > best):
+            chosen = order[begin : begin + size]
+            states = self._kept.read(sorted(places[chosen].tolist()))
+            for at, state in zip(sorted(places[chosen].tolist()), states, strict=True):
+                reading = READINGS[name].of(state)
+                value = {"smallest": -reading, "largest": reading, "largest magnitude": abs(reading)}[side]
+                if value > best or (value == best and (place < 0 or at < place)):
+                    best, place, found = value, at, reading
+            begin, size = begin + size, min(2 * size, AT_ONCE)
+        return None if place < 0 else Extreme(found, place, float(self._kept.points[place]))
+
+
+def _keys(block: Block) -> Iterator[bytes]:
+    """Return a digest of the parts of each state that its readings depend on."""
+    parts = [block.pressure, block.shear, block.status, block.loads, *block.marks]
+    parts += [block.numbers[name] for name in ("dx", "dy", "rotation")]
+    for row in range(len(block.pressure)):
+        digest = hashlib.blake2b(digest_size=16)
+        for part in parts:
+            digest.update(part[row].tobytes())
+        yield digest.digest()

@@ -1,0 +1,387 @@
+"""Bounds of the readings of many states, from their nodal values at once.
+
+A reading lies between its bounds, whatever the fits between the nodes find. Pressure, shear and widths have bounds that
+follow from the way in which they are read. The bound of the largest hoop stress was measured, see :data:`SHEAR_STEP`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from fastpin.elasticity.stress import plate_stress, seat_stress
+from fastpin.elasticity.tractions import Tractions
+from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
+from fastpin.model.bodies import Bushing
+from fastpin.model.grid import Grid
+from fastpin.model.loads import REMOTE
+from fastpin.model.problem import Problem
+from fastpin.states.hoop import AROUND
+from fastpin.states.joint import AROUND as AROUND_BUSH
+from fastpin.states.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
+
+NUMBERS = ("dx", "dy", "rotation", "dissipation", "work")
+"""Quantities that a state holds as numbers."""
+
+ROUNDING = 1e-8
+"""Relative size of rounding, and of equal peaks of which one is taken."""
+
+CORNER = 1.0
+"""Bound of the height of a corner above the largest nodal pressure, in parts of the larger drop beside it.
+
+It was up to 0.15 in 606 random states of unlike bodies.
+"""
+
+SHEAR_STEP = 4.0
+"""Bound of the largest hoop stress beyond straight lines between the nodes, in parts of the largest step of the shear.
+
+A step is the difference over two node distances. The hoop stress was up to 1.5 steps higher in 1,165 random states
+of all classes of scripts/histories.py with 61 to 401 nodes, except for the states of :data:`ABRUPT`.
+"""
+
+ABRUPT = 4
+"""Node distances between opposite slips up to which the largest hoop stress has no bound.
+
+The refined shear has a step there. Its hoop stress was up to 19 steps higher in two of these histories.
+"""
+
+MAPPED = 40
+"""Different states from which on the stresses of straight lines are computed by matrices. Fewer are all read."""
+
+COARSER, THICK = 4, 0.1
+"""Every so many points of the interface of a bush are taken, if its wall is thicker than this part of the hole radius.
+
+The tractions there are smooth over such a distance.
+"""
+
+SMOOTH = 4.0
+"""Node distances from which on the wall of a bush smooths the tractions. The seat has no bound behind thinner walls."""
+
+SEAT_DOUBT = 0.02
+"""Bound of the hoop stress at the seat beyond straight lines between the nodes, in parts of its range.
+
+It was up to 0.002 in 138 random states of 23 bushes, with 61 to 201 nodes.
+"""
+
+Pair = tuple[np.ndarray, np.ndarray]
+"""Lower and upper bounds, shape (k,) each."""
+
+
+class Block(NamedTuple):
+    """Nodal values and numbers of some states.
+
+    Attributes
+    ----------
+    pressure, shear, status : ndarray, shape (k, n)
+    loads : ndarray, shape (k, loads)
+    marks : tuple of ndarray, shape (k, n)
+        The arrays of :class:`fastpin.states.marks.Marks`; empty if the states have none.
+    numbers : dict of str to ndarray, shape (k,)
+        Of :data:`NUMBERS`.
+    """
+
+    pressure: np.ndarray
+    shear: np.ndarray
+    status: np.ndarray
+    loads: np.ndarray
+    marks: tuple[np.ndarray, ...]
+    numbers: dict[str, np.ndarray]
+
+
+class Bounds:
+    """Bounds of the readings of different states, which come in blocks.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : Grid
+    names : set of str
+        The quantities. Those without bounds are unbounded.
+    """
+
+    def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
+        self._problem, self._grid, self._names = problem, grid, names - set(NUMBERS)
+        self._found: dict[str, list[Pair]] = {name: [] for name in self._names}
+        self._stresses = StressBounds(problem, grid, names)
+        self._waiting: list[tuple[np.ndarray, ...]] = []  # until so many states make the matrices worth while
+        self._count = 0
+
+    def add(self, block: Block, rows: list[int]) -> None:
+        """Take these rows of a block."""
+        pressure, shear, status = (part[rows] for part in (block.pressure, block.shear, block.status))
+        coupled = self._problem.friction * self._problem.surfaces.dundurs()[1] != 0.0
+        peaks = pressure_bounds(self._grid, pressure, coupled)
+        known: dict[str, Callable[[], Pair]] = {
+            "peak_pressure": lambda: peaks,
+            "peak_shear": lambda: shear_bounds(shear, self._problem.friction * peaks[1]),
+            "contact_width": lambda: width_bounds(self._grid, status != OPEN),
+            "stick_width": lambda: width_bounds(self._grid, _sticking(self._problem, pressure, shear, status)),
+        }
+        for name in self._names - self._stresses.names:
+            self._found[name].append(known[name]() if name in known else _unbounded(len(rows)))
+        if self._stresses.names:
+            self._waiting.append((pressure, shear, status, block.loads[rows][:, list(REMOTE)]))
+            self._count += len(rows)
+            if self._count > MAPPED:
+                self._bound_stresses()
+
+    def _bound_stresses(self) -> None:
+        """Compute the bounds of the stresses of the waiting states."""
+        for values in self._waiting:
+            for name, pair in self._stresses.of(*values).items():
+                self._found[name].append(pair)
+        self._waiting = []
+
+    def found(self) -> dict[str, Pair]:
+        """Return the bounds of all states by quantity."""
+        for name in self._stresses.names if self._waiting else ():
+            self._found[name].append(_unbounded(self._count))
+        self._waiting = []
+        return {
+            name: (np.concatenate([low for low, _ in pairs]), np.concatenate([high for _, high in pairs]))
+            for name, pairs in self._found.items()
+        }
+
+
+def _unbounded(count: int) -> Pair:
+    return np.full(count, -math.inf), np.full(count, math.inf)
+
+
+# -- pressure, shear, widths -------------------------------------------------------------------------------------
+
+
+def _spacings(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Distances from each node to its neighbours on the left and on the right, rad, shape (n,)."""
+    left, right = grid.knots()
+    before, after = grid.theta - left, right - grid.theta
+    return np.where(before > 0.0, before, after), np.where(after > 0.0, after, before)
+
+
+def pressure_bounds(grid: Grid, pressure: np.ndarray, coupled: bool) -> Pair:
+    """Bounds of the peak pressure, from the parabola through the largest node and its neighbours.
+
+    Parameters
+    ----------
+    grid : Grid
+    pressure : ndarray, shape (k, n)
+    coupled : bool
+        Whether a peak that is not smooth may be a corner, see :func:`fastpin.states.peaks.pressure_peak`.
+    """
+    before, after = _spacings(grid)
+    top = pressure.max(axis=1, initial=0.0)
+    drops = [np.maximum(pressure - np.roll(pressure, side, axis=1), 0.0) for side in (1, -1)]
+    slope = drops[0] * (after / before) - drops[1] * (before / after)
+    bend = (before + after) * (drops[0] / before + drops[1] / after)
+    rise = slope**2 / np.where(bend > 0.0, 4.0 * bend, math.inf)
+    highest = pressure >= (1.0 - ROUNDING) * top[:, None]
+    if coupled:
+        rise = np.maximum(rise, CORNER * np.maximum(*drops))
+    high = (1.0 + ROUNDING) * (top + np.where(highest, rise, 0.0).max(axis=1, initial=0.0))
+    return (1.0 - ROUNDING) * top, high
+
+
+def shear_bounds(shear: np.ndarray, most: np.ndarray) -> Pair:
+    """Bounds of the shear traction of largest magnitude, with its sign.
+
+    A peak lies above its node by no more than the largest drop beside the node, see
+    :func:`fastpin.states.peaks.shear_peak`.
+
+    Parameters
+    ----------
+    shear : ndarray, shape (k, n)
+    most : ndarray, shape (k,)
+        Upper bound of the magnitude by Coulomb's law.
+    """
+    size = np.abs(shear)
+    lowest = size.copy()
+    for step in range(1, DROP_NODES + 1):
+        for side in (step, -step):
+            np.minimum(lowest, np.roll(size, side, axis=1), out=lowest)
+    highest = size + STEEPEST_RISE * (size - lowest)
+    cap = (1.0 + ROUNDING) * most
+    least = (1.0 - LARGEST_FALL - ROUNDING) * size.max(axis=1, initial=0.0)
+    positive, negative = (
+        np.minimum(np.where(sign * shear > 0.0, highest, 0.0).max(axis=1, initial=0.0), cap) for sign in (1.0, -1.0)
+    )
+    return np.where(negative >= least, -negative, least), np.where(positive >= least, positive, -least)
+
+
+def width_bounds(grid: Grid, inside: np.ndarray) -> Pair:
+    """Bounds of the length of zones, rad. An end lies within a node distance of its outermost node.
+
+    Parameters
+    ----------
+    grid : Grid
+    inside : ndarray of bool, shape (k, n)
+        Nodes in the zones.
+    """
+    before, after = _spacings(grid)
+    joined = inside & np.roll(inside, -1, axis=1)
+    if not grid.closed:
+        joined[:, -1] = False
+    length = joined @ after
+    slack = (inside & ~np.roll(joined, 1, axis=1)) @ np.maximum(before, after)
+    slack += (inside & ~joined) @ np.maximum(before, after)
+    slack += ROUNDING
+    return np.maximum(length - slack, 0.0), length + slack
+
+
+def _sticking(problem: Problem, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray) -> np.ndarray:
+    """Nodes that truly stick, see :func:`fastpin.states.old_borders.truly_sticking`, bool, shape (k, n)."""
+    reserve = problem.friction * pressure - np.abs(shear)
+    return np.asarray((status == STICK) & (reserve > 1e-9 * reserve.max(axis=1, initial=0.0)[:, None]))
+
+
+# -- stresses ------------------------------------------------------------------------------------------------------
+
+
+class NodalStress:
+    """The stress at points of the plate as a linear function of the nodal tractions: straight lines between the nodes.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : Grid
+    theta, depth : ndarray, shape (m,)
+        Points of the plate, see :func:`fastpin.elasticity.stress.plate_stress`.
+    seat : ndarray, shape (k,)
+        Angles of more points, at the seat of a bush.
+    """
+
+    def __init__(self, problem: Problem, grid: Grid, theta: np.ndarray, depth: np.ndarray, seat: np.ndarray) -> None:
+        def stress(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+            found = plate_stress(problem, tractions, remote, theta, depth)
+            if not seat.size:
+                return found
+            return np.c_[found, seat_stress(problem, tractions, remote, seat, np.zeros(seat.size))]
+
+        self._grid, self._stress = grid, stress
+        self._press_fit = stress(Tractions(()), np.zeros(3))
+        self._unit = float(np.abs(self._press_fit).max(initial=0.0)) or 1.0  # beside it a traction of 1 Pa is rounding
+        self._remote = np.array([stress(Tractions(()), self._unit * one) - self._press_fit for one in np.eye(3)])
+        self._remote /= self._unit
+        self._response = np.zeros((2, 3, grid.size, theta.size + seat.size))
+        self._known = np.zeros(grid.size, dtype=bool)
+
+    def learn(self, pressure: np.ndarray, shear: np.ndarray) -> None:
+        """Compute the stresses of the hat functions of all nodes that these tractions (k, n) load."""
+        before, after = _spacings(self._grid)
+        loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
+        for node in np.flatnonzero(loaded & ~self._known).tolist():
+            theta = self._grid.theta[node] + np.array([-before[node], 0.0, after[node]])
+            for k in range(2):
+                hat = np.zeros((3, 3))
+                hat[:, 0], hat[1, 1 + k] = theta, self._unit
+                found = self._stress(Tractions((hat,)), np.zeros(3)) - self._press_fit
+                self._response[k, :, node] = found / self._unit
+            self._known[node] = True
+
+    def component(
+        self, which: int, points: slice, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray
+    ) -> np.ndarray:
+        """Return a component of (srr, stt, srt) at some points, shape (k, points)."""
+        known, response = self._known, self._response[:, which]
+        found = pressure[:, known] @ response[0, known, points] + shear[:, known] @ response[1, known, points]
+        return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
+
+
+class StressBounds:
+    """Bounds of the readings of the stress: the largest hoop stress round the hole, and the interface of a bush.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its plate is not rigid.
+    grid : Grid
+    names : set of str
+        The readings.
+    """
+
+    HOOP, SEAT = "peak_hoop", "peak_hoop_seat"
+    BUSH = ("bush_open_margin", "bush_slip_margin", "bush_least_friction")
+
+    def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
+        self.names = names & {self.HOOP, self.SEAT, *self.BUSH}
+        self._bush = problem.plate_body if isinstance(problem.plate_body, Bushing) else None
+        self._problem, self._grid = problem, grid
+        self._stress: NodalStress | None = None
+
+    def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray, remote: np.ndarray) -> dict[str, Pair]:
+        """Return the bounds for tractions and status of the nodes (k, n) and remote stresses (k, 3)."""
+        if self._stress is None:
+            self._stress = NodalStress(self._problem, self._grid, *self._points())
+        self._stress.learn(pressure, shear)
+        values = pressure, shear, remote
+        found: dict[str, Pair] = {}
+        if self.HOOP in self.names:
+            found[self.HOOP] = _hoop_bounds(self._stress.component(1, slice(0, self._rim), *values), shear, status)
+        if self._bush is not None and self.names & {*self.BUSH}:
+            interface = slice(self._rim, self._rim + self._round)
+            normal, along = (self._stress.component(k, interface, *values) for k in (0, 2))
+            found |= zip(self.BUSH, _interface_bounds(-normal, along, self._bush.friction), strict=True)
+        if self.SEAT in self.names:
+            hoop = self._stress.component(1, slice(self._rim + self._round, None), *values)
+            found[self.SEAT] = _seat_bounds(hoop) if self._is_thick else _unbounded(len(hoop))
+        return {name: found[name] for name in self.names}
+
+    def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Angles and depths of the points round the hole and round the bush, and angles of the points of its seat."""
+        around, grid = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0), self._grid
+        rim = np.unique(np.remainder(np.r_[around, grid.theta, grid.theta + 0.5 * grid.weights], 2.0 * math.pi))
+        rim = rim if self.HOOP in self.names else rim[:0]
+        self._rim, self._round = rim.size, 0
+        if self._bush is None:
+            return rim, np.zeros(rim.size), rim[:0]
+        wall = self._bush.outer_radius / self._problem.hole_radius - 1.0
+        self._is_thick = wall > SMOOTH * float(grid.weights.max())
+        theta = 2.0 * math.pi * np.arange(AROUND_BUSH) / AROUND_BUSH
+        theta = theta[:: COARSER if wall > THICK else 1]
+        seat = theta if self.SEAT in self.names else theta[:0]
+        interface = theta if self.names & {*self.BUSH} else theta[:0]
+        self._round = interface.size
+        return np.r_[rim, interface], np.r_[np.zeros(rim.size), np.full(interface.size, wall)], seat
+
+
+def _hoop_bounds(straight: np.ndarray, shear: np.ndarray, status: np.ndarray) -> Pair:
+    """Bounds of the largest hoop stress, from straight lines (k, m), and shear and status of the nodes (k, n)."""
+    drop = straight - np.minimum(np.roll(straight, 1, axis=1), np.roll(straight, -1, axis=1))
+    step = np.abs(shear - np.roll(shear, 2, axis=1)).max(axis=1)
+    slack = SHEAR_STEP * step + ROUNDING * np.abs(straight).max(axis=1)
+    one, other = status == SLIP_POSITIVE, status == SLIP_NEGATIVE
+    for side in (*range(1, ABRUPT + 1), *range(-ABRUPT, 0)):
+        slack = np.where((one & np.roll(other, side, axis=1)).any(axis=1), math.inf, slack)
+    return straight.max(axis=1) - slack, (straight + np.maximum(drop, 0.0)).max(axis=1) + slack
+
+
+def _seat_bounds(hoop: np.ndarray) -> Pair:
+    """Bounds of the largest hoop stress at the seat of a bush, from values at equally spaced points, shape (k, m)."""
+    bends = np.abs(np.roll(hoop, 1, axis=1) - 2.0 * hoop + np.roll(hoop, -1, axis=1)).max(axis=1)
+    slack, top = bends + SEAT_DOUBT * np.ptp(hoop, axis=1) + ROUNDING * np.abs(hoop).max(axis=1), hoop.max(axis=1)
+    return top - slack, top + slack
+
+
+def _interface_bounds(normal: np.ndarray, along: np.ndarray, friction: float | None) -> tuple[Pair, Pair, Pair]:
+    """Bounds of the least pressure, the least reserve and the least friction at the interface of a bush.
+
+    `normal` and `along` are pressure and shear at equally spaced points, shape (k, m). Between the points they differ
+    by a part of their second differences.
+    """
+    slack = np.zeros(len(normal))
+    for values in (normal, along):
+        bends = np.abs(np.roll(values, 1, axis=1) - 2.0 * values + np.roll(values, -1, axis=1)).max(axis=1)
+        slack += 0.5 * bends + ROUNDING * np.abs(values).max(axis=1)
+    size, least = np.abs(along), normal.min(axis=1)
+    open_pair = least - slack, least + slack
+    unbounded = np.full(len(normal), math.inf)
+    slip_pair = -unbounded, unbounded
+    if friction:
+        reserve, doubt = (normal - size / friction).min(axis=1), slack * (1.0 + 1.0 / friction)
+        slip_pair = reserve - doubt, reserve + doubt
+    wide = slack[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        high = np.where(least > slack, ((size + wide) / np.maximum(normal - wide, 0.0)).max(axis=1), math.inf)
+        ratios = np.maximum(size - wide, 0.0) / np.maximum(normal + wide, 0.0)
+    return open_pair, slip_pair, (np.nan_to_num(ratios, nan=0.0).max(axis=1), high)

@@ -1,0 +1,133 @@
+"""Extremes over all kept states equal the readings of each state, and few states are read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fastpin
+from fastpin.errors import InputError
+from fastpin.model.bodies import Bushing, Ring
+from fastpin.model.history import LoadHistory
+from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.states import extremes
+from fastpin.states.extremes import MARKS, READINGS, KeptStates, marked_extremes, marked_places
+from fastpin.states.reading_bounds import MAPPED, NodalStress
+from fastpin.states.state import State
+from tests.support.samples import sample_result
+
+STEEL, ALUMINIUM = MATERIALS["steel"], MATERIALS["aluminium"]
+
+LUG = Bushing(MATERIALS["C93200"], 0.0125, 3e-5, inside=Ring(0.025, "half"), friction=0.15)
+
+JOINTS = {
+    "like": Problem(MaterialPair(STEEL, STEEL), 0.01, 1e-5, 0.5),
+    "unlike": Problem(MaterialPair(STEEL, ALUMINIUM), 0.01, 2e-5, 0.3, "body"),
+    "fit": Problem(MaterialPair(ALUMINIUM, STEEL), 0.01, -1e-5, 0.2, rotation="fixed"),
+    "frictionless": Problem(MaterialPair(STEEL, ALUMINIUM), 0.01, 2e-5, 0.0),
+    "bush": Problem(MaterialPair(STEEL, MATERIALS["7075-T6"]), 0.01, 4e-5, 0.2, plate_body=LUG),
+    "rigid plate": Problem(MaterialPair(STEEL, Material.rigid()), 0.01, 2e-5, 0.2),
+}
+
+
+def random_history(corners: int, seed: int = 1) -> LoadHistory:
+    """Forces up to 3 MN/m downwards and 0.5 MN/m sideways; every fifth corner has no load."""
+    rng = np.random.default_rng(seed)
+    loads = [{"P": rng.uniform(1e5, 3e6), "Q": rng.uniform(-5e5, 5e5)} for _ in range(corners)]
+    return LoadHistory([{"P": 0.0, "Q": 0.0} if k % 5 == 4 else load for k, load in enumerate(loads)])
+
+
+@pytest.fixture(scope="module", params=JOINTS)
+def result(request: pytest.FixtureRequest) -> Result:
+    return fastpin.solve(JOINTS[request.param], random_history(2 * MAPPED), nodes=61)
+
+
+@pytest.fixture
+def readings(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """The names of the quantities that are read, in order."""
+    read: list[str] = []
+    for name, each in READINGS.items():
+        monkeypatch.setitem(
+            READINGS, name, each._replace(of=lambda state, name=name, of=each.of: read.append(name) or of(state))
+        )
+    return read
+
+
+def test_extremes_are_the_readings_of_all_states(result: Result) -> None:
+    found = result.extremes()
+    for name, each in READINGS.items():
+        values = np.array([each.of(state) for state in result])
+        if np.isnan(values).all():
+            assert name not in found
+            continue
+        assert found[name].smallest.value == np.nanmin(values), name
+        assert found[name].largest.value == np.nanmax(values), name
+        for extreme in found[name]:
+            assert values[extreme.place] == extreme.value
+            assert extreme.load_point == result[extreme.place].step + 1
+
+
+def test_few_states_are_read(readings: list[str]) -> None:
+    corners = [{"P": 3e6 if k == 37 else 1e6 + 1e4 * k} for k in range(2 * MAPPED)]
+    found = marked_extremes(KeptStates(fastpin.solve(JOINTS["bush"], corners, nodes=101).states))
+    assert found.keys() == MARKS.keys()
+    assert {extreme.place for extreme in found.values()} == {37}
+    assert max(readings.count(name) for name in readings) <= 3
+
+
+def test_stresses_of_hat_functions_add_up(result: Result) -> None:
+    if result.problem.surfaces.plate.is_rigid:
+        return
+    theta = np.linspace(-3.0, 3.0, 17)
+    stress = NodalStress(result.problem, result.grid, theta, np.zeros(17))
+    pressure, shear = (np.array([getattr(state, name) for state in result[:6]]) for name in ("pressure", "shear"))
+    remote = np.zeros((6, 3))
+    stress.learn(pressure, shear)
+    hoop = stress.component(1, slice(None), pressure, shear, remote)
+    known = np.array([state.hoop_stress("plate", theta, straight=True) for state in result[:6]])
+    assert np.abs(hoop - known).max() < 1e-9 * max(np.abs(known).max(), pressure.max())
+
+
+def test_equal_states_are_read_once(readings: list[str]) -> None:
+    state = fastpin.solve(JOINTS["like"], [{"P": 1e6}], nodes=61)[0]
+    copies = [replace(state, step=step, dissipation=0.1 * step) for step in range(200)]
+    found = extremes.all_extremes(KeptStates(copies))
+    assert found["peak_hoop"].largest.place == 0
+    assert found["dissipation"].largest == (0.1 * 199, 199, 200.0)
+    assert max(readings.count(name) for name in readings) == 2  # the smallest, and the largest
+
+
+def test_the_states_of_extremes_have_words() -> None:
+    corners = [{"P": 3e6 if k == 7 else 1e6} for k in range(10)]
+    found = marked_extremes(KeptStates(fastpin.solve(JOINTS["like"], corners, nodes=61).states))
+    assert marked_places(found) == {7: "largest pressure, largest shear, largest hoop stress"}
+
+
+def test_a_result_without_states_has_no_extremes() -> None:
+    assert replace(sample_result(), states=[]).extremes() == {}
+
+
+def test_states_on_another_grid_are_refused() -> None:
+    one, other = sample_result(), sample_result(nodes=61)
+    with pytest.raises(InputError, match="grid of the result"):
+        replace(one, states=[*one, *other]).extremes()
+
+
+def test_without_friction_a_bush_may_slip() -> None:
+    problem = replace(JOINTS["bush"], plate_body=replace(LUG, friction=None))
+    found = fastpin.solve(problem, random_history(8), nodes=61).extremes()
+    assert "bush_slip_margin" not in found
+    assert math.isfinite(found["bush_open_margin"].smallest.value)
+    assert found["bush_least_friction"].largest.value > 0.0
+
+
+def test_states_without_contact_have_extremes() -> None:
+    empty = fastpin.solve(JOINTS["like"], [{"P": 0.0}], nodes=61)
+    assert isinstance(empty[0], State)
+    assert empty.extremes()["peak_pressure"].largest == (0.0, 0, 1.0)
