@@ -286,6 +286,7 @@ def _draw_loop(panel: Axes, cycles: Sequence[LoadCycle], name: str, abscissa: Ab
     unit = units(problem)
     load, load_unit = unit[kind].scale(np.concatenate([loop.load for loop in loops]).tolist())
     words, conjugate = CONJUGATES[kind]
+    words = "displacement of the pin" if kind == "force" else words
     moves = [_abscissa_values(cycle, name, abscissa) for cycle in cycles]
     if prescribed := _prescribed(problem, name, abscissa):
         words = f"prescribed displacement {prescribed}"

@@ -211,7 +211,7 @@ def test_a_loop_is_drawn_over_the_prescribed_displacement_or_over_that_of_the_pi
     assert prescribed.get_xlabel() == "prescribed displacement ux (µm)"
     assert prescribed.lines[0].get_xdata() == pytest.approx([1e6 * state.load["ux"] for state in cycle.states])
     pin = loop_panel(figures.plot_loops(rig, abscissa="pin"))
-    assert pin.get_xlabel() == "displacement of the pin over the hole (µm)"
+    assert pin.get_xlabel() == "displacement of the pin (µm)"
     assert max(pin.lines[0].get_xdata()) < 14.9  # pin and plate deform on the way to the gauge circle
     x, q = prescribed.lines[0].get_data()
     over_pin = pin.lines[0].get_data()
@@ -259,7 +259,10 @@ def test_fatigue_along_the_edge(result):
         (lambda r: figures.plot_stress_profile(r, depth=0.0), "depth: must be above 0"),
         (lambda r: figures.plot_stress_profile(r, angle="a"), "angle: must be a number"),
         (lambda r: figures.plot_stress_field(r.states), "state: must be a State"),
-        (lambda r: figures.plot_loops(solve(r.problem, [{"P": 1e5}], nodes=61)), "cycle: the history has no cycle"),
+        (
+            lambda r: figures.plot_loops(solve(r.problem, [{"P": 1e5}], nodes=61)),
+            "cycle: no cycle of the history has ended",
+        ),
         (lambda r: figures.plot_stress_field(r[0], component="x"), "component: must be"),
         (lambda r: figures.plot_stress_field(r[0], extent=1.0), "extent: must be above 1"),
         (lambda r: figures.plot_hoop_stress(r, "hoop.txt"), "path: must be the name of a figure"),

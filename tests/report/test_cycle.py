@@ -111,7 +111,7 @@ def test_rotation_of_a_symmetric_cycle_is_rounding() -> None:
     result = solve(Problem(pair, 0.01, 2e-5, 0.4), LoadHistory([{"P": 1e6}, {"P": 2e5}]).repeated(2), nodes=61)
     assert any(cycle.rotation_change != 0.0 for cycle in result.cycles)
     (line,) = cycle_lines(result.problem, result.cycles, result.states)
-    assert line.endswith("turned 0 rad and 0 rad")
+    assert line.count("turned 0 rad") == 2
 
 
 def test_no_fatigue_is_told_without_constants_or_states() -> None:

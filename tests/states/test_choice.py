@@ -116,7 +116,7 @@ def test_faults_of_chosen_cycles(chosen, message):
     with pytest.raises(InputError) as fault:
         chosen_cycles(CYCLES, chosen)
     assert str(fault.value) == message
-    with pytest.raises(InputError, match="no cycle that has ended"):
+    with pytest.raises(InputError, match="no cycle of the history has ended"):
         chosen_cycles((), chosen)
 
 
