@@ -338,7 +338,7 @@ class Trial:
                 return
         if content(output) != self._expected:
             self.findings.append(f"{self.name}: after {kind}: other bits")
-        if output.is_file() and (left := _names(folder) - _names(self._before) - {output.name}):
+        if output.suffix == ".h5" and (left := _names(folder) - _names(self._before) - {output.name}):
             self.findings.append(f"{self.name}: after {kind}: {', '.join(sorted(left))} left")
         shutil.rmtree(folder)
 
