@@ -35,6 +35,9 @@ MOST_PARSED = 12_000_000
 LONGEST_FAULT = 500
 """Most characters of a fault of a file. Sentences without words of the file are shorter."""
 
+FAULT_END = 150
+"""Characters of the end of a longer fault that are kept."""
+
 MOST_FAULTS = 100
 """Most faults that are listed. Reading ends there: each fault costs a search for what was meant."""
 
@@ -208,7 +211,10 @@ class CaseText:
 
     def _add(self, line: int, message: str) -> None:
         shown = printable(message)  # a word of the file may be as long as the file
-        message = shown if len(shown) <= LONGEST_FAULT else f"{shown[: LONGEST_FAULT - 3]}..."
+        if len(shown) <= LONGEST_FAULT:
+            message = shown
+        else:  # The end may say which word is meant.
+            message = f"{shown[: LONGEST_FAULT - FAULT_END - 5]} ... {shown[-FAULT_END:]}"
         if (line, message) not in self.faults:
             self.faults.append((line, message))
 

@@ -288,7 +288,7 @@ def test_the_case_file_is_never_overwritten(
     """argparse takes the case file after an option with an optional value for that value."""
     assert main(["run", option, str(case)]) == 2
     assert main(["run", str(case), option, str(case.parent / "." / case.name)]) == 2
-    assert "a case file or plan by its name" in capsys.readouterr().err
+    assert "by its name it is a case file or plan" in capsys.readouterr().err
     assert case.read_text() == EXAMPLE
     assert solved == []
 
@@ -691,7 +691,7 @@ def test_branches_from_the_command_line(case: Path, tmp_path: Path, capsys: pyte
         (["run", "CASE", "--cycles", "c.png"], "--cycles: the history has no cycles"),
         (["run", "CASE", "--cycle-csv", "c.csv"], "--cycle-csv: the history has no cycles"),
         (["run", "CASE", "--keep", "cycles"], "--keep: the history has no cycles"),
-        (["run", "CASE", "-o", "CASE"], "a case file or plan by its name"),
+        (["run", "CASE", "-o", "CASE"], "by its name it is a case file or plan"),
         (["run", "CASE", "--start", "CASE"], "is no result; of a case file, fastpin run"),
         (["run", "CASE", "--start", "none.h5"], "there is no such file"),
         (["resume", "none.h5"], "there is no such file"),

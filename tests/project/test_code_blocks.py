@@ -59,7 +59,7 @@ ELSEWHERE = {
 LONG = ("convergence.md", "compliance.md", "histories.md", "report.md")
 """Pages whose blocks of Python take more than a few seconds."""
 
-PLAN_KEYS = {"title", "case", "grid", "list", "outcomes"}
+PLAN_KEYS = {"title", "case", "grid", "list", "outcomes", "labels"}
 """Keys of a plan, as docs/reference/plan-file.md lists them."""
 
 PROGRAMS = ("pip", "source", "ssh", "sbatch", "squeue", "snakemake", "module", "mkdir", "cd")

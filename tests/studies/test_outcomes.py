@@ -16,6 +16,7 @@ from fastpin.errors import CaseFileError, FastpinError, InputError
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom
 from fastpin.model.materials import MaterialPair
+from fastpin.model.units import Unit
 from fastpin.solver.result import Result
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies import outcomes, read_outcomes, sweep
@@ -171,7 +172,7 @@ def test_the_functions_of_a_file(result: Result, tmp_path: Path) -> None:
     assert read["largest_pressure"].value == max(state.peak_pressure for state in result)
     assert (read["nothing"].value, read["nothing"].reason) == (None, None)
     assert read["broken"].reason == "ZeroDivisionError: division by zero (mine.py, line 20)"
-    assert [outcome.unit_in({}) for outcome in found.values()] == ["Pa", "", ""]
+    assert [outcome.unit_in({}) for outcome in found.values()] == [Unit(1.0, "Pa"), Unit(1.0, ""), Unit(1.0, "")]
 
 
 def test_the_definition_of_a_function_changes_with_its_file(tmp_path: Path) -> None:
