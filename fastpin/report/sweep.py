@@ -290,7 +290,7 @@ def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> t
 def _in_words(plan: Plan, name: str, value: Any) -> Any:
     """Return the word for the number of a class; another value as it is."""
     classes = plan.outcomes[name].classes if name in plan.outcomes and value is not None else {}
-    return classes.get(value, value) if isinstance(value, int | float) else value
+    return next((word for number, word in classes.items() if number == value), value)
 
 
 def _label(words: str, unit: str) -> str:
