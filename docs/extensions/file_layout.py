@@ -14,6 +14,7 @@ from file_keys import table, words_of_docstring
 import fastpin
 from fastpin.states.cycles import Cycle
 from fastpin.storage import layout
+from fastpin.storage.extremes import LEAST_STORED
 
 GROUPS = re.compile(r"^``(/\w*)``\s+(.*)$", re.MULTILINE)
 """A group and what it holds, in the docstring of the layout."""
@@ -44,6 +45,10 @@ WORDS = {
     "residual_name": "names of the columns of `residuals`",
     "state": "numbers of the states",
     "old_borders": "marks of borders that earlier loads have left; for the cusps of later states",
+    "names": "quantity and side of each extreme",
+    "states": "number of states from which they were chosen",
+    "place": "place of the state with the extreme, from 0",
+    "value": "value of the quantity",
     "old_places": "places of these borders between the nodes",
 }
 """Words for members that no docstring explains."""
@@ -64,10 +69,10 @@ def file_layout() -> str:
 
 
 def _write(path: Path) -> None:
-    """Write a file with everything that a file may hold: cycles, sums of slip, restarts."""
+    """Write a file with everything that a file may hold: cycles, sums of slip, restarts, extremes."""
     pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
     problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4, thickness=5e-3)
-    cycles = fastpin.LoadHistory([{"Q": 6e5}, {"Q": -6e5}]).repeated(2)
+    cycles = fastpin.LoadHistory([{"Q": 6e5}, {"Q": -6e5}]).repeated(LEAST_STORED // 2)
     history = fastpin.LoadHistory([{"P": 2.4e6}]) + cycles
     fastpin.record(problem, history, path, title="sample", nodes=61, slip_sums=True, save_after=[1])
 

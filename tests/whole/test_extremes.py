@@ -39,13 +39,13 @@ interference = 30e-6
 friction = 0.15
 """
 
-PEAKS = {"plain": 200, "bush": 56}
+PEAKS = {"plain": 70, "bush": 56}
 """The place of the largest load, and of the extremes."""
 
 
 def case_text(kind: str) -> str:
-    """A case of several hundred turning points, of which one goes much farther than the others."""
-    peak, count = PEAKS[kind], 260 if kind == "plain" else 90
+    """A case of many turning points, of which one goes much farther than the others."""
+    peak, count = PEAKS[kind], 100 if kind == "plain" else 70
     rng = np.random.default_rng(3)
     forces = [3e3 if k % 2 else rng.uniform(27e3, 30e3) for k in range(count)]  # no rows that repeat earlier ones
     sideways = [0.0] * count if kind == "plain" else rng.uniform(-2e3, 2e3, count).tolist()
