@@ -72,18 +72,18 @@ def _given(options: argparse.Namespace, *names: str) -> dict[str, Any]:
 
 
 def _states(
-    options: argparse.Namespace, usual: str | None = None, most: int = 0, whole: bool = False, hoop: bool = False
+    options: argparse.Namespace, usual: str | None = None, most: int = 0, whole: bool = False, hoop: str = ""
 ) -> figures.states.DrawnStates:
     """The states of ``--states``, or the `usual` ones. Only these are read from the file.
 
     With `most` a figure draws up to so many states, in a row; or as a `whole`, which joins more states. With `hoop` it
-    draws the hoop stress.
+    draws the hoop stress of this body.
     """
     chosen = usual if options.states is None else options.states
     if most:
         states = figures.states.stored_states(options.result, chosen, most, in_a_row=not whole, whole=whole)
     else:
-        extremes = figures.states.HOOP if hoop else figures.states.TRACTIONS
+        extremes = figures.states.HOOP.get(hoop, ()) if hoop else figures.states.TRACTIONS
         states = figures.states.stored_states(options.result, chosen, extremes=extremes)
     if states.note:
         say(f"the figure shows {states.note}")
@@ -176,13 +176,13 @@ def _animation(options: argparse.Namespace, title: str) -> Made:
 
 
 def _hoop(options: argparse.Namespace, title: str) -> Made:
-    states, given = _states(options, hoop=True), _given(options, "body")
+    states, given = _states(options, hoop=options.body or "both"), _given(options, "body")
     curves = report.stress.hoop_curves(states, **given)
     return _drawn(lambda look: figures.stress.draw_hoop(states, curves, look), title), _curves(curves)
 
 
 def _profile(options: argparse.Namespace, title: str) -> Made:
-    states, given = _states(options, hoop=True), _given(options, "body", "angle", "depth")
+    states, given = _states(options, hoop=options.body or "plate"), _given(options, "body", "angle", "depth")
     curves = report.stress.depth_curves(states, **given)
     return _drawn(lambda look: figures.stress.draw_profile(states, curves, look), title), _curves(curves)
 

@@ -150,10 +150,11 @@ def _draw_slip(cycle: LoadCycle, look: Look) -> Sheet:
     return sheet
 
 
-def _head(sheet: Sheet, cycle: LoadCycle, title: str, lift: float = 5.0) -> None:
-    """Write title, corners, loads that are constant, and the parameters, `lift` points above the panel."""
+def _head(sheet: Sheet, cycle: LoadCycle, title: str, more: str = "", lift: float = 5.0) -> None:
+    """Write title, corners, loads that are constant, `more`, and the parameters, `lift` points above the panel."""
     common = ",  ".join(load_text(cycle.states, 0, name) for name in loads_by_change(cycle.states)[0])
     heading = f"cycle from corner {cycle.first:,} to {cycle.last:,}{f',  {common}' if common else ''}"
+    heading = f"{heading}:  {more}" if more else heading
     sheet.head(title, heading, caption=caption(cycle.states[0].problem, cycle.states), lift=lift)
 
 
@@ -267,7 +268,7 @@ def _draw_loops(cycles: Sequence[LoadCycle], look: Look, abscissa: Abscissa | No
         _draw_loop(panel, cycles, name, abscissa, across)
     problem, single = cycles[0].states[0].problem, len(cycles) == 1
     if single:
-        _head(sheet, cycles[0], f"{look.title}\n{dissipated_words(cycles[0])}".strip(), lift=18.0)
+        _head(sheet, cycles[0], look.title, dissipated_words(cycles[0]), lift=18.0)
         return sheet
     sheet.head(look.title, caption=caption(problem, [state for cycle in cycles for state in cycle.states]), lift=6.0)
     handles = []

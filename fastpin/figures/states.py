@@ -52,8 +52,13 @@ LONG_ENTRY = 32
 TRACTIONS: tuple[tuple[str, Side], ...] = (("peak_pressure", "largest"), ("peak_shear", "largest magnitude"))
 """The extremes of figures of tractions."""
 
-HOOP: tuple[tuple[str, Side], ...] = (("peak_hoop", "largest"),)
-"""The extreme of figures of the hoop stress."""
+HOOP: dict[str, tuple[tuple[str, Side], ...]] = {
+    "plate": (("peak_hoop", "largest"),),
+    "seat": (("peak_hoop_seat", "largest"),),
+    "pin": (),
+    "both": (("peak_hoop", "largest"), ("peak_hoop_seat", "largest")),
+}
+"""The extremes of figures of the hoop stress, by the body that they show."""
 
 
 class DrawnStates(list[State]):

@@ -73,7 +73,7 @@ def plot_hoop_stress(
     InputError
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states, extremes=HOOP)
+    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states, extremes=HOOP.get(body, ()))
     curves = hoop_curves(drawn, body)
     return look.drawn(lambda: draw_hoop(drawn, curves, look))
 
@@ -146,7 +146,7 @@ def plot_stress_profile(
     InputError
         If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states, extremes=HOOP)
+    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states, extremes=HOOP.get(body, ()))
     curves = depth_curves(drawn, body, angle, depth)
     return look.drawn(lambda: draw_profile(drawn, curves, look))
 
