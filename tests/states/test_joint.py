@@ -12,6 +12,7 @@ from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
+from fastpin.states.bush import BushFit
 from fastpin.states.quantities import QUANTITIES
 from fastpin.states.state import State
 
@@ -101,6 +102,7 @@ def bushed(interference: float = 0.0, friction: float | None = None) -> State:
 def test_the_interface_of_case_a10():
     """Table A of a trial of these formulas: the interface carries -0.07299 to 0.46486, and shear up to 0.06845."""
     fit = bushed().bush_fit()
+    assert (fit.theta[0], fit.theta[720]) == pytest.approx((-1.5 * math.pi, -0.5 * math.pi), abs=1e-12)
     assert fit.pressure.min() == pytest.approx(-0.07299, abs=1e-5)
     assert fit.pressure.max() == pytest.approx(0.46486, abs=1e-5)
     assert np.abs(fit.shear).max() == pytest.approx(0.06845, abs=1e-5)
@@ -130,6 +132,14 @@ def test_the_press_fit_holds_the_bush():
     assert exact.slip_margin == pytest.approx(0.0, abs=1e-12)
     assert not -0.5 * math.pi - 1.2 < pressed.open_angle < -0.5 * math.pi + 1.2
     assert pressed.slip_angle <= 0.5 * math.pi
+
+
+def test_without_friction_an_interface_sticks_where_it_has_no_shear():
+    theta, pressure = np.array([-2.0, -1.0, 0.0]), np.array([0.3, 0.2, 0.1])
+    free = BushFit(theta, pressure, np.zeros(3), 0.0, 0.0)
+    assert (free.slip_margin, free.slip_angle) == (0.1, 0.0)
+    sheared = BushFit(theta, pressure, np.array([0.0, 0.01, 0.0]), 0.0, 0.0)
+    assert (sheared.slip_margin, sheared.slip_angle) == (-math.inf, -1.0)
 
 
 def test_a_press_fit_is_lame_s():

@@ -83,6 +83,28 @@ def test_three_high_nodes_are_not_read_away(tilt: float, high: float) -> None:
     assert nodal(shear) * 0.99 - 1e-4 <= value <= nodal(shear) * 1.01
 
 
+@pytest.mark.parametrize("outwards", [1.0, -1.0])
+def test_a_border_of_unlike_bodies_may_lie_a_turn_away(outwards: float) -> None:
+    x = X - 0.3
+    bound = 1.0 - 1e-4 * x**2 + outwards * -0.01 * x + 0.03 * np.sqrt(np.maximum(outwards * x, 0.0))
+    border, turn, node = float(np.interp(0.3, X, GRID.theta)), 2.0 * np.pi, 40
+    near = peaks._border_peak(GRID, bound, border, outwards, 0.5, node)
+    away = peaks._border_peak(GRID, bound, border + turn, outwards, 0.5, node)
+    assert away == pytest.approx((near[0], near[1] + turn), abs=1e-9)
+
+
+def test_beside_an_edge_the_shear_is_that_of_the_only_slipping_node() -> None:
+    """The size of the tractions is of no account."""
+    pressure = np.sqrt(1.0 - (X / 40.0) ** 2)
+    sticking = np.abs(X) < 39.0
+    for unit in (1.0, 1e-9, 1e9):
+        no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
+        contact = ShearNodes(GRID, unit * pressure, unit * pressure, sticking, no_marks, no_places, 1.0, 0.0, 0.0)
+        (patch,) = contact._patches
+        integral = contact._turned_until(patch, 0, 20, 1, 1, np.array([-0.5]))
+        assert integral / unit == pytest.approx([float(pressure[1] * GRID.weights[1])], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("nodes", "parameter", "friction", "corners"),
     [

@@ -86,6 +86,16 @@ def test_a_slip_zone_of_half_a_degree(states):
     assert state.hoop_stress("pin", [start]) == pytest.approx([-0.2063], abs=3e-4)
 
 
+@pytest.mark.parametrize("nodes", [15, 21, 41])
+def test_edges_and_borders_without_a_law_are_unresolved(nodes):
+    """The borders need more nodes than the edges."""
+    state = solve(problem(), [{"P": 1.0}], nodes=nodes)[-1]
+    edges, borders = state.contact[0], state.stick[0]
+    resolved = {15: (), 21: edges, 41: edges + borders}[nodes]
+    assert state.refined.resolved == resolved
+    assert state.refined.unresolved == tuple(place for place in edges + borders if place not in resolved)
+
+
 def test_straight_lines_miss_a_part_of_the_peak(states):
     state = states[1]
     assert state.hoop_stress("plate", straight=True).max() < 0.98 * state.peak_hoop_stress().value
@@ -215,6 +225,14 @@ def test_without_friction_and_without_contact():
         peak = empty.peak_hoop_stress()
         assert peak.value == pytest.approx(3.0, abs=1e-9)
         assert math.isnan(peak.kt_bearing)
+
+
+def test_a_joint_without_any_load_has_no_place_of_a_peak():
+    empty = solve(problem(), [{"P": 1.0}, {"P": 0.0}], nodes=101)[-1]
+    assert not empty.in_contact
+    peak = empty.peak_hoop_stress()
+    assert peak.value == 0.0
+    assert math.isnan(peak.angle)
 
 
 # --- concentrations -------------------------------------------------------------------------------------------

@@ -92,6 +92,17 @@ def test_stick_zones_of_a_contact_all_round():
     assert slip == (stick[0][1], stick[0][0] + 2.0 * math.pi, 1)
 
 
+def test_slip_zones_between_two_stick_zones_of_a_contact_all_round():
+    """The stick zones come in any order, a turn apart."""
+    grid = Grid.circle(100, start=0.0)
+    status = np.where(grid.theta < 2.0, 1, -1).astype(np.int8)
+    status[(grid.theta < 0.7) | (grid.theta > 5.5) | ((grid.theta > 2.0) & (grid.theta < 3.0))] = STICK
+    turn = 2.0 * math.pi
+    slip = zones.complement(grid, [(0.0, turn)], [(5.5, 0.7 + turn), (2.0, 3.0)], status)
+    assert [zone[2] for zone in slip] == [1, -1]
+    assert np.allclose([zone[:2] for zone in slip], [(0.7 + turn, 2.0 + turn), (3.0 + turn, 5.5 + turn)])
+
+
 def test_peaks_between_nodes():
     grid = Grid.arc(-1.0, 1.0, 60)
     smooth = 2.0 - 3.0 * (grid.theta - 0.1234) ** 2
