@@ -85,6 +85,13 @@ def test_a_split_history_has_the_same_borders(result: Result) -> None:
     assert last.peak_shear == result[-1].peak_shear
 
 
+def test_a_stored_restart_has_the_borders(result: Result, tmp_path: Path) -> None:
+    save(result, tmp_path / "a.h5")
+    kept, stored = (each.restart.configuration.marks.arrays(161) for each in (result, load(tmp_path / "a.h5")))
+    assert np.count_nonzero(kept[0]) > 2
+    assert all(np.array_equal(*pair, equal_nan=True) for pair in zip(stored, kept, strict=True))
+
+
 def test_a_file_of_an_earlier_version_has_no_borders(result: Result, tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     save(result, path)

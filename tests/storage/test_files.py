@@ -123,6 +123,11 @@ def test_a_file_that_becomes_a_result_meanwhile_is_kept(tmp_path: Path) -> None:
     assert path.read_bytes() == head
 
 
+def test_a_directory_is_no_name_of_an_output(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a directory, a file name is needed"):
+        check_writable(tmp_path)
+
+
 @pytest.mark.parametrize("name", ["a.h5.journal", "a.h5.checkpoint", "lock", f"{INDEX}-journal"])
 def test_what_a_run_or_a_sweep_needs_is_not_replaced(name: str, tmp_path: Path) -> None:
     for other in ("a.h5", INDEX, name):

@@ -148,6 +148,18 @@ def test_what_a_dead_process_has_half_noted_counts_for_nothing(tmp_path: Path, c
     assert rows_in(path) == 3
 
 
+def test_a_transaction_that_only_makes_the_file_longer_is_undone(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    file = JournaledFile(path, new=True)
+    file.write(memoryview(b"0123456789"))
+    file.commit()
+    file.truncate(20)
+    assert path.stat().st_size == 20
+    file.abandon()
+    file.release()
+    assert path.read_bytes() == b"0123456789"
+
+
 def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.h5"
     written(path, 5)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import errno
 import importlib.util
+import itertools
 import logging
 import os
 import signal
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -81,6 +83,17 @@ def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
     history = PROGRAMS["spectrum"]
     follow(problem, history, path, nodes=61)
     assert_file(path, solve(problem, history, nodes=61))
+
+
+def test_states_wait_for_one_commit_after_the_other(problem, path, monkeypatch):
+    """A commit takes longer than some states. The clock ticks each time that it is looked at."""
+    commits, clock, commit = [], itertools.count(), writer.JournaledFile.commit
+    monkeypatch.setattr(writer, "time", SimpleNamespace(monotonic=lambda: float(next(clock))))
+    monkeypatch.setattr(writer, "LONGEST_WAIT", 20.0)
+    monkeypatch.setattr(writer, "CHECKPOINT_EVERY", 1e9)
+    monkeypatch.setattr(writer.JournaledFile, "commit", lambda file: commits.append(commit(file)))
+    follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
+    assert 2 < len(commits) < 20
 
 
 # -- runs that end early -------------------------------------------------------------------------------------
@@ -366,6 +379,9 @@ def test_an_unfinished_run_can_be_looked_at_but_not_gone_on_from_its_end(left, p
     with pytest.raises(InputError, match="nothing can continue from this result"):
         solve(problem, [{"Q": 0.1}], start=found)
     assert len(solve(problem, [{"Q": 0.1}], start=store.load(path, after=20))) == 1
+    assert len(store.load(path, after=len(found))) == len(found)
+    with pytest.raises(InputError, match=f"must be a corner from 1 to {len(found)}, not {len(found) + 1}"):
+        store.load(path, after=len(found) + 1)
 
 
 def test_states_that_differ_from_those_in_the_file_are_reported(left, path, caplog):
