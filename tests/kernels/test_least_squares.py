@@ -84,6 +84,19 @@ def test_powers_lose_no_more_digits_than_singular_values(kernels):
     assert coefficients == pytest.approx(wanted, abs=1e-12)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_column_with_one_large_entry_loses_no_digits(kernels, sign):
+    """A reflection adds to this entry, whatever its sign. It must not subtract nearly equal numbers."""
+    rng = np.random.default_rng(6)
+    columns, values, coefficients = rng.normal(size=(12, 3)), rng.normal(size=12), np.empty(3)
+    columns[1:, 0] *= 1e-7
+    columns[0, 0] = sign
+    error = kernels.fit(columns, values, coefficients)
+    expected, expected_error = naive(columns, values)
+    assert coefficients == pytest.approx(expected, rel=1e-12)
+    assert error == pytest.approx(expected_error, rel=1e-12)
+
+
 @pytest.mark.parametrize("place", [0, 1, 2])
 def test_a_column_of_zeros_gets_the_coefficient_zero(kernels, place):
     """As by the pseudo-inverse, which takes the column's singular value for zero."""

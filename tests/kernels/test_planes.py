@@ -116,3 +116,17 @@ def test_planes_that_are_all_alike_end_the_search():
     out = np.empty((1, 2))
     planes.worst_planes(path[None], planes.SWING_TIMES_PUSH, out)
     assert out[0, 0] == pytest.approx(1.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_components_in_other_units_have_the_same_worst_plane(form):
+    """A power of two changes no bit. Where a criterion adds 1 to V, only U is in another unit."""
+    paths, factor = random_paths(7, 30, 40), 2.0**-30
+    scaled = factor * paths
+    if form == planes.SWING_TIMES_MORE:
+        scaled[..., 3:] = paths[..., 3:]
+    out, small = np.empty((len(paths), 2)), np.empty((len(paths), 2))
+    planes.worst_planes(paths, form, out)
+    planes.worst_planes(scaled, form, small)
+    assert np.array_equal(small[:, 0], (factor**2 if form == planes.SWING_TIMES_PUSH else factor) * out[:, 0])
+    assert np.array_equal(small[:, 1], out[:, 1], equal_nan=True)
