@@ -160,12 +160,14 @@ def test_integrals_against_the_plain_sum_near_the_edge(way, name, outside):
         assert distance * integrals[2] == pytest.approx(distance * expected[2], abs=10 * rounding(tractions))
 
 
+@pytest.mark.parametrize("name", ["arc", "circle"])
 @pytest.mark.parametrize("outside", [True, False])
-def test_integrals_at_nodes_on_the_edge_are_finite_and_continuous(way, outside):
-    tractions = samples()["arc"]
+def test_integrals_at_nodes_on_the_edge_are_finite_and_continuous(way, name, outside):
+    """Also at the first node of a patch all round, where its list of nodes begins and ends."""
+    tractions = samples()[name]
     nodes = tractions.patches[0][::7, 0]
     found = cauchy_integrals(tractions, nodes, np.zeros(nodes.size), outside)
-    beside = cauchy_integrals(tractions, nodes, np.full(nodes.size, 1e-12), outside)
+    beside = cauchy_integrals(tractions, nodes, np.full(nodes.size, 1e-13), outside)
     assert np.isfinite(found).all()
     assert found[:, :2] == pytest.approx(beside[:, :2], abs=1e-9)
 
