@@ -125,12 +125,10 @@ def lemke(matrix, vector, cover, most_pivots, tableau, basis, z):
             factor = cover[i] / cover[row]
             for j in range(last + 1):
                 tableau[i, j] -= factor * tableau[row, j]
-            tableau[i, artificial] = 0.0
             tableau[i, last] = max(tableau[i, last], 0.0)
     factor = tableau[row, artificial]
     for j in range(last + 1):
         tableau[row, j] /= factor
-    tableau[row, artificial] = 1.0
     basis[row] = artificial
     enter = k + row  # the complement of the variable that left
     for _ in range(most_pivots):
