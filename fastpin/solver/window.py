@@ -198,5 +198,3 @@ class WindowStepper:
         assert self._inside is not None
         position.now = self._window.paste(self._inside.now, position.now)
         position.reached, position.fresh = self._inside.reached, self._inside.fresh
-        if not position.now.closed.any():
-            self.leave(position)
