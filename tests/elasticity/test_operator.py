@@ -130,3 +130,24 @@ def test_corrections_in_the_middle_of_a_step_change_nothing(titanium_in_aluminiu
         assert np.array_equal(one.status, two.status)
         scale = np.abs(two.pressure).max()
         assert max(np.abs(one.pressure - two.pressure).max(), np.abs(one.shear - two.shear).max()) < 1e-11 * scale
+
+
+@pytest.mark.usefixtures("_transforms")
+def test_a_tableau_that_can_not_correct_is_built_anew(titanium_in_aluminium, monkeypatch):
+    """Where its corrections leave too much, a factorisation corrects the configuration, but not the tableau."""
+    problem = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre")
+    monkeypatch.setattr(operator, "LARGEST_DENSE", 3)
+    monkeypatch.setattr(path, "MOST_DRIFT", 0.0)
+    monkeypatch.setattr(path, "MOST_ERROR", -1.0)
+    kept, repair = [], path.PathStep._repair
+
+    def watched(step):
+        before = step._columns
+        is_new = repair(step)
+        kept.append(step._columns is before or not is_new)
+        return is_new
+
+    monkeypatch.setattr(path.PathStep, "_repair", watched)
+    solve(problem, [{"P": 1.0}, {"Q": 0.3}], nodes=301, arc=(BOTTOM - 1.8, BOTTOM + 1.8))
+    assert kept
+    assert not any(kept)
