@@ -8,7 +8,7 @@ import pytest
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS, P
+from fastpin.model.loads import LOADS, P, Q
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import first_contact, path
@@ -138,3 +138,32 @@ def test_a_node_without_pressure_does_not_stick_in_the_first_contact(titanium_in
     found = first_contact._shearless_step(system, resting, 1e-9 * load)
     assert np.array_equal(np.flatnonzero(found.closed), [0])
     assert np.all(found.pressure[found.closed] > 0.0)
+
+
+def test_both_ends_of_an_arc_leave_a_young_contact_the_same_room(titanium_in_aluminium):
+    """Eight nodes away from the first node there is just room for the nodes that tell the slip."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "centre", "fixed")
+    found = []
+    for before, after in ((8, 40), (40, 8)):
+        system = System.build(case, Grid(BOTTOM + 0.02 * np.arange(-before, after + 1.0)), 1.0)
+        patch, _ = first_contact.first_contact(
+            system, unloaded_configuration(system), np.zeros(len(LOADS)), np.eye(len(LOADS))[P]
+        )
+        found.append(patch)
+    one, other = found
+    assert np.count_nonzero(one.slip[one.closed]) > 1
+    assert one.slip == pytest.approx(-other.slip[::-1], abs=1e-10 * np.abs(one.slip).max())
+    assert one.shear == pytest.approx(-other.shear[::-1], abs=1e-12 * one.pressure.max())
+
+
+@pytest.mark.parametrize("load", [{P: 1.0}, {P: 0.6, Q: -0.8}], ids=["down", "inclined"])
+def test_a_neat_fit_begins_where_the_force_points(titanium_in_aluminium, load):
+    """Its gap is 0 all round."""
+    case = Problem(titanium_in_aluminium, 1.0, 0.0, 0.4)
+    system = System.build(case, Grid.circle(80), 1.0)
+    after = np.zeros(len(LOADS))
+    after[list(load)] = list(load.values())
+    resting, begins = first_contact.at_rest(system, unloaded_configuration(system), np.zeros(len(LOADS)), after)
+    pushed = np.argmax(after[Q] * np.cos(system.grid.theta) - after[P] * np.sin(system.grid.theta))
+    assert begins == 0.0
+    assert set(np.flatnonzero(resting.closed)) == {int(node) % 80 for node in pushed + np.arange(-2, 3)}
