@@ -63,3 +63,15 @@ def test_the_arc_of_a_circle_is_in_the_turn_around_the_bottom(start: float) -> N
     assert found is not None
     half = 0.5 * (touched.size - 1 + 2 * margin) * step
     assert found == pytest.approx((bottom - half, bottom + half), abs=0.51 * step)
+
+
+def test_grids_grow_to_the_whole_circle() -> None:
+    """Each arc is wider than the one before and shorter than a whole one. The circle is the last grid."""
+    problem = Problem.from_load_parameter(LIKE, 0.1, 0.3)
+    values = LoadHistory([{"P": 1.0}]).distinct()
+    *arcs, last = arc.candidate_grids(problem, values, reference_force(problem, values), 61)
+    assert last.closed
+    lengths = [float(np.ptp(grid.theta)) for grid in arcs]
+    assert len(lengths) > 2
+    assert lengths == sorted(lengths)
+    assert lengths[-1] < arc.WHOLE < 1.25 * lengths[-1]

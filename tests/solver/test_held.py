@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -131,6 +132,12 @@ def test_nodes_that_hardly_hold_the_pin_have_no_table(titanium_in_aluminium):
     system = system_of(titanium_in_aluminium)
     assert held_table(system, zones()) is None
     assert HeldContacts.of(system).table(system, zones((30, 31))) is None  # one node: the pin turns about it
+
+
+def test_nodes_that_leave_a_motion_free_have_no_table(titanium_in_aluminium):
+    """A motion that moves no node: the equations of the three motions have no inverse."""
+    system = system_of(titanium_in_aluminium)
+    assert held_table(replace(system, motion=system.motion * [1.0, 1.0, 0.0]), zones((15, 45))) is None
 
 
 @pytest.mark.parametrize("kind", ["general", "fits", "remote", "fixed", "rough"])

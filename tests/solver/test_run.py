@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import logging
+
 import numpy as np
 import pytest
 
 import fastpin
+from fastpin.model.grid import Grid
 from fastpin.solver.errors import ArcError, NoEquilibriumError
 
 ARC = (-0.5 * np.pi - 0.6, -0.5 * np.pi + 0.6)
@@ -86,3 +89,21 @@ def test_progress_grows_from_corner_to_corner(held, method, between):
     if method:
         steps = np.diff([0.0, *seen])
         assert steps.max() < 0.02  # 400 increments a step, growing from the first contact
+
+
+def test_a_contact_that_is_let_go_is_warned_of(similar, caplog):
+    """The force turns all round while it is next to nothing: its contact is narrower than the nodes."""
+    problem = fastpin.Problem.from_load_parameter(similar, 1.0, 0.4, "centre", "fixed")
+    with caplog.at_level(logging.WARNING, "fastpin"):
+        result = fastpin.solve(problem, [{"P": 1.0}, {"P": -1.0, "Q": 1e-6}], grid=Grid.circle(61))
+    assert result.statistics["released"] == 1
+    assert [record.getMessage() for record in caplog.records] == [
+        "1 times a narrow contact that carried less than 0.1 % of the force was let go and lost its memory"
+    ]
+
+
+def test_beyond_the_arc_of_an_earlier_result_that_arc_is_to_be_wider(frictionless):
+    first = fastpin.solve(frictionless, [{"P": 0.02}], nodes=81, arc=ARC)
+    with pytest.raises(ArcError, match="solve that result on a wider arc") as raised:
+        fastpin.solve(frictionless, [{"P": 1.0}], start=first)
+    assert str(raised.value).startswith("step 1, at ")
