@@ -12,6 +12,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
 from fastpin.solver import arc
+from fastpin.solver.errors import ArcError, ResolutionError
+from fastpin.solver.run import Run
 from fastpin.solver.task import reference_force
 from scripts.histories import random_case
 from tests.support.slip_cases import LIKE
@@ -75,3 +77,21 @@ def test_grids_grow_to_the_whole_circle() -> None:
     assert len(lengths) > 2
     assert lengths == sorted(lengths)
     assert lengths[-1] < arc.WHOLE < 1.25 * lengths[-1]
+
+
+def test_a_search_to_and_fro_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A narrow contact is lost on wide arcs, and a wide one reaches the ends of narrow arcs: twelve coarse runs."""
+    lengths = []
+
+    def follow(run: Run) -> None:
+        lengths.append(float(np.ptp(run.system.grid.theta)))
+        if lengths[-1] < 0.5:
+            raise ArcError("wide")
+        run.touched[60:62] = True
+        raise ResolutionError("narrow")
+
+    monkeypatch.setattr(Run, "follow", follow)
+    monkeypatch.setattr(arc, "_quick_arc", lambda *_: None)
+    assert touched_arc(Problem.from_load_parameter(LIKE, 0.1, 0.3), LoadHistory([{"P": 1.0}])) is not None
+    assert len(lengths) == 12
+    assert min(lengths) < 0.5 < max(lengths)
