@@ -209,11 +209,16 @@ def first_contact(
 def _first_contact_from(
     system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], steady: bool
 ) -> tuple[Configuration, float]:
-    """The first contact from rest; see :func:`_first_patch`. On a large grid it is found on a window."""
+    """The first contact from rest; see :func:`_first_patch`. On a large grid it is found on a window.
+
+    `steady` says whether the hole must keep its shape while the first nodes close.
+    """
+    begins, before, after = way
+    most_part = _steady_part(system, resting, (1.0 - begins) * (after - before)) if steady else 1.0
     if not isinstance(system, LargeSystem):
-        return _first_patch(system, resting, way, steady)
+        return _first_patch(system, resting, way, most_part)
     window = Window(system, resting.closed)
-    patch, part = _first_patch(window.system, resting.part(window.nodes), way, steady)
+    patch, part = _first_patch(window.system, resting.part(window.nodes), way, most_part)
     return window.paste(patch, resting), part
 
 
@@ -297,7 +302,7 @@ def _grip(system: System, before: np.ndarray, after: np.ndarray) -> tuple[float,
 
 
 def _first_patch(
-    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], steady: bool
+    system: System, resting: Configuration, way: tuple[float, np.ndarray, np.ndarray], most_part: float
 ) -> tuple[Configuration, float]:
     """Make one implicit increment from rest to a load whose contact spans a few nodes.
 
@@ -305,9 +310,9 @@ def _first_patch(
     begin without shear, and stick. Three cases need the friction: a moment; a pin that only the remote stress holds;
     and a neat fit. In a neat fit all grows in proportion to the load, and the increment is exact.
 
-    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. `steady` says
-    whether the hole must keep its shape while the first nodes close. Returned are the configuration and the fraction of
-    the step at which it holds.
+    `way` is the fraction of the step at which the contact begins, and the loads at the ends of the step. `most_part` is
+    the largest part of the rest of the step that the increment may take, unless everything grows in proportion or the
+    hole closes on the pin all round. Returned are the configuration and the fraction of the step at which it holds.
     """
     begins, before, after = way
     patches = len(runs(system.grid, resting.closed))
@@ -319,7 +324,7 @@ def _first_patch(
     left = (1.0 - begins) * (after - before)
     conforming = np.ptp(resting.gap) <= CONFORMING * abs(system.rest_clearance)  # the hole closes on the pin all round
     part = 1.0 if self_similar else CONFORMING_PART if conforming else _hertz_part(system, resting, left)
-    most_part = _steady_part(system, resting, left) if steady and not (self_similar or conforming) else 1.0
+    most_part = 1.0 if self_similar or conforming else most_part
     part = min(part, most_part)
     best: tuple[int, Configuration, float] | None = None
     for _ in range(60):

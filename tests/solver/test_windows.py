@@ -13,12 +13,15 @@ from fastpin.elasticity.system import System
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid, graded_size
 from fastpin.model.history import LoadHistory
+from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver import arc, window
 from fastpin.solver.arc import narrow_grids
+from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.errors import ResolutionError
+from fastpin.solver.first_contact import first_contact
 from fastpin.solver.solving import solve
 from fastpin.solver.survey import survey
 from fastpin.solver.task import Task
@@ -215,6 +218,19 @@ def test_a_pin_released_in_a_window_lies_inside_the_whole_hole():
     away = released.gap - case.problem.clearance
     centre = np.linalg.lstsq(columns, away, rcond=None)[0]
     assert columns @ centre == pytest.approx(away, abs=1e-9 * case.problem.clearance)
+
+
+def test_a_first_contact_in_a_window_takes_the_part_of_the_whole_grid():
+    """The hole must keep its shape all round while the first nodes close, not in the window only."""
+    case, grid = problem(20.0), Grid.graded([(BOTTOM, 0.05)], 220, BOTTOM)
+    load = np.array([{"P": 1e-3, "syy": 3.0}.get(name, 0.0) for name in LOADS])
+    (small, part), (whole, expected) = (
+        first_contact(system, unloaded_configuration(system), 0.0 * load, load, strict=True)
+        for system in (build.build(case, grid, 1.0) for build in (LargeSystem, System))
+    )
+    assert expected < 1.0
+    assert part == expected
+    assert small.pressure == pytest.approx(whole.pressure, abs=1e-8 * whole.pressure.max())
 
 
 def test_a_second_place_opens_a_wider_window(monkeypatch):
