@@ -121,7 +121,7 @@ def test_planes_that_are_all_alike_end_the_search():
 @pytest.mark.parametrize("form", FORMS)
 def test_components_in_other_units_have_the_same_worst_plane(form):
     """A power of two changes no bit. Where a criterion adds 1 to V, only U is in another unit."""
-    paths, factor = random_paths(7, 30, 40), 2.0**-30
+    paths, factor = random_paths(7, 5, 15), 2.0**-30
     scaled = factor * paths
     if form == planes.SWING_TIMES_MORE:
         scaled[..., 3:] = paths[..., 3:]
