@@ -54,8 +54,8 @@ TRACTIONS: tuple[tuple[str, Side], ...] = (("peak_pressure", "largest"), ("peak_
 
 HOOP: dict[str, tuple[tuple[str, Side], ...]] = {
     "plate": (("peak_hoop", "largest"),),
-    "seat": (("peak_hoop_seat", "largest"),),
     "pin": (),
+    "seat": (("peak_hoop_seat", "largest"),),
     "both": (("peak_hoop", "largest"), ("peak_hoop_seat", "largest")),
 }
 """The extremes of figures of the hoop stress, by the body that they show."""

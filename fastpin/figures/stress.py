@@ -20,8 +20,8 @@ from fastpin.figures.states import HOOP, DrawnStates, drawn_states, name_states,
 from fastpin.figures.style import angle_axis, line
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
 from fastpin.model.bodies import Disk
-from fastpin.model.checks import instance
-from fastpin.model.points import Body
+from fastpin.model.checks import choice, instance
+from fastpin.model.points import BODIES, Body
 from fastpin.model.units import units
 from fastpin.report.case import edge_body
 from fastpin.report.curves import Curve
@@ -73,7 +73,8 @@ def plot_hoop_stress(
     InputError
         If an argument is out of range or a body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, dpi, ax), drawn_states(result, states, extremes=HOOP.get(body, ()))
+    look, shown = Look(path, title, width, dpi, ax), HOOP[choice("body", body, tuple(HOOP))]
+    drawn = drawn_states(result, states, extremes=shown)
     curves = hoop_curves(drawn, body)
     return look.drawn(lambda: draw_hoop(drawn, curves, look))
 
@@ -146,7 +147,8 @@ def plot_stress_profile(
     InputError
         If an argument is out of range or the body is rigid. Also see :func:`fastpin.plot_tractions`.
     """
-    look, drawn = Look(path, title, width, ax=ax), drawn_states(result, states, extremes=HOOP.get(body, ()))
+    look, shown = Look(path, title, width, ax=ax), HOOP[choice("body", body, BODIES)]
+    drawn = drawn_states(result, states, extremes=shown)
     curves = depth_curves(drawn, body, angle, depth)
     return look.drawn(lambda: draw_profile(drawn, curves, look))
 

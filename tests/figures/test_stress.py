@@ -255,6 +255,8 @@ def test_fatigue_along_the_edge(result):
     [
         (lambda r: figures.plot_hoop_stress([]), "states: there is no state"),
         (lambda r: figures.plot_hoop_stress(r, body="hub"), 'body: must be "plate", "pin", "seat" or "both"'),
+        (lambda r: figures.plot_hoop_stress(r, body=["pin"]), 'body: must be "plate", "pin", "seat" or "both"'),
+        (lambda r: figures.plot_stress_profile(r, body={}), 'body: must be "plate", "pin" or "seat"'),
         (lambda r: figures.plot_stress_profile(r, body="both"), 'body: must be "plate", "pin" or "seat"'),
         (lambda r: figures.plot_stress_profile(r, depth=0.0), "depth: must be above 0"),
         (lambda r: figures.plot_stress_profile(r, angle="a"), "angle: must be a number"),
