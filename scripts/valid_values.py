@@ -208,6 +208,8 @@ class Valid:
             "fatigue_at_distance.length": 0.01,
             "read_case.path": "case.toml",
             "from_csv.path": "loads.csv",
+            "from_csv.columns": {"P": {"column": "P", "scale": -1.0}},
+            "from_csv.thickness": 5e-3,
             "read_lug.path": "lug.toml",
             "read_materials.path": "materials.toml",
             "read_plan.path": "plan.toml",

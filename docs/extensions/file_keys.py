@@ -38,7 +38,8 @@ OTHER_WORDS = {
     "amplitude": "table of loads, the amplitude of a harmonic cycle",
     "phase": "table of phases, degrees; a positive phase is ahead",
     "points": "corners of each harmonic cycle",
-    "csv": "CSV file of corners, relative to the case file: a line of load names, then a line for each corner",
+    "csv": "CSV file of corners, relative to the case file: a header, then a line for each corner; a load "
+    'beside it is a column: `P = { column = "Force [N]", scale = -1.0, unit = "kN" }`',
     "repeat": "number of times that the loads are run through",
     "file": "a compliance, relative to the case file",
     "material": "name of a material of fastpin or of your own file",

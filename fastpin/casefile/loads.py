@@ -9,8 +9,10 @@ import numpy as np
 from fastpin.casefile.toml_text import CaseText, Section
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import any_text, as_toml, number, whole_number
-from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_largest, check_loads
+from fastpin.model.csv_columns import COLUMN_KEYS, ColumnChoice, column_choice
+from fastpin.model.history import MAX_CORNERS, MOST_POINTS, LoadHistory, check_largest, check_loads, read_csv
 from fastpin.model.history_csv import MAX_ROWS
+from fastpin.model.load_units import Basis
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 
@@ -36,15 +38,15 @@ def read_history(source: CaseText, folder: Path) -> LoadHistory | None:
     LoadHistory or None
         None if the history can't be used. The reason is reported.
     """
-    section = source.section("history")
+    section, basis = source.section("history"), _basis(source)
     if "load" in source.root and "csv" in section:
         source.report("[history]: give either csv or [[load]] blocks", "history", "csv")
         return None
     if "load" in source.root:
-        history = _from_blocks(source, folder)
+        history = _from_blocks(source, folder, basis)
     elif section.present:
         section.require("csv")
-        history = _from_csv(section, folder)
+        history = _from_csv(section, folder, basis)
     else:
         source.report("no loads: [[load]] blocks or a section [history] are missing", "load")
         return None
@@ -79,7 +81,7 @@ def _report_load(source: CaseText, name: str, message: str) -> None:
         source.report(message, "history", "csv")
 
 
-def _from_blocks(source: CaseText, folder: Path) -> LoadHistory | None:
+def _from_blocks(source: CaseText, folder: Path, basis: Basis) -> LoadHistory | None:
     given = source.root.value("load")
     blocks = source.blocks("load")
     if given is None:
@@ -92,18 +94,18 @@ def _from_blocks(source: CaseText, folder: Path) -> LoadHistory | None:
             f"{len(blocks):,} [[load]] blocks are more than {MOST_BLOCKS:,}; take lists of loads, or csv", "load"
         )
         return None
-    histories = [_from_block(block, folder) for block in blocks]
+    histories = [_from_block(block, folder, basis) for block in blocks]
     whole = [block for history in histories if history is not None for block in history.blocks]
     return LoadHistory.of_blocks(whole) if whole else None
 
 
-def _from_block(block: Section, folder: Path) -> LoadHistory | None:
+def _from_block(block: Section, folder: Path, basis: Basis) -> LoadHistory | None:
     """The history of one block: listed corners, the corners of a CSV file, or harmonic cycles."""
     if "csv" in block:
-        for name in (*LOADS, *HARMONIC):
+        for name in HARMONIC:
             if name in block:
                 block.report(f"{name}: can't be given together with csv", name)
-        return _repeat(block, _from_csv(block, folder))
+        return _repeat(block, _from_csv(block, folder, basis))
     if "amplitude" in block:
         for name in LOADS:
             if name in block:
@@ -187,6 +189,9 @@ def _corners(block: Section) -> np.ndarray | None:
 def _numbers(block: Section, name: str) -> list[float] | float | None:
     """The number or the list of numbers of one load in one block. None if it is missing or wrong (reported)."""
     value = block.value(name)
+    if isinstance(value, dict) and set(value) & set(COLUMN_KEYS):
+        block.report(f'{name}: a column needs the file of the block, such as csv = "rig.csv"', name)
+        return None
     if not isinstance(value, list):
         return block.number(name)
     if not value:
@@ -200,13 +205,34 @@ def _numbers(block: Section, name: str) -> list[float] | float | None:
     return numbers if numbers and len(numbers) == len(value) else None
 
 
-def _from_csv(section: Section, folder: Path) -> LoadHistory | None:
+def _basis(source: CaseText) -> Basis:
+    """How the case gives its loads: per metre, for a thickness, or without dimensions."""
+    contact = source.root.value("contact")
+    if isinstance(contact, dict) and "load_parameter" in contact:
+        return "dimensionless"
+    return "with thickness" if isinstance(contact, dict) and "thickness" in contact else "per metre"
+
+
+def _from_csv(section: Section, folder: Path, basis: Basis) -> LoadHistory | None:
+    """The corners of a CSV file. The loads of the section, if it has any, are tables that name their columns."""
     name = section.checked("csv", any_text)
-    if name is None:
+    choices = {load: _column(section, load) for load in LOADS if load in section}
+    known = {load: choice for load, choice in choices.items() if choice is not None}
+    if name is None or len(known) < len(choices):
         return None
     try:
-        return LoadHistory.from_csv(folder / name)
+        return read_csv(folder / name, known or None, basis)
     except CaseFileError as error:
         for line, sentence in error.problems:
             section.report(f"csv: {name}{f', line {line}' if line else ''}: {sentence}", "csv")
+        return None
+
+
+def _column(section: Section, load: str) -> ColumnChoice | None:
+    """The column that a load is read from. None if it has a fault, which is reported."""
+    given = section.value(load)
+    try:
+        return None if given is None else column_choice(load, given)
+    except InputError as error:
+        section.report(str(error), *error.field.split("."))
         return None

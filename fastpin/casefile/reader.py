@@ -152,7 +152,8 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
     materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
     problem = _problem(source, folder, pair, materials)
-    loads = repr([tables.get(name) for name in ("load", "history")])
+    contact = tables.get("contact")  # its keys decide how loads are given
+    loads = repr([tables.get("load"), tables.get("history"), [*contact] if isinstance(contact, dict) else None])
     history = shared.part("loads", source, loads, lambda: read_history(source, folder))
     if problem is not None and history is not None and problem.thickness is not None:
         whole, thickness = history, problem.thickness

@@ -154,7 +154,7 @@ def why_unreadable(error: Exception) -> str:
     if isinstance(error, SpecialFileError):
         return "must be an ordinary file, not a pipe or a device"
     if isinstance(error, UnicodeDecodeError):
-        return "is not UTF-8 text"
+        return "is not UTF-8 text; save it with this encoding"
     return f"can't be read: {getattr(error, 'strerror', None) or error}"
 
 

@@ -7,17 +7,16 @@ million cycles take the memory of one cycle, and a table of a million corners is
 from __future__ import annotations
 
 import bisect
-import csv
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from io import TextIOWrapper
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from fastpin.errors import CaseFileError, InputError
+from fastpin.errors import InputError
 from fastpin.model.bodies import Ring
 from fastpin.model.checks import (
     as_toml,
@@ -30,11 +29,11 @@ from fastpin.model.checks import (
     places_of,
     true_or_false,
     whole_number,
-    why_unreadable,
 )
 from fastpin.model.compliance import Compliance
+from fastpin.model.csv_columns import ColumnChoice, column_choices
 from fastpin.model.history_csv import read_corners
-from fastpin.model.inputs import open_input
+from fastpin.model.load_units import Basis
 from fastpin.model.loads import LOAD_KIND, LOADS, REMOTE, Corner, check_corner, load_index
 from fastpin.model.problem import Problem, checked_thickness
 from fastpin.model.synonyms import explains_keywords
@@ -298,26 +297,40 @@ class LoadHistory:
         return cls.of_blocks([_plain(given)])
 
     @classmethod
-    def from_csv(cls, path: str | Path) -> LoadHistory:
-        """Read corners from a CSV file: a header of load names, one corner a line.
+    def from_csv(
+        cls,
+        path: str | Path,
+        columns: Mapping[str, str | Mapping[str, Any]] | None = None,
+        thickness: float | None = None,
+    ) -> LoadHistory:
+        """Read corners from a CSV file: a header, one corner a line.
 
-        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Load spectra and
-        sequences of reversals from other programs can be read in this way.
+        An empty cell keeps the last value. Lines that begin with ``#`` and blank lines are skipped. Commas, semicolons
+        or tabs separate cells. With semicolons or tabs, numbers may have a decimal comma.
+
+        Parameters
+        ----------
+        path : str or Path
+        columns : mapping, optional
+            The column of each load: ``{"P": "Force [N]"}``, or ``{"P": {"column": "F", "scale": -1, "unit": "kN"}}``.
+            The scale is a factor. By default every column is a load, with a unit or without: ``P``, ``P [kN/m]``.
+        thickness : float, optional
+            Thickness, m. The file has forces in N, and they are divided by it. By default they are per metre.
 
         Raises
         ------
         CaseFileError
-            If the file can't be read, a column is unknown, or cells are not finite numbers. The error lists the first
-            :data:`fastpin.model.history_csv.MOST_FAULTS` faulty lines.
+            If the file can't be read, a column is missing or unknown, a unit does not fit its load, or cells are not
+            finite numbers. The error lists the first :data:`fastpin.model.history_csv.MOST_FAULTS` faulty lines.
         InputError
-            If `path` is no path.
+            If `path`, `columns` or `thickness` can't be used.
         """
         path = file_path("path", path)
-        try:
-            with TextIOWrapper(open_input(path), encoding="utf-8-sig", newline="") as file:
-                return cls.of_blocks([_plain(read_corners(file, str(path)))])
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise CaseFileError(str(path), [(0, why_unreadable(error))]) from None
+        choices = None if columns is None else column_choices("columns", columns)
+        if thickness is None:
+            return read_csv(path, choices)
+        checked_thickness("thickness", thickness)
+        return read_csv(path, choices, "with thickness").per_thickness(thickness)
 
     def repeated(self, count: int) -> LoadHistory:
         """This history `count` times in a row. Each time is a cycle.
@@ -435,6 +448,11 @@ class LoadHistory:
     def distinct(self, initial: Sequence[float] | np.ndarray | None = None) -> np.ndarray:
         """All loads that ever act, shape (corners, loads): as :meth:`values`, with every block at most twice."""
         return _filled([_times(block, min(block.count, 2)) for block in self._blocks], initial)
+
+
+def read_csv(path: Path, choices: Mapping[str, ColumnChoice] | None = None, basis: Basis = "per metre") -> LoadHistory:
+    """Read a history as :meth:`LoadHistory.from_csv`. Its forces are per metre, or in N, as `basis` says."""
+    return LoadHistory.of_blocks([_plain(read_corners(path, choices, basis))])
 
 
 def cycle_length(history: LoadHistory, cycle: CycleKey) -> int:

@@ -1,0 +1,187 @@
+"""Columns of a CSV file of loads: the column that the user chooses for a load, and the header of a file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml, number, string
+from fastpin.model.load_units import Basis, LoadUnit, is_unit, load_unit, unit_name
+from fastpin.model.loads import LOADS, load_index
+from fastpin.model.synonyms import closest
+
+COLUMN_KEYS = ("column", "scale", "unit")
+"""Keys of the table of a load that is read from a column."""
+
+MOST_SHOWN = 12
+"""Most columns of a file that an error names."""
+
+
+@dataclass(frozen=True)
+class ColumnChoice:
+    """The column of a file that holds a load.
+
+    Attributes
+    ----------
+    column : str
+        The text of the header, with its unit or without.
+    scale : float
+        Factor of all numbers: -1 turns the sign. Not 0.
+    unit : str
+        Unit of the numbers in its usual spelling; empty if the file says it.
+    """
+
+    column: str
+    scale: float = 1.0
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that is read.
+
+    Attributes
+    ----------
+    place : int
+        Place in a line, from 0.
+    load : str
+        Name of the load.
+    title : str
+        The text of the header.
+    scale : float
+    unit : str
+        Unit in its usual spelling; empty for N/m, N and so on, as loads are in Python or in a case file.
+    """
+
+    place: int
+    load: str
+    title: str
+    scale: float = 1.0
+    unit: str = ""
+
+    def conversion(self, basis: Basis) -> LoadUnit:
+        """The way of its numbers to SI units. An :class:`InputError` says which units the load may have."""
+        given = LoadUnit()
+        if self.unit:
+            try:
+                given = load_unit(self.load, self.unit, basis)
+            except InputError as error:
+                raise InputError(self.load, f"{error.reason}{self.named}") from None
+        return LoadUnit(given.power, self.scale * given.factor)
+
+    @property
+    def named(self) -> str:
+        """The end of a sentence on this column."""
+        return "" if self.title == self.load else f" (column {as_toml(self.title)})"
+
+
+def column_choice(load: str, given: object) -> ColumnChoice:
+    """Return what the user chose for a load: the text of a header, or a table of column, scale and unit.
+
+    Raises
+    ------
+    InputError
+        If a key or a value is wrong. Its field is the load, or the load and the key: ``P.scale``.
+    """
+    if isinstance(given, str):
+        given = {"column": given}
+    if not isinstance(given, Mapping):
+        example = f'{load} = {{ column = "Force [N]", scale = -1.0, unit = "kN" }}'
+        raise InputError(load, f"must be a column of the CSV file, such as {example}, not {as_toml(given)}")
+    for key in given:
+        if key not in COLUMN_KEYS:
+            raise InputError(
+                load,
+                f"unknown key {as_toml(key)}; the keys are {', '.join(COLUMN_KEYS)}{closest(str(key), COLUMN_KEYS)}",
+            )
+    if "column" not in given:
+        raise InputError(load, "column is missing: the header of a column of the CSV file")
+    column = string(f"{load}.column", given["column"])
+    scale = number(f"{load}.scale", given.get("scale", 1.0))
+    if scale == 0.0:
+        raise InputError(f"{load}.scale", "must not be 0")
+    unit = unit_name(string(f"{load}.unit", given["unit"])) if "unit" in given else ""
+    return ColumnChoice(column, scale, unit)
+
+
+def column_choices(field: str, given: object) -> dict[str, ColumnChoice]:
+    """Return the columns of loads, by load. An :class:`InputError` names the load that is wrong, or `field`."""
+    if not isinstance(given, Mapping) or not given:
+        example = '{"P": {"column": "Force [N]", "scale": -1.0}}'
+        raise InputError(field, f"must map loads to columns, such as {example}, not {as_toml(given)}")
+    return {LOADS[load_index(load, field)]: column_choice(load, value) for load, value in given.items()}
+
+
+def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) -> list[Column]:
+    """Return the columns of a header that hold the chosen loads. An :class:`InputError` names a missing column."""
+    titles = [cell.strip() for cell in cells]
+    parts = [_title_and_unit(title) for title in titles]
+    found = []
+    for load, choice in choices.items():
+        wanted = choice.column.strip()
+        places = [place for place, title in enumerate(titles) if title == wanted]
+        places = places or [place for place, (name, _) in enumerate(parts) if name == wanted]
+        if len(places) != 1:
+            shown = ", ".join(as_toml(title) for title in titles[:MOST_SHOWN])
+            shown += f" and {len(titles) - MOST_SHOWN} more" if len(titles) > MOST_SHOWN else ""
+            fault = f"{len(places)} columns of the file are" if places else "the file has no column"
+            hint = "" if places else closest(wanted, [*titles, *(name for name, _ in parts)])
+            raise InputError(load, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
+        place = places[0]
+        unit = _one_unit(load, choice.unit, parts[place][1], "the header says")
+        found.append(Column(place, load, titles[place], choice.scale, unit))
+    return found
+
+
+def named_columns(cells: Sequence[str]) -> list[Column]:
+    """Return the columns of a header that consists of loads, each with a unit or without.
+
+    Raises
+    ------
+    InputError
+        If a column is no load, or a load is named twice.
+    """
+    found = []
+    for place, cell in enumerate(cells):
+        title = cell.strip()
+        name, unit = _title_and_unit(title)
+        try:
+            load = LOADS[load_index(name if unit and name in LOADS else title, f"column {place + 1}")]
+        except InputError as error:
+            remedy = ""
+            if unit:
+                remedy = f"; a [[load]] block reads it with P = {{ column = {as_toml(title)} }}"
+            raise InputError(error.field, f"{error.reason}{remedy}") from None
+        found.append(Column(place, load, title, 1.0, unit))
+    if len({column.load for column in found}) < len(found):
+        raise InputError("", "a load is named twice")
+    return found
+
+
+def with_unit_row(columns: Sequence[Column], cells: Sequence[str]) -> list[Column]:
+    """Return the columns with the units of the line below the header. An :class:`InputError` says what is wrong."""
+    found = []
+    for column in columns:
+        written = unit_name(cells[column.place])
+        unit = "" if written in ("", "-") else written
+        unit = _one_unit(column.load, column.unit, unit, "the line below the header says")
+        found.append(Column(column.place, column.load, column.title, column.scale, unit))
+    return found
+
+
+def _one_unit(load: str, given: str, written: str, where: str) -> str:
+    """Return the unit that the user gives or the file says. They must not be two known units."""
+    if given and is_unit(written) and given != written:
+        raise InputError(load, f"the unit is {given}, and {where} {written}; give one of them, and a scale if need be")
+    return given or written
+
+
+def _title_and_unit(title: str) -> tuple[str, str]:
+    """Split a header such as "Force [N]", "Force (N)" or "Force / N" into a name and a unit in its usual spelling."""
+    brackets = re.fullmatch(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))", title)
+    if brackets:
+        return brackets[1].strip(), unit_name(brackets[2] or brackets[3] or "")
+    name, slash, rest = title.partition(" / ")
+    return (name.strip(), unit_name(rest)) if slash and is_unit(unit_name(rest)) else (title, "")

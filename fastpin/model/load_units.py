@@ -1,0 +1,159 @@
+"""Units in which people write loads: their names, and the way of a number in such a unit to SI units."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from fastpin.errors import InputError
+from fastpin.model.checks import as_toml
+from fastpin.model.loads import LOAD_KIND
+from fastpin.model.synonyms import closest
+
+Basis = Literal["per metre", "with thickness", "dimensionless"]
+"""How loads are given: per metre of thickness, in N and N m for a given thickness, or in the paper's units."""
+
+POUND, INCH = 4.4482216152605, 0.0254
+"""A pound of force, N, and an inch, m. Both are exact."""
+
+
+@dataclass(frozen=True)
+class LoadUnit:
+    """The way of a number in a unit to SI units: times `factor` and 10 to the `power`.
+
+    A power of ten is put behind the digits of a number, so 1.005 kN are exactly 1005 N.
+    """
+
+    power: int = 0
+    factor: float = 1.0
+
+
+_FORCE = {
+    "N": LoadUnit(),
+    "kN": LoadUnit(3),
+    "MN": LoadUnit(6),
+    "daN": LoadUnit(1),
+    "kgf": LoadUnit(0, 9.80665),
+    "lbf": LoadUnit(0, POUND),
+    "kip": LoadUnit(3, POUND),
+}
+_FORCE_PER_LENGTH = {
+    "N/m": LoadUnit(),
+    "kN/m": LoadUnit(3),
+    "MN/m": LoadUnit(6),
+    "N/mm": LoadUnit(3),
+    "kN/mm": LoadUnit(6),
+    "lbf/in": LoadUnit(0, POUND / INCH),
+}
+_MOMENT = {
+    "N m": LoadUnit(),
+    "kN m": LoadUnit(3),
+    "N mm": LoadUnit(-3),
+    "lbf in": LoadUnit(0, POUND * INCH),
+    "lbf ft": LoadUnit(0, 12.0 * POUND * INCH),
+}
+_MOMENT_PER_LENGTH = {
+    "N": LoadUnit(),
+    "kN": LoadUnit(3),
+    "N m/m": LoadUnit(),
+    "kN m/m": LoadUnit(3),
+    "N mm/mm": LoadUnit(),
+    "lbf in/in": LoadUnit(0, POUND),
+}
+_UNITS = {
+    "traction": {
+        "Pa": LoadUnit(),
+        "kPa": LoadUnit(3),
+        "MPa": LoadUnit(6),
+        "GPa": LoadUnit(9),
+        "N/mm^2": LoadUnit(6),
+        "bar": LoadUnit(5),
+        "psi": LoadUnit(0, POUND / INCH**2),
+        "ksi": LoadUnit(3, POUND / INCH**2),
+    },
+    "rotation": {
+        "rad": LoadUnit(),
+        "mrad": LoadUnit(-3),
+        "urad": LoadUnit(-6),
+        "deg": LoadUnit(0, 0.017453292519943295),
+    },
+    "displacement": {
+        "m": LoadUnit(),
+        "mm": LoadUnit(-3),
+        "um": LoadUnit(-6),
+        "nm": LoadUnit(-9),
+        "in": LoadUnit(0, INCH),
+        "mil": LoadUnit(-3, INCH),
+    },
+}
+_PER_METRE = {**_UNITS, "force": _FORCE_PER_LENGTH, "moment": _MOMENT_PER_LENGTH}
+_WITH_THICKNESS = {**_UNITS, "force": _FORCE, "moment": _MOMENT}
+
+_OTHER_WORDS = {
+    "lb": "lbf",
+    "lbs": "lbf",
+    "kips": "kip",
+    "Nm": "N m",
+    "kNm": "kN m",
+    "Nmm": "N mm",
+    "Nm/m": "N m/m",
+    "kNm/m": "kN m/m",
+    "in lbf": "lbf in",
+    "ft lbf": "lbf ft",
+    "in lb": "lbf in",
+    "lb in": "lbf in",
+    "ft lb": "lbf ft",
+    "lb ft": "lbf ft",
+    "lb/in": "lbf/in",
+    "N/mm2": "N/mm^2",
+    "micron": "um",
+    "microns": "um",
+    "inch": "in",
+    "degree": "deg",
+    "degrees": "deg",
+}
+_SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "·": " ", "⋅": " ", "*": " ", "°": "deg", "-": " ", ".": " "})
+_KINDS = {"force": "force", "moment": "moment", "traction": "stress", "rotation": "rotation", "displacement": "length"}
+
+
+def unit_name(text: str) -> str:
+    """Return the usual spelling of a unit, without brackets around it. An unknown text is returned as it is."""
+    bare = text.strip()
+    inner = re.fullmatch(r"\[(.*)\]|\((.*)\)", bare)
+    bare = (inner[1] or inner[2] or "").strip() if inner else bare
+    plain = " ".join(bare.translate(_SIGNS).replace("^", "").replace("2", "^2").split())
+    name = _OTHER_WORDS.get(plain, plain)
+    return name if is_unit(name) else bare
+
+
+def is_unit(name: str) -> bool:
+    """Whether a name is the usual spelling of a unit of some load."""
+    return any(name in units for table in (_PER_METRE, _WITH_THICKNESS) for units in table.values())
+
+
+def load_unit(load: str, name: str, basis: Basis) -> LoadUnit:
+    """Return a unit by its usual spelling.
+
+    Raises
+    ------
+    InputError
+        If the load can't be in this unit. The sentence lists the units. Its field is the load.
+    """
+    if basis == "dimensionless":
+        words = "the loads of a problem with load_parameter have no units; leave the unit out"
+        raise InputError(load, f"{words}, not {as_toml(name)}")
+    kind = LOAD_KIND[load]
+    units = (_PER_METRE if basis == "per metre" else _WITH_THICKNESS)[kind]
+    if name in units:
+        return units[name]
+    other = (_WITH_THICKNESS if basis == "per metre" else _PER_METRE)[kind]
+    hint = closest(name, units)
+    if name in other:
+        hint = (
+            "; give the thickness for loads in N and N m"
+            if basis == "per metre"
+            else "; with a thickness loads are in N and N m"
+        )
+    *most, last = units
+    raise InputError(load, f"a {_KINDS[kind]} must be in {', '.join(most)} or {last}, not {as_toml(name)}{hint}")
