@@ -14,14 +14,13 @@ import numpy as np
 
 from fastpin.errors import InputError
 from fastpin.model.checks import as_toml
-from fastpin.model.loads import LOAD_KIND
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import closest
 from fastpin.model.units import DEGREE, Unit, scaled, units
 from fastpin.report.cells import csv_cell
-from fastpin.report.field_words import field_words
 from fastpin.report.table import Column, table
 from fastpin.storage.files import check_writable, replacing
+from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES
@@ -35,24 +34,6 @@ MOST_PANELS = 12
 
 MOST_CURVES = 20
 """Most curves in one figure."""
-
-_KIND = {
-    "contact.hole_radius": "length",
-    "contact.clearance": "length",
-    "contact.hub_radius": "length",
-    "contact.hub_stiffness": "stiffness",
-    "contact.gauge_radius": "length",
-    "contact.thickness": "length",
-    "pin.E": "traction",
-    "plate.E": "traction",
-    "pin_body.bore_radius": "length",
-    "plate_body.E": "traction",
-    "plate_body.outer_radius": "length",
-    "plate_body.ring_outer_radius": "length",
-    "plate_body.reaction": "length",
-    "plate_body.interference": "displacement",
-}
-"""The kind of every field of a case that has a unit, apart from the loads."""
 
 THICKNESS = "contact.thickness"
 """The field of the thickness."""
@@ -93,7 +74,7 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     columns = [("run", "", [row["id"] for row in rows])]
     for name in plan.fields:
         heading = plan.labels.get(name, name)
-        columns.append(_column(heading, [row[name] for row in rows], unit.get(_kind(name), "")))
+        columns.append(_column(heading, [row[name] for row in rows], unit.get(field_kind(name), "")))
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         values = [_in_words(plan, name, row.get(name)) for row in rows]
@@ -281,7 +262,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
 def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
-    factor, label = scaled(values, unit.get(_kind(name), ""))
+    factor, label = scaled(values, unit.get(field_kind(name), ""))
     words = plan.labels.get(name, field_words(name))
     axis = Axis(_label(words, label), factor * np.array(values, float), plan.fields[name] == "log")
     return axis, {value: place for place, value in enumerate(values)}
@@ -302,7 +283,7 @@ def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, st
     words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
         return lambda value: f"{words} = {brief(value)}".replace('"', "")
-    factor, label = scaled(given, unit.get(_kind(field), ""))
+    factor, label = scaled(given, unit.get(field_kind(field), ""))
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
@@ -363,12 +344,6 @@ def _unit(plan: Plan, value: str, unit: dict[str, str]) -> str:
     if value in plan.outcomes:
         return plan.outcomes[value].unit_in({kind: Unit(1.0, name) for kind, name in unit.items()}).name
     return "s" if value == "seconds" else unit.get(KEY_FIGURES[value], "")
-
-
-def _kind(field: str) -> str:
-    """Return the kind of a varied field; empty if it has no unit."""
-    section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
-    return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")
 
 
 def brief(value: Any) -> str:

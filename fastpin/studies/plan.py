@@ -101,6 +101,8 @@ class Plan:
         The TOML text of the plan.
     fields : dict of str to {"linear", "log", "list"}
         The varied fields, and the spacing of their values. "list": the values are listed one by one.
+    axes : dict of str to list
+        The fields of the grid, and their values. The other fields are those of the [[list]] blocks.
     points : list of Point
         All points in the order of the plan. The last field of the grid changes fastest, the [[list]] slowest.
     outcomes : dict of str to Outcome
@@ -115,6 +117,7 @@ class Plan:
     title: str
     text: str
     fields: dict[str, Spacing]
+    axes: dict[str, list[Any]]
     points: list[Point]
     outcomes: Outcomes
     doubts: list[InputWarning]
@@ -271,7 +274,7 @@ def _plan(source: CaseText, text: str, folder: Path, progress: Progress | None) 
     found: list[InputWarning] = []
     points = _points(source, base, places, rows or [{}], axes, (cases, found), progress)
     fields = {name: spacings[name] for name in places}
-    return Plan(title, text, fields, points, outcomes, found, labels, base, cases)
+    return Plan(title, text, fields, axes, points, outcomes, found, labels, base, cases)
 
 
 def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:

@@ -17,7 +17,7 @@ from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError
 from fastpin.kernels.threads import cores
@@ -35,9 +35,13 @@ from fastpin.storage import store
 from fastpin.storage.files import INDEX, forget_temporaries, replacing
 from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
+from fastpin.studies.labelled import dataset
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Progress
 from fastpin.studies.work import Work, pickled_outcomes
+
+if TYPE_CHECKING:
+    import xarray
 
 PLAN = "plan.toml"
 """Name of the plan's copy in the directory of a sweep."""
@@ -241,6 +245,34 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
         fields = dict.fromkeys(plan.fields) | point.values
         found.append({**row, "id": point.id, **fields, **dict.fromkeys(plan.outcomes), **chosen})
     return found
+
+
+def to_xarray(plan: Plan, directory: str | Path) -> xarray.Dataset:
+    """Return the outcomes and key figures of a sweep as labelled arrays.
+
+    Parameters
+    ----------
+    plan : Plan
+    directory : path
+        The folder of the sweep.
+
+    Returns
+    -------
+    xarray.Dataset
+        Each field of the grid is a dimension and a coordinate, under its name in the plan: ``"contact.friction"``. The
+        [[list]] blocks are the dimension "run". Their fields are coordinates along it.
+
+        Each outcome and each key figure (:data:`fastpin.studies.run_end.KEY_FIGURES`) is a variable. Values have the
+        units of :func:`load`. The attribute "units" names them, "long_name" is the label of the plan or the name in
+        words. A class has the attributes "flag_values" and "flag_meanings". The texts "status", "reason" and "id"
+        describe each run. Numbers of runs that failed or wait are NaN.
+
+    Raises
+    ------
+    InputError
+        If the index can't be used, or xarray is not installed.
+    """
+    return dataset(plan, rows(plan, directory))
 
 
 def shard_of(plan: Plan, shard: tuple[int, int] | None) -> dict[str, Point]:

@@ -10,10 +10,10 @@ import pytest
 
 from fastpin.errors import InputError
 from fastpin.figures.sweep import plot_sweep
-from fastpin.report.field_words import field_words
 from fastpin.report.sweep import chart, check_axes, text, write_csv
 from fastpin.solver.result import Result
 from fastpin.studies import sweep
+from fastpin.studies.field_words import field_words
 from fastpin.studies.plan import Plan, parse_plan
 from tests.support.plans import FRICTION, MAP, made_up_rows
 

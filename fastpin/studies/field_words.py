@@ -1,8 +1,8 @@
-"""Words for the fields of a case, on axes and in legends of sweeps."""
+"""Words and kinds of quantities for the fields of a case that sweeps vary."""
 
 from __future__ import annotations
 
-from fastpin.model.loads import LOADS
+from fastpin.model.loads import LOAD_KIND, LOADS
 
 _OWNERS = {"pin": "pin", "plate": "plate", "pin_body": "pin", "plate_body": "plate"}
 """Sections of a case whose keys belong to a body."""
@@ -22,6 +22,25 @@ _LOADS = {"P": "force P", "Q": "force Q", "M": "moment M", "ux": "displacement u
 """Words for loads; the others are remote stresses."""
 
 
+_KIND = {
+    "contact.hole_radius": "length",
+    "contact.clearance": "length",
+    "contact.hub_radius": "length",
+    "contact.hub_stiffness": "stiffness",
+    "contact.gauge_radius": "length",
+    "contact.thickness": "length",
+    "pin.E": "traction",
+    "plate.E": "traction",
+    "pin_body.bore_radius": "length",
+    "plate_body.E": "traction",
+    "plate_body.outer_radius": "length",
+    "plate_body.ring_outer_radius": "length",
+    "plate_body.reaction": "length",
+    "plate_body.interference": "displacement",
+}
+"""The kind of every field of a case that has a unit, apart from the loads."""
+
+
 def field_words(field: str) -> str:
     """Return words for a field of a case: "modulus of the pin" for "pin.E", "moment M in load 2" for "load.2.M"."""
     section, *between, key = field.split(".")
@@ -32,3 +51,9 @@ def field_words(field: str) -> str:
         return f"{words} in load {number}" if number else words
     words = _KEYS.get(key, key.replace("_", " "))
     return f"{words} of the {_OWNERS[section]}" if section in _OWNERS else words
+
+
+def field_kind(field: str) -> str:
+    """Return the kind of a varied field; empty if it has no unit."""
+    section, key = field.split(".")[0], field.rsplit(".", 1)[-1]
+    return LOAD_KIND.get(key, "") if section == "load" else _KIND.get(field, "")
