@@ -31,6 +31,9 @@ STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ra
 SHELLS = ("bash", "zsh", "tcsh")
 """Shells with a script of completion."""
 
+SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance")
+"""Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
+
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
     "tractions": ("states", "csv", "sketch"),
     "polar": ("states", "csv"),
@@ -88,6 +91,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     add_paper(commands)
     add_benchmarks(commands)
     add_verify(commands)
+    add_schema(commands)
     add_completion(commands)
     return root, commands.choices
 
@@ -486,6 +490,14 @@ def _add_json(command: argparse.ArgumentParser, text: str) -> None:
         nargs="?",
         const="-",
         help=f"{text}; without FILE, or with -: print it, and no table",
+    )
+
+
+def add_schema(commands: Any) -> None:
+    """Add ``schema``."""
+    schema = _command(commands, "schema", "schema", "run", "print the JSON schema of a document that commands write")
+    schema.add_argument(
+        "written_by", metavar="COMMAND", choices=SCHEMAS, help="the command; resume and show write what run writes"
     )
 
 

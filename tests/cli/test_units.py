@@ -83,6 +83,7 @@ WITHOUT_UNITS = {
     "verify": "is dimensionless, and says so in its first line",
     "benchmarks": "has problems per thickness",
     "completion": "prints a script",
+    "schema": "prints the form of documents",
 }
 """Commands that are not walked, with a reason each. Every other command must be in the list of `walk`."""
 

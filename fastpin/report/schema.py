@@ -1,0 +1,279 @@
+"""JSON schemas of the documents that commands write as JSON, for programs that read them.
+
+The schemas are of draft 2020-12. They are made from the lists that the documents are made from: a new load or quantity
+is in both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields
+from typing import Any
+
+from fastpin.model.checks import choice
+from fastpin.model.compliance import FORMAT, VERSION
+from fastpin.model.loads import LOADS
+from fastpin.model.options import METHODS, SolveOptions
+from fastpin.states.cycles import Cycle
+from fastpin.states.extremes import READINGS
+from fastpin.states.quantities import QUANTITIES
+from fastpin.states.regimes import REGIMES
+from fastpin.version import __version__
+
+Schema = dict[str, Any]
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+
+_NUMBER: Schema = {"type": "number"}
+_WHOLE: Schema = {"type": "integer"}
+_TEXT: Schema = {"type": "string"}
+_TRUTH: Schema = {"type": "boolean"}
+_UNKNOWN: Schema = {"type": ["number", "null"]}  # NaN and infinity are null
+_OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
+_RESULTANTS = ("P", "Q", "M")
+
+
+def schema(command: str) -> Schema:
+    """Return the JSON schema of the document that a command writes.
+
+    Parameters
+    ----------
+    command : {"run", "converge", "verify", "benchmarks", "compliance"}
+        ``fastpin resume`` and ``show`` write the document of "run".
+
+    Raises
+    ------
+    InputError
+        If there is no such document.
+    """
+    document = _DOCUMENTS[choice("command", command, COMMANDS)]()
+    return {"$schema": DRAFT, "title": f"JSON of fastpin {command}, version {__version__}", **document}
+
+
+def _summary() -> Schema:
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            "complete": _TRUTH,
+            "error": _OPTIONAL_TEXT,
+            "units": _map_of(_TEXT, "unit of each kind of quantity"),
+            "problem": _problem(),
+            "history": _object(
+                {
+                    "loads": _list_of({"enum": list(LOADS)}),
+                    "blocks": _list_of(_object({"repeat": _WHOLE, "corners": _list_of(_list_of(_UNKNOWN))})),
+                }
+            ),
+            "solver": _object({each.name: {} for each in fields(SolveOptions)}),
+            "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
+            "states": _list_of(_state()),
+            "extremes": _extremes(),
+            "cycles": _list_of(_object({name: _of_cycle(name) for name in Cycle._fields})),
+            "cycle": _or_null(_last_cycle()),
+        }
+    )
+
+
+def _problem() -> Schema:
+    material = _object(
+        {
+            "name": _TEXT,
+            "rigid": _TRUTH,
+            "E": _UNKNOWN | {"description": "Pa; null: rigid"},
+            "nu": _NUMBER,
+            "yield_strength": _UNKNOWN,
+        }
+    )
+    body = {"type": "object", "properties": {"kind": _TEXT}, "required": ["kind"]}
+    return _object(
+        {
+            "pin": material,
+            "plate": material,
+            "plane": {"enum": ["strain", "stress"]},
+            "dundurs": _object({"alpha": _NUMBER, "beta": _NUMBER, "convention": _TEXT}),
+            **dict.fromkeys(("beta_star", "hole_radius", "clearance", "friction"), _NUMBER),
+            **dict.fromkeys(("pin_load", "rotation"), _TEXT),
+            **dict.fromkeys(("hub_radius", "hub_stiffness"), _UNKNOWN),
+            "drive": _TEXT,
+            **dict.fromkeys(("gauge_radius", "thickness"), _UNKNOWN),
+            **dict.fromkeys(("pin_body", "plate_body"), body),
+            "assembled_clearance": _NUMBER,
+            "press_fit_pressure": _NUMBER,
+            "dimensionless": _TRUTH,
+        }
+    )
+
+
+def _state() -> Schema:
+    interval = _list_of(_NUMBER, 2)
+    slip = {
+        "description": "start and stop, deg, and the sign of the slip",
+        **_list_of(_NUMBER, 3),
+    }
+    quantities = {
+        name: {"enum": list(REGIMES.values())} if each.classes else _UNKNOWN | {"description": each.kind}
+        for name, each in QUANTITIES.items()
+        if name not in _RESULTANTS
+    }
+    return _object(
+        {
+            "load_point": _NUMBER,
+            "step": _WHOLE,
+            "fraction": _NUMBER,
+            "load": _object(dict.fromkeys(LOADS, _NUMBER)),
+            "in_contact": _TRUTH,
+            **quantities,
+            "peak_hoop_resolved": {"type": ["boolean", "null"]},
+            "contact": _list_of(interval),
+            "stick": _list_of(interval),
+            "slip": _list_of(slip),
+            "energy": _UNKNOWN,
+            "resultants": _object(dict.fromkeys(_RESULTANTS, _NUMBER)),
+            "residuals": _map_of(_UNKNOWN, "errors of the contact conditions"),
+            "error_bars": _or_null(_map_of(_UNKNOWN, "largest likely errors")),
+        }
+    )
+
+
+def _extremes() -> Schema:
+    extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
+    sides = {"smallest": extreme, "largest": extreme}
+    return _object(dict.fromkeys(READINGS, _object(sides)), required=())
+
+
+def _of_cycle(name: str) -> Schema:
+    known = {"corner": _WHOLE, "length": _WHOLE, "number": _WHOLE, "solved": _TRUTH}
+    return known.get(name, _UNKNOWN)
+
+
+def _last_cycle() -> Schema:
+    names = ("slip_range", "slip_distance", "friction_energy", "pressure_range", "shear_range")
+    largest = {f"largest_{name}{end}": _UNKNOWN for name in names for end in ("", "_angle")}
+    return _object(
+        {
+            "first": _WHOLE,
+            "last": _WHOLE,
+            "closed": _TRUTH,
+            **largest,
+            "regime": {"enum": list(REGIMES.values())},
+            "slip_range_is_exact": _TRUTH,
+            "dissipation": _UNKNOWN,
+            "nodes": _map_of(_WHOLE, "number of nodes of each behaviour"),
+            "work": _map_of(_UNKNOWN, "work of each load"),
+        }
+    )
+
+
+def _convergence() -> Schema:
+    series = _object(
+        {
+            "corner": _WHOLE,
+            "quantity": _TEXT,
+            "unit": _TEXT,
+            "values": _list_of(_UNKNOWN),
+            "verdict": _TEXT,
+            "order": _UNKNOWN,
+            "limit": _UNKNOWN,
+            "bar": _UNKNOWN,
+            "path": _UNKNOWN,
+        }
+    )
+    counts = {"type": ["array", "integer", "null"], "items": _WHOLE}
+    study = _object(
+        {"solver": {"enum": list(METHODS)}, "nodes": counts, "increments": counts, "quantities": _list_of(series)}
+    )
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "title": _TEXT,
+            "complete": _TRUTH,
+            "arc": _list_of(_NUMBER, 2),
+            "units": _map_of(_TEXT, "unit of each kind of quantity"),
+            "loads": _map_of(_map_of(_NUMBER, "loads"), "loads at each corner"),
+            "unread": _map_of(_TEXT, "why a quantity could not be read"),
+            "studies": _list_of(study),
+        }
+    )
+
+
+def _verify() -> Schema:
+    check = _object(
+        {
+            **dict.fromkeys(("topic", "case", "quantity"), _TEXT),
+            **dict.fromkeys(("reference", "ours", "difference", "tolerance"), _UNKNOWN),
+            **dict.fromkeys(("unit", "message"), _TEXT),
+            "passed": _TRUTH,
+        }
+    )
+    return _object(
+        {
+            "fastpin": _TEXT,
+            "versions": _map_of(_TEXT, "version of each library"),
+            "cores": _WHOLE,
+            "seconds": _NUMBER,
+            "passed": _TRUTH,
+            "checks": _list_of(check),
+        }
+    )
+
+
+def _benchmarks() -> Schema:
+    row = _object(
+        {
+            "quantity": _TEXT,
+            "unit": _TEXT,
+            "published": _OPTIONAL_TEXT | {"description": "the number as its source prints it"},
+            "fastpin": _UNKNOWN,
+            "difference": _UNKNOWN,
+            "agrees": {"type": ["boolean", "null"]},
+            "verdict": _TEXT,
+        }
+    )
+    return _object({"fastpin": _TEXT, "benchmarks": _map_of(_list_of(row), "rows of each benchmark")})
+
+
+def _compliance() -> Schema:
+    return _object(
+        {
+            "format": {"const": FORMAT},
+            "version": {"const": VERSION},
+            "nu": _NUMBER,
+            "plane": {"enum": ["strain", "stress"]},
+            "hole_radius": _NUMBER,
+            "order": _WHOLE,
+            "matrix": _list_of(_list_of(_NUMBER)),
+            "columns": _map_of(_list_of(_NUMBER), "response to each remote stress"),
+            "made_by": _TEXT,
+        }
+    )
+
+
+_DOCUMENTS: dict[str, Callable[[], Schema]] = {
+    "run": _summary,
+    "converge": _convergence,
+    "verify": _verify,
+    "benchmarks": _benchmarks,
+    "compliance": _compliance,
+}
+
+COMMANDS = tuple(_DOCUMENTS)
+"""Commands whose document has a schema."""
+
+
+def _object(properties: Mapping[str, Schema], required: Iterable[str] | None = None) -> Schema:
+    """An object with these keys only; all of them must be there, unless some are `required`."""
+    needed = list(properties if required is None else required)
+    return {"type": "object", "properties": dict(properties), "required": needed, "additionalProperties": False}
+
+
+def _map_of(item: Schema, words: str) -> Schema:
+    return {"type": "object", "description": words, "additionalProperties": item}
+
+
+def _list_of(item: Schema, length: int | None = None) -> Schema:
+    return {"type": "array", "items": item} | ({} if length is None else {"minItems": length, "maxItems": length})
+
+
+def _or_null(item: Schema) -> Schema:
+    return {"anyOf": [item, {"type": "null"}]}

@@ -1,0 +1,119 @@
+"""The JSON of every command against its schema."""
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from fastpin import verification
+from fastpin.casefile import EXAMPLE, LUG_EXAMPLE
+from fastpin.cli.main import main
+from fastpin.cli.options import SCHEMAS, parser
+from fastpin.errors import InputError
+from fastpin.report.schema import COMMANDS, schema
+from fastpin.verification.rows import Check
+from tests.support.case_texts import PRESSED
+
+BUSHED = PRESSED + '[plate_body]\nmaterial = "C93200"\nouter_radius = 0.012\ninterference = 1e-5\n'
+CASES = {
+    "example": EXAMPLE,
+    "pressed": PRESSED,
+    "thick": PRESSED.replace("[contact]", "[contact]\nthickness = 5e-3").replace("1e6", "5e3"),
+    "dimensionless": "[dundurs]\nalpha = 0.1\nbeta = 0.0\nnu_pin = 0.3\n[contact]\nload_parameter = 0.1\n"
+    "friction = 0.3\n[[load]]\nP = 1.0\n[[load]]\nQ = [0.1, -0.1]\nrepeat = 2\n",
+    "bushed": BUSHED,
+    "rigid": PRESSED.replace('[pin]\nmaterial = "steel"', "[pin]\nrigid = true"),
+    "lug": PRESSED + "[plate_body]\nouter_radius = 0.02\n[pin_body]\nbore_radius = 0.004\n",
+    "not followed": PRESSED + "[[load]]\nM = 1e5\n",
+}
+
+
+def faults(document: Any, command: str) -> list[str]:
+    return [
+        f"{error.json_path}: {error.message}" for error in Draft202012Validator(schema(command)).iter_errors(document)
+    ]
+
+
+def written(folder: Path, *words: str) -> Any:
+    file = folder / "out.json"
+    main([*words, "--json", str(file)])
+    return json.loads(file.read_text())
+
+
+@pytest.fixture(autouse=True)
+def _inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_every_command_with_json_has_a_schema() -> None:
+    actions = next(action for action in parser()._actions if isinstance(action.choices, dict))
+    commands = {
+        name for name, each in actions.choices.items() if any("--json" in a.option_strings for a in each._actions)
+    }
+    assert commands | {"compliance"} == {*SCHEMAS, "resume", "show"}
+    assert COMMANDS == SCHEMAS
+    for command in SCHEMAS:
+        Draft202012Validator.check_schema(schema(command))
+    with pytest.raises(
+        InputError, match='command: must be "run", "converge", "verify", "benchmarks" or "compliance", not "x"'
+    ):
+        schema("x")
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_summaries(case: str, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASES[case])
+    found = written(tmp_path, "run", "case.toml", "--nodes", "61", "-o", "a.h5")
+    assert faults(found, "run") == []
+    assert (found["error"] is not None) == (case == "not followed")
+    assert faults(written(tmp_path, "show", "a.h5"), "run") == []
+
+
+def test_summaries_with_error_bars_and_a_cycle(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASES["dimensionless"])
+    words = ("run", "case.toml", "--nodes", "101", "--error-bars", "--slip-sums", "--cycle-csv", "c.csv")
+    found = written(tmp_path, *words)
+    assert found["states"][0]["error_bars"]
+    assert found["cycle"]
+    assert faults(found, "run") == []
+
+
+def test_a_study(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(PRESSED)
+    for more in ([], ["--increments", "5,10,20"]):
+        assert faults(written(tmp_path, "converge", "case.toml", "--nodes", "51,61,81", *more), "converge") == []
+
+
+def test_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    checks = [Check("a", "b", "c", 1.0, 1.5, 0.5, 0.1, "relative"), Check("a", "b", message="no path")]
+    monkeypatch.setattr(verification, "verify", lambda _: checks)
+    assert faults(written(tmp_path, "verify"), "verify") == []
+
+
+def test_benchmarks(tmp_path: Path) -> None:
+    assert faults(written(tmp_path, "benchmarks", "nafems-loaded-pin"), "benchmarks") == []
+
+
+def test_a_compliance(tmp_path: Path) -> None:
+    (tmp_path / "lug.toml").write_text(LUG_EXAMPLE)
+    assert main(["compliance", "lug.toml", "-o", "lug.json"]) == 0
+    assert faults(json.loads((tmp_path / "lug.json").read_text()), "compliance") == []
+
+
+def test_a_key_that_is_missing_or_new_is_noticed(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(PRESSED)
+    found = written(tmp_path, "run", "case.toml", "--nodes", "61")
+    for key in ("states", "units"):
+        assert faults({name: value for name, value in found.items() if name != key}, "run")
+    assert faults(found | {"more": 1}, "run")
+    other = copy.deepcopy(found)
+    other["states"][0]["peak_pressure"] = "high"
+    assert faults(other, "run") == ["$.states[0].peak_pressure: 'high' is not of type 'number', 'null'"]
+
+
+def test_the_command_prints_the_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema", "run"]) == 0
+    assert json.loads(capsys.readouterr().out) == schema("run")
