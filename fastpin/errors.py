@@ -57,6 +57,13 @@ class InputError(FieldMessage, FastpinError, ValueError):
     """
 
 
+class UnknownNameError(InputError, KeyError):
+    """A name that a table of names does not have, such as that of a material. It is a :class:`KeyError`, too."""
+
+    def __str__(self) -> str:
+        return Exception.__str__(self)  # KeyError would show the message in quotes
+
+
 class OutputError(FieldMessage, FastpinError):
     """An output file that could not be written to its end, for example because the disk is full.
 

@@ -19,7 +19,7 @@ from typing import Literal
 
 import numpy as np
 
-from fastpin.errors import InputError
+from fastpin.errors import InputError, UnknownNameError
 from fastpin.model.checks import choice, instance, number, positive, string
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.synonyms import explains_keywords
@@ -145,47 +145,60 @@ class Material:
         return (3.0 - self.nu) / (1.0 + self.nu)
 
 
-MATERIALS: dict[str, Material] = {
-    "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V", yield_strength=828e6),
-    "aluminium": Material(69e9, 0.33, "aluminium"),
-    "steel": Material(210e9, 0.30, "steel"),
-    "nickel alloy": Material(199.9e9, 0.294, "nickel alloy"),
-    "2024-T3": Material(
-        70e9,
-        0.33,
-        "2024-T3",
-        FatigueConstants(
-            fatigue_strength=1100e6,
-            strength_exponent=-0.124,
-            fatigue_ductility=0.22,
-            ductility_exponent=-0.59,
-            yield_strength=379e6,
-            source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+class Materials(dict[str, Material]):
+    """Materials by name. An unknown name raises :class:`UnknownNameError`, which says which name is meant."""
+
+    def __missing__(self, name: object) -> Material:
+        try:
+            choice("material", name, tuple(self))
+        except InputError as error:
+            raise UnknownNameError(error.field, error.reason) from None
+        raise KeyError(name)
+
+
+MATERIALS = Materials(
+    {
+        "Ti-6Al-4V": Material(116e9, 0.32, "Ti-6Al-4V", yield_strength=828e6),
+        "aluminium": Material(69e9, 0.33, "aluminium"),
+        "steel": Material(210e9, 0.30, "steel"),
+        "nickel alloy": Material(199.9e9, 0.294, "nickel alloy"),
+        "2024-T3": Material(
+            70e9,
+            0.33,
+            "2024-T3",
+            FatigueConstants(
+                fatigue_strength=1100e6,
+                strength_exponent=-0.124,
+                fatigue_ductility=0.22,
+                ductility_exponent=-0.59,
+                yield_strength=379e6,
+                source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+            ),
         ),
-    ),
-    "SAE 1020": Material(
-        203e9,
-        0.30,
-        "SAE 1020",
-        FatigueConstants(
-            fatigue_strength=896e6,
-            strength_exponent=-0.12,
-            fatigue_ductility=0.41,
-            ductility_exponent=-0.51,
-            yield_strength=262e6,
-            source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+        "SAE 1020": Material(
+            203e9,
+            0.30,
+            "SAE 1020",
+            FatigueConstants(
+                fatigue_strength=896e6,
+                strength_exponent=-0.12,
+                fatigue_ductility=0.41,
+                ductility_exponent=-0.51,
+                yield_strength=262e6,
+                source="Stephens et al., Metal Fatigue in Engineering, 2nd ed. (2001), appendix A, after SAE J1099",
+            ),
         ),
-    ),
-    "7075-T6": Material(71.7e9, 0.33, "7075-T6", yield_strength=503e6),
-    "A36": Material(200e9, 0.30, "A36", yield_strength=250e6),
-    "4340 normalized": Material(207e9, 0.30, "4340 normalized", yield_strength=862e6),
-    "304": Material(193e9, 0.30, "304", yield_strength=205e6),
-    "316": Material(193e9, 0.30, "316", yield_strength=205e6),
-    "17-4PH H900": Material(197e9, 0.272, "17-4PH H900", yield_strength=1170e6),
-    "Inconel 718": Material(199.9e9, 0.294, "Inconel 718", yield_strength=1034e6),
-    "C93200": Material(100e9, 0.35, "C93200", yield_strength=138e6),
-    "PEEK": Material(4.0e9, 0.40, "PEEK", yield_strength=98e6),
-}
+        "7075-T6": Material(71.7e9, 0.33, "7075-T6", yield_strength=503e6),
+        "A36": Material(200e9, 0.30, "A36", yield_strength=250e6),
+        "4340 normalized": Material(207e9, 0.30, "4340 normalized", yield_strength=862e6),
+        "304": Material(193e9, 0.30, "304", yield_strength=205e6),
+        "316": Material(193e9, 0.30, "316", yield_strength=205e6),
+        "17-4PH H900": Material(197e9, 0.272, "17-4PH H900", yield_strength=1170e6),
+        "Inconel 718": Material(199.9e9, 0.294, "Inconel 718", yield_strength=1034e6),
+        "C93200": Material(100e9, 0.35, "C93200", yield_strength=138e6),
+        "PEEK": Material(4.0e9, 0.40, "PEEK", yield_strength=98e6),
+    }
+)
 """Named materials at room temperature.
 
 * Ti-6Al-4V (116 GPa, 0.32) and aluminium (69 GPa, 0.33): in plane strain the pair has the Dundurs parameters 0.2507
