@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -46,16 +49,36 @@ SIZE = (8.0, 4.3)
 """Width and height of a picture, inches."""
 
 
+@dataclass(frozen=True, repr=False)
+class Animation:
+    """An animation that a notebook shows.
+
+    Attributes
+    ----------
+    gif : bytes
+        The content of a GIF file.
+    """
+
+    gif: bytes
+
+    def __repr__(self) -> str:
+        return f"<Animation: GIF of {len(self.gif):,} bytes>"
+
+    def _repr_html_(self) -> str:
+        image = base64.b64encode(self.gif).decode("ascii")
+        return f'<img alt="animation of a load cycle" src="data:image/gif;base64,{image}">'
+
+
 def animate(
     result: Sequence[State],
-    path: str | Path,
+    path: str | Path | None = None,
     title: str = "",
     dpi: float = 100.0,
     *,
     states: StateChoice = None,
     rate: float = RATE,
     progress: Callable[[float, float], None] | None = None,
-) -> None:
+) -> Animation | None:
     """Write an animation of a load cycle: the sketch of the joint with its contact, and the tractions.
 
     Each picture shows one state; nothing is made up between states. States inside steps (``between`` of
@@ -64,8 +87,8 @@ def animate(
     Parameters
     ----------
     result : Result or sequence of State
-    path : path
-        Ends in .gif, or in .mp4 if the program ffmpeg is on the PATH.
+    path : path, optional
+        Ends in .gif, or in .mp4 if the program ffmpeg is on the PATH. Without a path the animation is returned.
     title : str
     dpi : float
         Dots per inch; a picture is 8 inches wide.
@@ -77,20 +100,32 @@ def animate(
     progress : callable, optional
         ``progress(done, total)`` is called after each state.
 
+    Returns
+    -------
+    Animation or None
+        The animation, which a notebook shows. None if it was written to a file.
+
     Raises
     ------
     InputError
         If there are less than two states, an argument is out of range, or the file can't be written. Also if its name
         has another ending, or ffmpeg is missing.
     """
-    check_animation("path", file_path("path", path))
+    if path is not None:
+        check_animation("path", file_path("path", path))
     look = Look(title=title, dpi=dpi)
     check_callable("progress", progress)
     drawn = drawn_states(result, _usual(result, states), MOST_FRAMES, in_a_row=True)
     check_motion(drawn, rate)
-    check_writable(Path(path))
     with mpl.rc_context(STYLE):
+        if path is None:
+            with tempfile.TemporaryDirectory() as folder:
+                shown = Path(folder) / "animation.gif"
+                _write(drawn, shown, look, float(rate), progress)
+                return Animation(shown.read_bytes())
+        check_writable(Path(path))
         _write(drawn, Path(path), look, float(rate), progress)
+    return None
 
 
 def check_animation(field: str, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import shutil
 
 import pytest
@@ -31,6 +32,16 @@ def test_a_gif_has_a_picture_for_each_state_of_the_last_cycle(result, tmp_path):
         assert picture.size == (400, 215)
         assert picture.info["duration"] == 200
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_without_a_path_a_notebook_shows_the_animation(result, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    figures.animate(result, tmp_path / "a.gif", dpi=50)
+    shown = figures.animate(result, dpi=50)
+    assert shown.gif == (tmp_path / "a.gif").read_bytes()
+    assert base64.b64encode(shown.gif).decode() in shown._repr_html_()
+    assert repr(shown) == f"<Animation: GIF of {len(shown.gif):,} bytes>"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.gif"]
 
 
 def test_axes_keep_their_limits_and_the_heading_names_the_loads(result):
