@@ -28,7 +28,7 @@ DEFAULT_KEY_FIGURE = "peak_pressure"
 STATES_HELP = "last, cycle (the last one), all, load points such as 2,3.5, or ranges such as 1-9,20-"
 """Help on the choice of states."""
 
-SHELLS = ("bash", "zsh", "tcsh")
+SHELLS = ("bash", "zsh", "fish", "tcsh")
 """Shells with a script of completion."""
 
 SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance")

@@ -159,7 +159,7 @@ def test_a_file_of_another_kind_is_told_in_one_sentence(
     [
         (["repot", "a.h5"], 'must be example, check, .*, not "repot", did you mean "report"\\?'),
         (["plot", "a.h5", "tracton"], 'kind: must be tractions, .*, not "tracton", did you mean "tractions"\\?'),
-        (["completion", "fish"], 'shell: must be bash, zsh or tcsh, not "fish"'),
+        (["completion", "powershell"], 'shell: must be bash, zsh, fish or tcsh, not "powershell"'),
     ],
 )
 def test_a_word_of_the_command_line_that_is_not_allowed_is_answered_with_the_one_that_is_meant(
