@@ -284,9 +284,8 @@ def check_start(problem: Problem, start: Result) -> None:
         names = [
             each.name for each in fields(problem) if getattr(start.problem, each.name) != getattr(problem, each.name)
         ]
-        raise InputError(
-            "start", f"the result to continue from belongs to another problem; not the same: {', '.join(names)}"
-        )
+        differing = f"the result to continue from belongs to another problem; not the same: {', '.join(names)}"
+        raise InputError("start", f"{differing}; only the loads and options of the solver may differ")
     if start.restart is None:
         raise InputError("start", "nothing can continue from this result: its file holds states only")
 

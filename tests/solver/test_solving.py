@@ -104,7 +104,8 @@ def test_the_papers_restriction_is_explained():
 
 def test_a_result_of_another_problem_can_not_be_gone_on_from():
     result = solve(plain(), [{"P": 1.0}], nodes=31)
-    with pytest.raises(InputError, match="another problem"):
+    sentence = "another problem; not the same: pin_load; only the loads and options of the solver may differ"
+    with pytest.raises(InputError, match=sentence):
         solve(plain(pin_load="body"), [{"Q": 0.1}], start=result)
 
 
