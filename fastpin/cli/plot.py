@@ -86,7 +86,7 @@ def _states(
         extremes = figures.states.HOOP.get(hoop, ()) if hoop else figures.states.TRACTIONS
         states = figures.states.stored_states(options.result, chosen, extremes=extremes)
     if states.note:
-        say(f"the figure shows {states.note}")
+        say(f"the figure shows {states.note}{states.remedy}")
     return states
 
 

@@ -329,7 +329,7 @@ def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: 
         raise InputError("--states" if error.field == "states" else error.field, error.reason) from None
     figures.plot_tractions(drawn, path, title=case.title)
     if drawn.note:
-        say(f"{path} shows {drawn.note}", file=sys.stderr if options.json == "-" else sys.stdout)
+        say(f"{path} shows {drawn.note}{drawn.remedy}", file=sys.stderr if options.json == "-" else sys.stdout)
 
 
 def _report_end(

@@ -72,13 +72,21 @@ class DrawnStates(list[State]):
         The cycles of the history.
     marks : list of str
         Words on the extremes that each state has; empty for most.
+    chosen : int
+        Number of states that were chosen. The figure may not hold all of them.
     """
 
     def __init__(
-        self, states: Iterable[State], total: int, cycles: Sequence[Cycle] = (), marks: Sequence[str] = ()
+        self,
+        states: Iterable[State],
+        total: int,
+        cycles: Sequence[Cycle] = (),
+        marks: Sequence[str] = (),
+        chosen: int = 0,
     ) -> None:
         super().__init__(states)
         self.total, self.cycles, self.marks = total, cycles, list(marks) or [""] * len(self)
+        self.chosen = chosen or len(self)
 
     @property
     def note(self) -> str:
@@ -88,6 +96,13 @@ class DrawnStates(list[State]):
         points = list(map(point_text, self))
         named = ", ".join(points) if len(points) <= MAX_NAMED else f"{points[0]} to {points[-1]}"
         return f"{len(self)} of {self.total:,} states: load point{'s' if len(self) > 1 else ''} {named}"
+
+    @property
+    def remedy(self) -> str:
+        """How to draw the other states that were chosen, as text for the command line; empty if all are drawn."""
+        if self.chosen <= len(self):
+            return ""
+        return f"; of the {self.chosen:,} chosen states it holds {len(self)}: choose at most so many with --states"
 
 
 def drawn_states(
@@ -127,9 +142,9 @@ def drawn_states(
     def marked() -> dict[int, str]:
         return marked_places(find_extremes(KeptStates(every), extremes))
 
-    places, marks = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
+    places, marks, chosen = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
     total = every.total if isinstance(every, DrawnStates) else len(every)
-    return DrawnStates([every[place] for place in places], total, cycles, marks)
+    return DrawnStates([every[place] for place in places], total, cycles, marks, chosen)
 
 
 def drawn_places(
@@ -140,8 +155,10 @@ def drawn_places(
     in_a_row: bool = False,
     whole: bool = False,
     marked: Callable[[], dict[int, str]] = dict,
-) -> tuple[list[int], list[str]]:
-    """Return the places of the states that a figure draws, and words on the extremes that they have.
+) -> tuple[list[int], list[str], int]:
+    """Return the places of the states that a figure draws, words on their extremes, and how many were chosen.
+
+    Without a choice no state was chosen.
 
     Parameters
     ----------
@@ -175,17 +192,18 @@ def drawn_places(
         if states is not None or not len(points):
             raise
         places = chosen_places(points, cycles, "all")  # the states of the last cycle were not kept
+    count = 0 if states is None else len(set(places))
     if whole and len(places) > most:
         places = sorted(set(places))
-        return places, [""] * len(places)
+        return places, [""] * len(places), count
     if in_a_row:
         places = places[:most] if cycles else even_choice(places, most)
-        return places, [""] * len(places)
+        return places, [""] * len(places), count
     marks = marked() if len(places) > most or (states is None and len(places) < len(points)) else {}
     if states is None:
         places = sorted({*places, *marks})
     places = even_choice(places, most, marks)
-    return places, [marks.get(place, "") for place in places]
+    return places, [marks.get(place, "") for place in places], count
 
 
 def stored_states(
@@ -210,11 +228,11 @@ def stored_states(
         found = marked_extremes(path)
         return marked_places({each: found[each] for each in extremes if each in found})
 
-    places, marks = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
+    places, marks, chosen = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
     neighbours = bool(places) and places == list(range(places[0], places[-1] + 1))
     # A slice is read at once, a list state by state.
     read = load(path, states=slice(places[0], places[-1] + 1) if neighbours else places)
-    return DrawnStates(read.states, len(points), cycles, marks)
+    return DrawnStates(read.states, len(points), cycles, marks, chosen)
 
 
 class Frame:

@@ -46,6 +46,34 @@ def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
     assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
 
 
+def test_more_states_than_a_figure_holds_get_a_remedy(stored, tmp_path, capsys):
+    remedy = "; of the 10 chosen states it holds 8: choose at most so many with --states\n"
+    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "all"]) == 0
+    first = capsys.readouterr().out.splitlines(keepends=True)[0]
+    assert first.startswith("the figure shows 8 of 10 states: load points ")
+    assert first.endswith(remedy)
+    assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "all"]) == 0
+    assert remedy in capsys.readouterr().out
+    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "1-3"]) == 0
+    assert "chosen" not in capsys.readouterr().out
+    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "20"]) == 2
+    assert "--states: there is no state at load point 20; the last is 5" in capsys.readouterr().err
+
+
+BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change")
+"""Columns of numbers without a unit."""
+
+
+@pytest.mark.parametrize("kind", [kind for kind, names in PLOT_OPTIONS.items() if "csv" in names])
+def test_every_column_of_numbers_names_its_unit(stored, kind, tmp_path):
+    numbers = tmp_path / "a.csv"
+    assert main(["plot", str(stored), kind, "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]) == 0
+    for row in read_rows(numbers):
+        for name, cell in row.items():
+            is_text = not cell or cell[0].isalpha()
+            assert is_text or name in BARE or (name.endswith("]") and " [" in name), (name, cell)
+
+
 def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["example"]) == 0
