@@ -96,7 +96,8 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     """
     check_writable(path)
     rows, unit = printed_rows(plan, rows)
-    named = [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
+    named = [(name, unit.get(field_kind(name), "")) for name in plan.fields]
+    named += [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
     names = ["id", *plan.fields, *plan.outcomes, *KEY_FIGURES, "seconds", "started", "host", "status", "reason"]
     out = io.StringIO()
     out.write(f"# fastpin {__version__}{f', {plan.title}' if plan.title else ''}\n")

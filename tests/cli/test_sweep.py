@@ -111,7 +111,7 @@ def test_outcomes_come_from_the_plan_and_from_the_option(path: Path, capsys: pyt
     assert main([*arguments, "--status", "--table", "a.csv", "--plot", "b.png", "--value", "largest_pressure"]) == 0
     assert "outcome broken can't be read in 4 runs" in capsys.readouterr().out
     lines = Path("a.csv").read_text().splitlines()
-    assert "# units: shear Pa, largest_pressure Pa, peak_pressure Pa" in lines[1]
+    assert "# units: load.2.M N, shear Pa, largest_pressure Pa, peak_pressure Pa" in lines[1]
     for row in csv.DictReader(lines[2:]):
         assert row["largest_pressure"] == row["max_pressure"]
         assert row["shear"] == row["max_shear"]
