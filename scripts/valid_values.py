@@ -210,6 +210,7 @@ class Valid:
             "from_csv.path": "loads.csv",
             "from_csv.columns": {"P": {"column": "P", "scale": -1.0}},
             "from_csv.thickness": 5e-3,
+            "json_schema.command": "run",
             "read_lug.path": "lug.toml",
             "read_materials.path": "materials.toml",
             "read_plan.path": "plan.toml",

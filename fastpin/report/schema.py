@@ -33,7 +33,7 @@ _OPTIONAL_TEXT: Schema = {"type": ["string", "null"]}
 _RESULTANTS = ("P", "Q", "M")
 
 
-def schema(command: str) -> Schema:
+def json_schema(command: str) -> Schema:
     """Return the JSON schema of the document that a command writes.
 
     Parameters

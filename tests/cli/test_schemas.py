@@ -13,7 +13,8 @@ from fastpin.casefile import EXAMPLE, LUG_EXAMPLE
 from fastpin.cli.main import main
 from fastpin.cli.options import SCHEMAS, parser
 from fastpin.errors import InputError
-from fastpin.report.schema import COMMANDS, schema
+from fastpin.report import json_schema
+from fastpin.report.schema import COMMANDS
 from fastpin.verification.rows import Check
 from tests.support.case_texts import PRESSED
 
@@ -33,7 +34,8 @@ CASES = {
 
 def faults(document: Any, command: str) -> list[str]:
     return [
-        f"{error.json_path}: {error.message}" for error in Draft202012Validator(schema(command)).iter_errors(document)
+        f"{error.json_path}: {error.message}"
+        for error in Draft202012Validator(json_schema(command)).iter_errors(document)
     ]
 
 
@@ -56,11 +58,11 @@ def test_every_command_with_json_has_a_schema() -> None:
     assert commands | {"compliance"} == {*SCHEMAS, "resume", "show"}
     assert COMMANDS == SCHEMAS
     for command in SCHEMAS:
-        Draft202012Validator.check_schema(schema(command))
+        Draft202012Validator.check_schema(json_schema(command))
     with pytest.raises(
         InputError, match='command: must be "run", "converge", "verify", "benchmarks" or "compliance", not "x"'
     ):
-        schema("x")
+        json_schema("x")
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -116,4 +118,4 @@ def test_a_key_that_is_missing_or_new_is_noticed(tmp_path: Path) -> None:
 
 def test_the_command_prints_the_schema(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "run"]) == 0
-    assert json.loads(capsys.readouterr().out) == schema("run")
+    assert json.loads(capsys.readouterr().out) == json_schema("run")

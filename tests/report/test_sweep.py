@@ -159,7 +159,9 @@ def test_outcomes_have_their_units(with_outcomes: Plan, rows: list[dict[str, Any
     assert table[-1][-4:-1] == ["2e+06", "2000", "5.5"]
     write_csv(with_outcomes, rows, tmp_path / "a.csv")
     lines = (tmp_path / "a.csv").read_text().splitlines()
-    assert lines[1].startswith("# units: pin.E Pa, contact.clearance m, mass $/kg_{2, walk deg, loss J/m, peak_pressure Pa")
+    assert lines[1].startswith(
+        "# units: pin.E Pa, contact.clearance m, mass $/kg_{2, walk deg, loss J/m, peak_pressure Pa"
+    )
     assert lines[2].startswith("id,pin.material,pin.E,contact.friction,contact.clearance,mass,walk,loss,states,")
     found = chart(with_outcomes, rows, "mass")
     assert (found.label, found.missing) == ("mass ($/kg_{2)", 2)
