@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from fastpin.errors import InputError
-from fastpin.model.checks import as_toml, number, string
+from fastpin.model.checks import LONGEST_TEXT, as_toml, number, string
 from fastpin.model.load_units import Basis, LoadUnit, is_unit, load_unit, unit_name
 from fastpin.model.loads import LOADS, load_index
 from fastpin.model.synonyms import closest
@@ -17,6 +16,9 @@ COLUMN_KEYS = ("column", "scale", "unit")
 
 MOST_SHOWN = 12
 """Most columns of a file that an error names."""
+
+MOST_SEARCHED = 100
+"""Most columns of a file among which an error looks for the one that is meant."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +94,8 @@ def column_choice(load: str, given: object) -> ColumnChoice:
         raise InputError(load, f"must be a column of the CSV file, such as {example}, not {as_toml(given)}")
     for key in given:
         if key not in COLUMN_KEYS:
-            raise InputError(
-                load,
-                f"unknown key {as_toml(key)}; the keys are {', '.join(COLUMN_KEYS)}{closest(str(key), COLUMN_KEYS)}",
-            )
+            hint = closest(str(key)[:LONGEST_TEXT], COLUMN_KEYS)
+            raise InputError(load, f"unknown key {as_toml(key)}; the keys are {', '.join(COLUMN_KEYS)}{hint}")
     if "column" not in given:
         raise InputError(load, "column is missing: the header of a column of the CSV file")
     column = string(f"{load}.column", given["column"])
@@ -127,7 +127,9 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
             shown = ", ".join(as_toml(title) for title in titles[:MOST_SHOWN])
             shown += f" and {len(titles) - MOST_SHOWN} more" if len(titles) > MOST_SHOWN else ""
             fault = f"{len(places)} columns of the file are" if places else "the file has no column"
-            hint = "" if places else closest(wanted, [*titles, *(name for name, _ in parts)])
+            hint = (
+                "" if places else _hint(wanted, [*titles[:MOST_SEARCHED], *(name for name, _ in parts[:MOST_SEARCHED])])
+            )
             raise InputError(load, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
         place = places[0]
         unit = _one_unit(load, choice.unit, parts[place][1], "the header says")
@@ -180,8 +182,15 @@ def _one_unit(load: str, given: str, written: str, where: str) -> str:
 
 def _title_and_unit(title: str) -> tuple[str, str]:
     """Split a header such as "Force [N]", "Force (N)" or "Force / N" into a name and a unit in its usual spelling."""
-    brackets = re.fullmatch(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))", title)
-    if brackets:
-        return brackets[1].strip(), unit_name(brackets[2] or brackets[3] or "")
+    for begin, end in ("[]", "()"):
+        name, bracket, rest = title.rpartition(begin)
+        if title.endswith(end) and bracket:
+            return name.strip(), unit_name(rest[:-1])
     name, slash, rest = title.partition(" / ")
     return (name.strip(), unit_name(rest)) if slash and is_unit(unit_name(rest)) else (title, "")
+
+
+def _hint(wanted: str, titles: Sequence[str]) -> str:
+    """A hint at the column that is meant. A search in a million headers would take minutes."""
+    known = [title for title in titles if len(title) < LONGEST_TEXT]
+    return closest(wanted, known) if len(wanted) < LONGEST_TEXT else ""

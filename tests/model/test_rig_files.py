@@ -1,6 +1,7 @@
 """CSV files as test rigs and spreadsheets write them: columns of any name, units, signs, separators and commas."""
 
 import re
+import time
 from pathlib import Path
 from typing import Any
 
@@ -176,3 +177,13 @@ def test_wrong_columns_are_refused(columns: Any, field: str, words: str, tmp_pat
 def test_a_wrong_thickness_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="thickness: must be positive"):
         loads(tmp_path, "P\n1\n", None, 0.0)
+
+
+@pytest.mark.parametrize("header", [",".join(["Force [N]"] * 90_000), "Force" + " " * 130_000 + "N", "[" * 130_000])
+def test_hostile_headers_are_answered_soon(header: str, tmp_path: Path) -> None:
+    for columns in ({"P": "Forze"}, {"P": "F" * 900_000}, None):
+        began = time.monotonic()
+        with pytest.raises(CaseFileError, match=r"the file has no column|unknown load") as caught:
+            loads(tmp_path, f"{header}\n1\n", columns)
+        assert time.monotonic() - began < 5.0
+        assert len(str(caught.value)) < 2000
