@@ -10,6 +10,7 @@ from fastpin.errors import InputError
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan
 from scripts.inline import Inline
+from tests.support.case_texts import PRESSED
 from tests.support.plans import MOMENT
 
 PLAN = """
@@ -98,6 +99,27 @@ def test_a_plan_of_lists_has_one_dimension(tmp_path: Path) -> None:
     assert data["contact.friction"].values.tolist() == [0.3, 0.4]
     assert np.array_equal(data["solve.nodes"].values, [np.nan, 41.0], equal_nan=True)
     assert data["run"].values.tolist() == [1, 2]
+
+
+def test_files_of_loads_and_their_columns_can_be_varied(tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    for name in ("a.csv", "b.csv"):
+        (tmp_path / name).write_text("Force [kN/m],Other [kN/m]\n1000,2000\n")
+    text = """
+        [grid]
+        load.1.csv = ["a.csv", "b.csv"]
+        load.1.P = ["Force", { column = "Other", scale = 0.25 }]
+        solve.nodes = [41]
+    """
+    (tmp_path / "case.toml").write_text(PRESSED.replace("P = 1e6", 'csv = "a.csv"\nP = "Force"'))
+    files = parse_plan('case = "case.toml"\n' + text, folder=tmp_path)
+    assert sweep.run(files, tmp_path / "sweep", Inline()).done == 2  # both files have the same loads
+    assert [row["load.1.csv"] for row in sweep.rows(files, tmp_path / "sweep")] == ["a.csv"] * 2 + ["b.csv"] * 2
+    assert min(str(row["load.1.P"]) for row in sweep.load(tmp_path / "sweep")) == "Force"
+    data = sweep.to_xarray(files, tmp_path / "sweep").squeeze()
+    assert data["load.1.csv"].values.tolist() == ["a.csv", "b.csv"]
+    assert data["load.1.P"].values.tolist() == ["Force", '{"column": "Other", "scale": 0.25}']
+    assert (data["peak_pressure"][:, 0] > data["peak_pressure"][:, 1]).all()
 
 
 def test_a_dataset_can_be_written_and_read(plan: Plan, directory: Path, tmp_path: Path) -> None:
