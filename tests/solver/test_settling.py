@@ -123,12 +123,12 @@ def test_increments_tend_to_the_path_beyond_such_events(name):
     case, history = CASES[name]
     exact = solve(case, history, nodes=101)
     differences = []
-    for increments in (100, 400, 1600):
+    for increments in (100, 1600):
         steps = solve(case, history, grid=exact.grid, method="increment", increments=increments)
         last, end = steps[-1], exact[-1]
         differences.append(np.abs(last.shear - end.shear).sum() / np.abs(end.pressure).sum())
-    assert differences[2] < differences[0] / 6.0
-    assert differences[2] < 2e-3
+    assert differences[1] < differences[0] / 6.0
+    assert differences[1] < 2e-3
 
 
 def test_statuses_that_are_left_alone_settle_without_lemke(met, titanium_in_aluminium):

@@ -75,7 +75,7 @@ def test_extremes_of_random_histories_contain_the_states(seed: int) -> None:
 @pytest.fixture(scope="module")
 def finer(request: pytest.FixtureRequest) -> list[list[State]]:
     """The states of a case with more and more stops inside its steps."""
-    return [solved(request.param, between=between) for between in (15, 127, 1023)]
+    return [solved(request.param, between=between) for between in (7, 63, 511)]
 
 
 @pytest.mark.parametrize("finer", PATHS, indirect=True)
@@ -108,7 +108,7 @@ def test_sums_from_state_to_state_converge_to_the_exact_sums(finer: list[list[St
         errors.append(np.abs(naive(states) - exact).max(axis=1) / exact.max(axis=1))
     assert np.all(errors[1] < 0.4 * errors[0])
     assert np.all(errors[2] < 0.4 * errors[1])
-    assert np.all(errors[2] < 8e-3)  # measured: 5.8e-3, and 6e-4 with 8,191 states a step
+    assert np.all(errors[2] < 1.2e-2)  # measured: 9.2e-3; 5.8e-3 with 1,023 and 6e-4 with 8,191 states a step
 
 
 @pytest.mark.parametrize("name", ["snap", "snap under a moment"])

@@ -134,15 +134,15 @@ def test_the_friction_energy_is_the_dissipation(name: str, options: dict[str, An
 def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
     """The polygon through the states converges to the work of the solver, with the square of their number."""
     errors, size = [], 0.0
-    for between in (7, 63, 511):
+    for between in (7, 511):
         found = solved(name, cycles=1, between=between)
         cycle = found.cycle(first=1, last=len(found.history))
         work = sum(loop.work for loop in cycle.loops.values())
         exact = cycle.states[-1].work - cycle.states[0].work
         size = sum(abs(loop.work) for loop in cycle.loops.values())
         errors.append(abs(work - exact) / size)
-    assert errors[2] < 1e-5
-    assert errors[2] < 0.02 * errors[0] or errors[0] < 1e-6
+    assert errors[1] < 1e-5
+    assert errors[1] < 0.02 * errors[0] or errors[0] < 1e-6
 
 
 def test_a_loop_is_exact_where_no_status_changes() -> None:
@@ -210,7 +210,7 @@ def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     assert exact.has_exact_slip_range
     assert len(exact.states) == 2
     missed = []
-    for between in (15, 127, 1023):
+    for between in (7, 63, 511):
         fine = again(found, between)
         assert np.abs(fine.slip_range - exact.slip_range).max() <= 1e-13 * size
         read = bare(fine)

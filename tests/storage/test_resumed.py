@@ -66,15 +66,25 @@ def is_equal(one: Any, two: Any) -> bool:
     return bool(np.array_equal(first, second))
 
 
-@pytest.mark.parametrize("options", [{}, {"keep": "cycles"}, {"slip_sums": True, "between": 2}])
+@pytest.fixture(scope="module", params=[{}, {"keep": "cycles"}, {"slip_sums": True, "between": 2}], ids=str)
+def options(request: pytest.FixtureRequest) -> dict[str, Any]:
+    return {**request.param, "nodes": 41, "arc": (-3.0, -0.1)}
+
+
+@pytest.fixture(scope="module")
+def whole(options: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """The parts of the file of an uninterrupted run."""
+    path = tmp_path_factory.mktemp("whole") / "whole.h5"
+    record(problem(), HISTORY, path, **options)
+    return parts(path)
+
+
 @pytest.mark.parametrize("corners", [[0.5], [1.0], [4.5], [8.0, 10.5, 13.0], [22.5], [25.0, 30.5, 36.0]])
 def test_a_resumed_run_differs_in_the_named_parts_only(
-    corners: list[float], options: dict[str, Any], tmp_path: Path
+    corners: list[float], options: dict[str, Any], whole: dict[str, Any], tmp_path: Path
 ) -> None:
-    options = {**options, "nodes": 41, "arc": (-3.0, -0.1)}
-    record(problem(), HISTORY, tmp_path / "whole.h5", **options)
     interrupted(tmp_path / "parts.h5", corners, **options)
-    whole, resumed = parts(tmp_path / "whole.h5"), parts(tmp_path / "parts.h5")
+    resumed = parts(tmp_path / "parts.h5")
     others = {name for name in whole.keys() | resumed.keys() if not is_equal(whole.get(name), resumed.get(name))}
     assert {name for name in others if not MAY_DIFFER.fullmatch(name)} == set()
     assert ("cycles/solved" in others) == (corners[-1] in (4.5, 13.0, 36.0))

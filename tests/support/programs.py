@@ -20,19 +20,19 @@ def q(*values: float) -> LoadHistory:
 
 
 P = LoadHistory([{"P": 1.0}])
-RANDOM = np.random.default_rng(0).uniform(-0.28, 0.28, 40)
+RANDOM = np.random.default_rng(0).uniform(-0.28, 0.28, 16)
 PROGRAMS = {
-    "cycles": LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 25),
-    "corners": LoadHistory([{"P": 1.0}, *CYCLE * 25, {"Q": 0.1}]),
-    "two levels": P + (q(0.2, -0.2).repeated(5) + q(0.3, -0.3).repeated(3)).repeated(8) + q(0.1),
-    "spectrum": P + q(*RANDOM, 0.3).repeated(5),
-    "cycles, then corners": P + (q(0.3, -0.3).repeated(4) + q(0.1, 0.2, 0.1)).repeated(5),
-    "loads that come back": P + q(0.2, -0.2).repeated(12) + (q(0.3, -0.3) + q(0.1, -0.1).repeated(5)).repeated(6),
+    "cycles": LoadHistory.cycles({"P": 1.0}, {"Q": 0.275}, 16),
+    "corners": LoadHistory([{"P": 1.0}, *CYCLE * 16, {"Q": 0.1}]),
+    "two levels": P + (q(0.2, -0.2).repeated(5) + q(0.3, -0.3).repeated(3)).repeated(4) + q(0.1),
+    "spectrum": P + q(*RANDOM, 0.3).repeated(4),
+    "cycles, then corners": P + (q(0.3, -0.3).repeated(4) + q(0.1, 0.2, 0.1)).repeated(4),
+    "loads that come back": P + q(0.2, -0.2).repeated(8) + (q(0.3, -0.3) + q(0.1, -0.1).repeated(5)).repeated(4),
     "begins inside a period": P
     + (q(*[0.2, -0.2] * 4) + q(0.2, -0.2, 0.2, -0.2, 0.2, -0.2, 0.3).repeated(2)).repeated(3),
     "begins before a period": P + (q(*[0.2, -0.2] * 3, 0.2) + q(*[-0.2, 0.2] * 3, -0.2, 0.3).repeated(2)).repeated(3),
     "minus zero": P + q(*[0.2, 0.0] * 6, -0.0, 0.2, -0.0),
-    "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(10),
+    "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(8),
 }
 
 

@@ -102,9 +102,9 @@ def test_the_first_place_slips_where_the_closed_form_says(name, friction):
     problem = fit(name, friction)
     exact, ratio = interference.first_slip_load(problem), interference.stuck_ratio(problem)
     bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), 2 * NODES)
+    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES)
     assert found == pytest.approx(exact, rel=1e-4)
-    state = solved(problem, {"P": 1.0001 * found}, 2 * NODES)
+    state = solved(problem, {"P": 1.0001 * found}, NODES)
     place = friction * (1.0 + ratio) / math.hypot(1.0 - ratio, friction * (1.0 + ratio))
     assert np.sin(state.theta[state.status != STICK]) == pytest.approx(place, abs=0.03)
 
@@ -115,7 +115,7 @@ def test_a_contact_with_much_friction_opens_like_a_bonded_one(name):
     problem = fit(name, 10.0)
     exact = interference.bonded_opening_load(problem)
     bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), 2 * NODES)
+    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status == OPEN)), NODES)
     assert 0.995 * exact < found < 1.0001 * exact
 
 

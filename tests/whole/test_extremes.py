@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -14,7 +15,6 @@ import fastpin
 from fastpin import figures, storage
 from fastpin.cli.main import main
 from fastpin.states.extremes import READINGS, marked_places
-from fastpin.storage.extremes import LEAST_STORED
 
 CASE = """
 [pin]
@@ -152,14 +152,33 @@ def test_figures_draw_the_states_of_extremes(stored: Path, readings: dict[str, l
 # -- stored extremes -------------------------------------------------------------------------------------------------
 
 
+LEAST = 60
+"""Number of states from which on the files of these tests have extremes."""
+
+
+@pytest.fixture
+def least(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(storage.extremes, "LEAST_STORED", LEAST)
+
+
 @pytest.fixture(scope="module")
 def long(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A result with stored extremes."""
     path = tmp_path_factory.mktemp("long") / "a.h5"
-    case = fastpin.LoadHistory([{"P": 1e6}, {"P": 2e6}]).repeated(LEAST_STORED // 2)
+    case = fastpin.LoadHistory([{"P": 1e6}, {"P": 2e6}]).repeated(LEAST // 2)
     pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
-    fastpin.record(fastpin.Problem(pair, 0.01, 2e-5, 0.3), case, path, nodes=61)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(storage.extremes, "LEAST_STORED", LEAST)
+        fastpin.record(fastpin.Problem(pair, 0.01, 2e-5, 0.3), case, path, nodes=61)
     return path
+
+
+def test_a_file_has_extremes_from_so_many_states_on(long: Path, least: None, tmp_path: Path) -> None:
+    result = fastpin.load(long)
+    for size, stored in ((LEAST - 1, False), (LEAST, True)):
+        replace(result, states=result.states[:size]).save(tmp_path / f"{size}.h5")
+        with h5py.File(tmp_path / f"{size}.h5") as file:
+            assert ("extremes" in file) == stored
 
 
 def test_a_long_result_has_its_extremes_in_the_file(long: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,7 +210,7 @@ def test_extremes_in_a_file_are_checked(long: Path, tmp_path: Path, damage: str)
     assert storage.marked_extremes(path) == known
 
 
-def test_a_saved_long_result_has_the_same_extremes(long: Path, tmp_path: Path) -> None:
+def test_a_saved_long_result_has_the_same_extremes(long: Path, least: None, tmp_path: Path) -> None:
     result = fastpin.load(long)
     result.save(tmp_path / "c.h5")
     with h5py.File(tmp_path / "c.h5") as file:
