@@ -30,6 +30,7 @@ from fastpin.solver.solving import solve
 from fastpin.storage.layout import all_loads
 from fastpin.verification.comparisons import residuals_away
 from fastpin.verification.sliding import solve_sliding
+from tests.support.marks import slow
 from tests.support.samples import JOINT
 
 NODES = 240
@@ -146,7 +147,7 @@ def test_gap_of_the_hole_is_that_of_the_columns_and_has_its_derivatives(titanium
 # --- turned by 45 degrees, and in a mirror ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", [{}, {"method": "increment", "increments": 8}], ids=["path", "increment"])
+@pytest.mark.parametrize("method", [{}, *slow({"method": "increment", "increments": 8})], ids=["path", "increment"])
 @pytest.mark.parametrize(("pin_load", "rotation"), [("body", "free"), ("centre", "free"), ("centre", "fixed")])
 @pytest.mark.parametrize("parameter", [0.3, 0.0, -0.05], ids=["loose", "neat", "interference"])
 def test_turned_by_an_eighth(titanium_in_aluminium, parameter, pin_load, rotation, method):

@@ -113,6 +113,7 @@ def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file
     assert stored_in(cache(installed)) == ["small.doubled"]
 
 
+@pytest.mark.slow
 @keeps
 def test_other_settings_need_other_code(installed: Path) -> None:
     assert compiles(installed)
@@ -121,6 +122,7 @@ def test_other_settings_need_other_code(installed: Path) -> None:
     assert stored_in(cache(installed)) == ["small.doubled"] * 2
 
 
+@pytest.mark.slow
 @keeps
 def test_in_the_cache_of_the_user_where_the_package_can_not_be_written(installed: Path) -> None:
     cache(installed).touch()  # nobody, not even root, can make a directory where a file is
@@ -213,6 +215,7 @@ print(influence.clausen(1.0), "numba" in sys.modules)
 """
 
 
+@pytest.mark.slow
 def test_numba_keeps_code_that_can_not_be_stored(tmp_path: Path) -> None:
     variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
 
@@ -255,6 +258,7 @@ assert numba.config.NUMBA_NUM_THREADS == 1
 """
 
 
+@pytest.mark.slow
 def test_packages_that_are_imported_later_work() -> None:
     influence.clausen(1.0)  # its machine code is stored now
     assert subprocess.run([sys.executable, "-c", AFTER], capture_output=True, text=True, check=True).stderr == ""

@@ -22,6 +22,7 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.path import PathStep
 from fastpin.solver.settling import FiniteStep, settle
 from fastpin.solver.solving import solve
+from tests.support.marks import first_quick
 
 BOTTOM = -0.5 * np.pi
 DRIVES = ["ux", "uy", "both"]
@@ -131,7 +132,7 @@ def test_windows_give_the_states_of_the_whole_operator(titanium_in_aluminium, dr
         assert [two.load[name] for name in LOADS] == pytest.approx([one.load[name] for name in LOADS], abs=1e-11)
 
 
-@pytest.mark.parametrize("rotation", list(HELD))
+@pytest.mark.parametrize("rotation", first_quick(1, HELD))
 def test_narrow_contacts_that_travel_get_the_nodes_where_they_are(titanium_in_aluminium, rotation):
     """The pin goes from one place of the hole to another, and hardly touches it."""
     case, history = narrow(titanium_in_aluminium, "both", rotation=rotation), circling(0.30001, -90, 0, 130)

@@ -18,6 +18,7 @@ from fastpin.solver.repeats import MOST_KEPT, Repeats
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import consecutive_cycles, periodic_from
+from tests.support.marks import first_quick
 from tests.support.programs import CYCLE, FIELDS, PROGRAMS, RANDOM, P, assert_same, known, q
 
 
@@ -31,7 +32,7 @@ def free(similar):
     return Problem.from_load_parameter(similar, 0.05, 0.55, "body")
 
 
-@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 3"]))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 @pytest.mark.parametrize("kind", ["held", "free"])
 def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, program, keep):

@@ -18,6 +18,7 @@ from fastpin.solver.solving import solve
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, save
 from scripts.histories import random_case
+from tests.support.marks import first_quick
 from tests.support.programs import EXTREMES, FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, known, q
 from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
 
@@ -63,7 +64,7 @@ def test_nothing_else_changes(name: str) -> None:
     assert {**plain.statistics, "seconds": 0.0} == {**summed.statistics, "seconds": 0.0}
 
 
-@pytest.mark.parametrize("seed", range(100, 130))
+@pytest.mark.parametrize("seed", first_quick(8, range(100, 130)))
 def test_random_histories_balance(seed: int) -> None:
     problem, history = random_case(seed)
     assert_balance(solve(problem, history, nodes=81, slip_sums=True))
@@ -100,7 +101,7 @@ def held() -> Problem:
     return unitless(LIKE, 0.5, 0.55, "centre", "fixed")
 
 
-@pytest.mark.parametrize("keep", ["all", "corners", "cycles", "every 3", "every 5"])
+@pytest.mark.parametrize("keep", first_quick(3, ["all", "cycles", "every 5", "corners", "every 3"]))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_what_repeats_has_the_bits_of_what_is_solved_again(held: Problem, program: str, keep: str, tmp_path) -> None:
     history = PROGRAMS[program]

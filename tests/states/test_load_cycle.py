@@ -19,6 +19,7 @@ from fastpin.solver.solving import solve
 from fastpin.states.load_cycle import LoadCycle, NodeBehaviour
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, places_between
+from tests.support.marks import first_quick
 
 UNLIKE = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -130,7 +131,7 @@ def test_the_friction_energy_is_the_dissipation(name: str, options: dict[str, An
     assert energy == pytest.approx(cycle.dissipation, rel=1e-12, abs=1e-12 * cycle.states[-1].dissipation)
 
 
-@pytest.mark.parametrize("name", list(CYCLES))
+@pytest.mark.parametrize("name", first_quick(3, CYCLES))
 def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
     """The polygon through the states converges to the work of the solver, with the square of their number."""
     errors, size = [], 0.0
@@ -201,7 +202,7 @@ def bare(cycle: LoadCycle) -> LoadCycle:
     return LoadCycle(tuple(replace(state, **lost) for state in cycle.states))
 
 
-@pytest.mark.parametrize("name", list(CYCLES))
+@pytest.mark.parametrize("name", first_quick(3, CYCLES))
 def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     """The range from two states against the ranges read from more and more states."""
     cycles = 6 if name == "body" else 2  # by the sixth cycle the nodes of the pin with body loads stick

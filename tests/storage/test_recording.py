@@ -30,6 +30,7 @@ from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
 from fastpin.storage.writer import checkpoint_of
 from tests.support.interrupts import StopAt
+from tests.support.marks import first_quick
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,7 +54,7 @@ def assert_file(path: Path, expected) -> None:
     assert found.complete
 
 
-@pytest.mark.parametrize("keep", ["all", "cycles", "every 3"])
+@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 3"]))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_the_file_holds_what_a_solution_returns(problem, path, program, keep):
     history = PROGRAMS[program]
@@ -114,7 +115,7 @@ def test_an_interrupted_run_goes_on(problem, path, corner):
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
-@pytest.mark.parametrize("stops", [6.0, 1.25])
+@pytest.mark.parametrize("stops", first_quick(1, [1.25, 6.0]))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
     history, corner = PROGRAMS[program][: 12 * int(stops)], 3.0
@@ -264,13 +265,13 @@ def test_a_killed_run_has_lost_nothing(tmp_path):
     spec.loader.exec_module(kills)
     logging.disable()
     try:
-        found = kills.kill_until_done(tmp_path, kills=4, longest=0.3, rounds=20)
+        found = kills.kill_until_done(tmp_path, kills=4, longest=0.3, rounds=8)
     finally:
         logging.disable(logging.NOTSET)
     assert found["kills"] >= 2
     assert found["acknowledged"] > 0
     assert found["lost"] == found["different"] == 0
-    assert found["states"] == 2 * (1 + 20 * 50)
+    assert found["states"] == 2 * (1 + 8 * 50)
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(errno.ENOSPC, "No space left on device")])

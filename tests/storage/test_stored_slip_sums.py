@@ -19,6 +19,7 @@ from fastpin.storage.layout import SLIP_FIELDS
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load, places_between
 from tests.support.interrupts import StopAt
+from tests.support.marks import first_quick
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
 
 RANDOM = P + q(*np.random.default_rng(1).uniform(-0.28, 0.28, 40))
@@ -34,7 +35,7 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "a.h5"
 
 
-@pytest.mark.parametrize("keep", ["all", "every 7", "cycles"])
+@pytest.mark.parametrize("keep", first_quick(2, ["all", "cycles", "every 7"]))
 @pytest.mark.parametrize("program", ["spectrum", "two levels", "pressed again and again"])
 def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program: str, keep: str) -> None:
     history, corner = PROGRAMS[program][:60], 3.0

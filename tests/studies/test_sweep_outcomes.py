@@ -237,6 +237,7 @@ def test_a_killed_sweep_goes_on_with_its_outcomes(tmp_path: Path) -> None:
     assert all(row["pressure"] == row["max_pressure"] for row in sweep.rows(plan, out))
 
 
+@pytest.mark.slow
 def test_a_cluster_reads_outcomes(bare: Plan, tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

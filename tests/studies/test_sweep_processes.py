@@ -181,6 +181,7 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
     assert_same_as_serial(plan, directory)
 
 
+@pytest.mark.slow
 def test_a_cluster_that_loses_a_worker(tmp_path: Path) -> None:
     from distributed import Client, LocalCluster
 

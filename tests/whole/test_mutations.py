@@ -35,10 +35,10 @@ def findings(mutations: ModuleType, files: Path, kind: str, seeds: range) -> lis
 
 @pytest.mark.parametrize("kind", ["case", "csv", "index", "lug", "plan"])
 def test_some_changed_files_give_one_sentence(mutations, files, kind):
-    assert findings(mutations, files, kind, range(8)) == []
+    assert findings(mutations, files, kind, range(4)) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["case", "csv", "result", "unfinished", "index", "lug", "plan"])
 def test_changed_files_give_one_sentence(mutations, files, kind):
-    assert findings(mutations, files, kind, range(1_000, 1_060)) == []
+    assert findings(mutations, files, kind, range(1_000, 1_030)) == []

@@ -20,9 +20,9 @@ def before(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("command", "ways"),
     [
-        ("record", ["kill", "fill", "stop", "share"]),
-        ("json", ["kill", "fill"]),
-        ("sweep", ["kill", "fill", "stop", "share"]),
+        ("record", ["kill", "fill", "share"]),
+        ("json", ["fill"]),
+        ("sweep", ["kill", "stop"]),
         ("dask", ["kill"]),
         ("compliance", ["fill"]),
         ("report", ["fill"]),

@@ -14,6 +14,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
 from scripts.histories import NODES, random_case
 from scripts.random_histories import examine
+from tests.support.marks import first_quick
 
 BOTTOM = -0.5 * np.pi
 ARC = (BOTTOM - 1.75, BOTTOM + 1.75)
@@ -221,7 +222,7 @@ def test_a_circle_with_a_wide_seam_is_not_taken_for_a_uniform_one(similar):
     assert np.abs(arc.shear - seamed.shear).max() < 1e-10
 
 
-@pytest.mark.parametrize("block", range(10))
+@pytest.mark.parametrize("block", first_quick(4, range(10)))
 def test_random_histories(block):
     """No wrong state, and no error: all of these have an equilibrium. scripts/random_histories.py runs a thousand."""
     for seed in range(1000 + 12 * block, 1012 + 12 * block):
@@ -231,7 +232,7 @@ def test_random_histories(block):
         assert outcome.states == len(random_case(seed)[1])
 
 
-@pytest.mark.parametrize("seed", [3, 11, 19, 24, 30, 42])
+@pytest.mark.parametrize("seed", first_quick(3, [3, 11, 19, 24, 30, 42]))
 def test_random_histories_by_increments(seed):
     problem, history = random_case(seed)
     path = solve(problem, history, nodes=NODES)

@@ -16,7 +16,7 @@ from scripts.histories import GENERATORS, generate
 from scripts.random_histories import Outcome, examine, table
 from tests.support.potentials import displacement_kernels
 
-FEW, MANY = range(1, 4), range(300, 327)
+FEW, MANY = range(1, 4), range(300, 314)
 
 
 def assert_right(outcome: Outcome) -> None:
