@@ -17,7 +17,7 @@ from matplotlib.patheffects import Normal, Stroke
 
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import HOOP, DrawnStates, drawn_states, name_states, state_lines
-from fastpin.figures.style import angle_axis, line
+from fastpin.figures.style import angle_axis, draw_zero, line
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
 from fastpin.model.bodies import Disk
 from fastpin.model.checks import choice, instance
@@ -98,7 +98,7 @@ def draw_hoop(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
             face = style["color"] if peak.resolved else "white"
             angle = math.degrees(peak.angle) + 90.0
             panel.plot(angle, factor * peak.value, "o", markersize=4.0, color=style["color"], markerfacecolor=face)
-        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        draw_zero(panel)
         words = edge_body(states[0].problem, body).replace("plate at", "plate\nat")
         panel.set_ylabel(quantity(f"hoop stress of the {words}", label))
         panel.set_xlim(-180.0, 180.0)
@@ -165,7 +165,7 @@ def draw_profile(states: DrawnStates, curves: list[Curve], look: Look) -> Sheet:
     for name, panel in zip(columns, axes.flat, strict=True):
         for curve, style in zip(curves, state_lines(states), strict=True):
             panel.plot(curve[depth] / radius, factor * curve[name], **style)
-        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+        draw_zero(panel)
         panel.set_ylabel(quantity(name.partition(" [")[0], label))
         panel.set_xlim(left=0.0)
     for panel in axes[-1]:

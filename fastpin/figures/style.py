@@ -30,8 +30,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#8
 They are Okabe and Ito's without yellow, which is too light for a line, then Tol's wine red, and grey.
 """
 
-DASHES: tuple[tuple[int, tuple[float, ...]], ...] = (
-    (0, ()),
+DASHES: tuple[tuple[int, tuple[float, ...] | None], ...] = (
+    (0, None),  # not (0, ()): an SVG would have dashes of no length, which some readers do not draw
     (0, (5.0, 1.6)),
     (0, (1.2, 1.2)),
     (0, (5.0, 1.4, 1.2, 1.4)),
@@ -157,6 +157,17 @@ def new_figure(width: float, height: float) -> Drawing:
 
 Line = dict[str, Any]
 """Keywords of ``Axes.plot``: colour, dashes, width."""
+
+
+FAR = 1.0
+"""Distance of all curves from 0 beyond which 0 is not shown, in parts of their range."""
+
+
+def draw_zero(panel: Axes) -> None:
+    """Draw the line of 0 behind the curves of a panel. Curves that lie far from 0 are not flattened for it."""
+    low, high = panel.dataLim.intervaly
+    if max(low, -high) <= FAR * (high - low):
+        panel.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 
 def line(colour: int = 0, dashes: int = 0, width: float = 1.4) -> Line:

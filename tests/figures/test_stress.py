@@ -46,6 +46,25 @@ def test_one_body_has_one_panel_with_the_states_of_the_last_cycle(result):
     assert "5 of 10 states drawn" in panel.get_title()
 
 
+def test_curves_far_from_zero_are_not_flattened_for_it():
+    bush = Bushing(MATERIALS["C93200"], 3e-3, 5e-6)
+    pair = MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"])
+    held = solve(Problem(pair, 2.4e-3, 10e-6, 0.4, plate_body=bush), [{"P": 3e4}, {"P": 4e4}], nodes=61)
+    bore, _, pin = figures.plot_hoop_stress(held).axes
+    low, high = bore.dataLim.intervaly
+    assert high < -2.0 * (high - low)
+    bottom, top = bore.get_ylim()
+    assert bottom < low < high < top < 0.0
+    assert top - bottom < 1.2 * (high - low)
+    assert pin.get_ylim()[0] < 0.0 < pin.get_ylim()[1]
+
+
+def test_solid_lines_of_an_svg_have_no_dashes_of_no_length(result, tmp_path):
+    """Some readers, and what makes a PDF of a report, draw nothing for "stroke-dasharray: ;"."""
+    figures.plot_hoop_stress(result, tmp_path / "hoop.svg")
+    assert "stroke-dasharray: ;" not in (tmp_path / "hoop.svg").read_text(encoding="utf-8")
+
+
 def test_a_rigid_body_is_left_out(rigid):
     figure = figures.plot_hoop_stress(rigid)
     assert [panel.get_ylabel() for panel in figure.axes] == ["hoop stress of the plate (F/R)"]
