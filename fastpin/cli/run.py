@@ -27,17 +27,16 @@ from fastpin.cli.terminal import (
     write_files,
     write_text,
 )
-from fastpin.errors import InputError
+from fastpin.errors import InputError, InputWarning
 from fastpin.model.case import Case, check_keep
-from fastpin.model.doubts import has_strengths, pressure_doubts, warn_of
+from fastpin.model.doubts import pressure_doubts, warn_of
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
-from fastpin.states.state import State
-from fastpin.states.yielding import worst_states, yield_doubts
+from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_extremes
+from fastpin.states.yield_doubts import yield_doubts, yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -278,8 +277,7 @@ def _write_result(
     """
     code, error = _report_end(case, options, result, ended)
     warn_of(pressure_doubts(case.problem, case.history, _pressures(options, result)), 2)
-    if has_strengths(case.problem):
-        warn_of(yield_doubts(case.problem, case.history, _worst(options, result)), 2)
+    warn_of(_yield_doubts(case, options, result), 2)
     cycle = _known_cycle(case, options, result, part)
     writers: list[tuple[Any, Callable[[Path], object]]] = []
     if options.json is not None:
@@ -311,11 +309,16 @@ def _pressures(options: argparse.Namespace, result: solver.Result | None) -> Ite
     return [np.array([storage.largest_pressure(options.output)])]
 
 
-def _worst(options: argparse.Namespace, result: solver.Result | None) -> Iterable[State]:
-    """Return the states that are likely to have the largest stresses."""
+def _yield_doubts(case: Case, options: argparse.Namespace, result: solver.Result | None) -> list[InputWarning]:
+    """Return the warnings about the largest von Mises stresses of all states."""
     if result is None or options.output is None:
-        return worst_states(() if result is None else result.states)
-    return storage.load(options.output, storage.worst_stored(options.output))
+        return yield_doubts_of(case.problem, case.history, () if result is None else result.states)
+    return yield_doubts(
+        case.problem,
+        case.history,
+        lambda: storage.stored_extremes(options.output, yield_extremes(case.problem)),
+        lambda places: storage.load(options.output, list(places)).states,
+    )
 
 
 def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:

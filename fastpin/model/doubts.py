@@ -171,11 +171,6 @@ def are_loads_plausible(problem: Problem, history: LoadHistory) -> bool:
     return not problem.dimensionless and max(_strains(problem, history.largest).values(), default=0.0) <= MOST_STRAIN
 
 
-def has_strengths(problem: Problem) -> bool:
-    """Whether the yield strength of a body is known."""
-    return any(material.known_yield_strength is not None for _, material in _materials(problem))
-
-
 def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> InputWarning | None:
     """A warning if the von Mises `stress`, Pa, at an edge of :data:`EDGES` exceeds the yield strength there.
 

@@ -33,7 +33,7 @@ from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point, size
 from fastpin.states.state import State
-from fastpin.states.yielding import yield_doubts
+from fastpin.states.yield_doubts import yield_doubts
 from fastpin.states.zones import is_all_round
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
@@ -76,7 +76,7 @@ def overview(page: Shared) -> Section:
     cycle = source.cycle
     warnings = [*doubts(problem, source.case.history, source.case.options)]
     warnings += pressure_doubts(problem, source.case.history, [np.array([source.pressure])])
-    warnings += yield_doubts(problem, source.case.history, source.read(source.worst))
+    warnings += yield_doubts(problem, source.case.history, lambda: source.found, source.read)
     parts: list[Part] = [_status(source)]
     parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
     parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]

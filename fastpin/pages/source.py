@@ -17,7 +17,6 @@ from fastpin.damage import Fatigue, fatigue
 from fastpin.errors import InputError
 from fastpin.figures.states import DrawnStates
 from fastpin.model.case import Case
-from fastpin.model.doubts import has_strengths
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.report.case import hole_body
@@ -30,7 +29,6 @@ from fastpin.states.extremes import Found, KeptStates, marked_extremes, marked_p
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.yielding import worst_states
 from fastpin.storage.layout import versions
 from fastpin.storage.packed import packed_result
 
@@ -71,8 +69,6 @@ class Source:
         The largest of each kind, over all states.
     pressure : float
         The largest pressure at a node over all states, Pa.
-    worst : list of int
-        Places of the states that are likely to have the largest stresses.
     error : str or None
         Why the run ended early.
     path : Path or None
@@ -91,7 +87,6 @@ class Source:
     origin: list[tuple[str, str]]
     residuals: dict[str, float]
     pressure: float
-    worst: list[int]
     error: str | None = None
     path: Path | None = None
     case_text: str = field(default="", repr=False)
@@ -121,14 +116,13 @@ class Source:
             return storage.load(path, states=list(places)).states
 
         largest = storage.largest_residuals(path), storage.largest_pressure(path)
-        worst = storage.worst_stored(path) if has_strengths(case.problem) else []
         error = storage.stored_error(path)
 
         def extremes() -> Found:
             return storage.marked_extremes(path)
 
         told = "run" in known
-        return cls(case, result, points, read, extremes, origin, *largest, worst, error, path, knows_options=told)
+        return cls(case, result, points, read, extremes, origin, *largest, error, path, knows_options=told)
 
     @classmethod
     def of_result(cls, result: Result, title: str = "", case: Case | None = None, error: str | None = None) -> Source:
@@ -155,8 +149,7 @@ class Source:
         def extremes() -> Found:
             return marked_extremes(KeptStates(result.states)) if result.states else {}
 
-        worst = [result.states.index(state) for state in worst_states(result.states)]
-        return cls(case, result, points, read, extremes, origin, residuals, pressure, worst, error, knows_options=known)
+        return cls(case, result, points, read, extremes, origin, residuals, pressure, error, knows_options=known)
 
     @cached_property
     def initial(self) -> np.ndarray:
@@ -191,7 +184,12 @@ class Source:
     @cached_property
     def marks(self) -> dict[int, str]:
         """The places of the extremes of all states, with words on each."""
-        return marked_places(self.extremes())
+        return marked_places(self.found)
+
+    @cached_property
+    def found(self) -> Found:
+        """The extremes of all states."""
+        return self.extremes()
 
     @cached_property
     def peaks(self) -> list[State]:

@@ -173,10 +173,12 @@ class Result(Sequence[State]):
         -------
         dict of str to Extremes
             By the names of :data:`fastpin.states.QUANTITIES` without angles and Kt, and "bush_least_friction", the
-            friction that just holds the bush. An entry has ``smallest`` and ``largest``, each with ``value`` (SI units,
-            with sign), ``place`` (the place of the state in the result) and ``load_point``. The shear traction of
-            largest magnitude is the larger one of the two. A quantity that the problem does not have is left out: the
-            hoop stress of a rigid plate, and the margins of a bush. A result without states has no extremes.
+            friction that just holds the bush. A body whose yield strength is known has its largest von Mises stress:
+            "von_mises_pin", "von_mises_plate" and "von_mises_bush". An entry has ``smallest`` and ``largest``, each
+            with ``value`` (SI units, with sign), ``place`` (the place of the state in the result) and ``load_point``.
+            The shear traction of largest magnitude is the larger one of the two. A quantity that the problem does not
+            have is left out: the hoop stress of a rigid plate, and the margins of a bush. A result without states has
+            no extremes.
 
         Raises
         ------

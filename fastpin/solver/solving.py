@@ -27,7 +27,7 @@ from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import LEAST_COARSE
 from fastpin.states.state import SlipFields, State, state_again
-from fastpin.states.yielding import worst_states, yield_doubts
+from fastpin.states.yield_doubts import yield_doubts_of
 
 DEFAULTS = SolveOptions()
 """The default options of :func:`solve`."""
@@ -123,7 +123,7 @@ def solve(
     warn_of(doubts(problem, task.history, options), USER)
     result = _follow_task(task, start)
     warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result)), USER)
-    warn_of(yield_doubts(problem, task.history, worst_states(result.states)), USER)
+    warn_of(yield_doubts_of(problem, task.history, result.states), USER)
     return _with_coarse(task, start, result) if error_bars else result
 
 

@@ -22,6 +22,7 @@ from fastpin.states.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point
 from fastpin.states.reading_bounds import NUMBERS, Block, Bounds
 from fastpin.states.state import State
+from fastpin.states.yielding import OWNERS, PREFIX, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -35,12 +36,22 @@ def _least_friction(state: State) -> float:
     return state.bush_fit().least_friction if isinstance(state.problem.plate_body, Bushing) else math.nan
 
 
+def _von_mises(owner: str) -> Quantity:
+    """Return the largest von Mises stress of a body; NaN if its yield strength is not known."""
+
+    def of(state: State) -> float:
+        return von_mises_peak(state, owner).value if owner in yielding_owners(state.problem) else math.nan
+
+    return Quantity(f"largest von Mises stress of the {owner}", "traction", of)
+
+
 NODE_VALUES = ("pressure", "shear", "status")
 """Fields of a state of which a block has all nodes."""
 
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
     "bush_least_friction": Quantity("bush least friction", "ratio", _least_friction),
+    **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
 """The quantities that have extremes.
 
@@ -55,6 +66,7 @@ MARKS: dict[tuple[str, Side], str] = {
     ("peak_hoop_seat", "largest"): "largest hoop stress at the seat",
     ("bush_open_margin", "smallest"): "bush nearest to opening",
     ("bush_least_friction", "largest"): "bush nearest to slip",
+    **{(PREFIX + owner, "largest"): f"largest von Mises stress of the {owner}" for owner in OWNERS},
 }
 """The extremes that texts, tables and figures show, with their words."""
 
@@ -151,6 +163,11 @@ def marked_extremes(kept: Kept) -> Found:
     return find_extremes(kept, MARKS)
 
 
+def yield_extremes(problem: Problem) -> list[tuple[str, Side]]:
+    """Return the extremes that tell whether a body yields: quantities and sides."""
+    return [(PREFIX + owner, "largest") for owner in yielding_owners(problem)]
+
+
 def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
     """Find extremes by quantity and side. Those that the problem does not have are left out.
 
@@ -169,6 +186,8 @@ def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:
 
 def exists(problem: Problem, name: str) -> bool:
     """Whether the states of a problem have a quantity."""
+    if name.startswith(PREFIX):
+        return name.removeprefix(PREFIX) in yielding_owners(problem)
     if name == "bush_slip_margin":
         return isinstance(problem.plate_body, Bushing) and problem.plate_body.friction is not None
     if name.startswith("bush_"):

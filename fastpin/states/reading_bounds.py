@@ -22,6 +22,7 @@ from fastpin.model.problem import Problem
 from fastpin.states.hoop import AROUND
 from fastpin.states.joint import AROUND as AROUND_BUSH
 from fastpin.states.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
+from fastpin.states.yielding import PREFIX, Places
 
 NUMBERS = ("dx", "dy", "rotation", "dissipation", "work")
 """Quantities that a state holds as numbers."""
@@ -239,31 +240,22 @@ def _sticking(problem: Problem, pressure: np.ndarray, shear: np.ndarray, status:
 
 
 class NodalStress:
-    """The stress at points of the plate as a linear function of the nodal tractions: straight lines between the nodes.
+    """The stress at points of a body as a linear function of the nodal tractions: straight lines between the nodes.
 
     Parameters
     ----------
-    problem : Problem
     grid : Grid
-    theta, depth : ndarray, shape (m,)
-        Points of the plate, see :func:`fastpin.elasticity.stress.plate_stress`.
-    seat : ndarray, shape (k,)
-        Angles of more points, at the seat of a bush.
+    stress : callable
+        ``stress(tractions, remote)`` gives (srr, stt, srt) at the points, shape (3, m).
     """
 
-    def __init__(self, problem: Problem, grid: Grid, theta: np.ndarray, depth: np.ndarray, seat: np.ndarray) -> None:
-        def stress(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
-            found = plate_stress(problem, tractions, remote, theta, depth)
-            if not seat.size:
-                return found
-            return np.c_[found, seat_stress(problem, tractions, remote, seat, np.zeros(seat.size))]
-
+    def __init__(self, grid: Grid, stress: Callable[[Tractions, np.ndarray], np.ndarray]) -> None:
         self._grid, self._stress = grid, stress
         self._press_fit = stress(Tractions(()), np.zeros(3))
         self._unit = float(np.abs(self._press_fit).max(initial=0.0)) or 1.0  # beside it a traction of 1 Pa is rounding
         self._remote = np.array([stress(Tractions(()), self._unit * one) - self._press_fit for one in np.eye(3)])
         self._remote /= self._unit
-        self._response = np.zeros((2, 3, grid.size, theta.size + seat.size))
+        self._response = np.zeros((2, 3, grid.size, self._press_fit.shape[1]))
         self._known = np.zeros(grid.size, dtype=bool)
 
     def learn(self, pressure: np.ndarray, shear: np.ndarray) -> None:
@@ -288,13 +280,38 @@ class NodalStress:
         return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
 
 
-class StressBounds:
-    """Bounds of the readings of the stress: the largest hoop stress round the hole, and the interface of a bush.
+class MisesBounds:
+    """Bounds of the largest von Mises stress of a body. They are as far apart as rounding: the reading is the same.
 
     Parameters
     ----------
     problem : Problem
-        Its plate is not rigid.
+    grid : Grid
+    owner : str
+        One of :data:`fastpin.states.yielding.OWNERS`.
+    """
+
+    def __init__(self, problem: Problem, grid: Grid, owner: str) -> None:
+        self._problem, self._places = problem, Places.of(problem, grid, owner)
+        self._stress = NodalStress(grid, lambda tractions, remote: self._places.stress(problem, tractions, remote))
+
+    def of(self, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray) -> Pair:
+        """Return the bounds for tractions of the nodes (k, n) and remote stresses (k, 3)."""
+        self._stress.learn(pressure, shear)
+        every = slice(0, self._places.theta.size)
+        stress = np.array([self._stress.component(k, every, pressure, shear, remote) for k in range(3)])
+        top = self._places.von_mises(self._problem, stress).max(axis=1)
+        slack = ROUNDING * np.abs(stress).max(axis=(0, 2))
+        return top - slack, top + slack
+
+
+class StressBounds:
+    """Bounds of the readings of the stress: hoop stress round the hole, von Mises stresses, the interface of a bush.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its plate is not rigid if a reading of the plate is asked for.
     grid : Grid
     names : set of str
         The readings.
@@ -304,18 +321,22 @@ class StressBounds:
     BUSH = ("bush_open_margin", "bush_slip_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
-        self.names = names & {self.HOOP, self.SEAT, *self.BUSH}
+        mises = {name for name in names if name.startswith(PREFIX)}
+        self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *mises}
+        self._mises = {name: MisesBounds(problem, grid, name.removeprefix(PREFIX)) for name in sorted(mises)}
         self._bush = problem.plate_body if isinstance(problem.plate_body, Bushing) else None
         self._problem, self._grid = problem, grid
         self._stress: NodalStress | None = None
 
     def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray, remote: np.ndarray) -> dict[str, Pair]:
         """Return the bounds for tractions and status of the nodes (k, n) and remote stresses (k, 3)."""
-        if self._stress is None:
-            self._stress = NodalStress(self._problem, self._grid, *self._points())
-        self._stress.learn(pressure, shear)
         values = pressure, shear, remote
-        found: dict[str, Pair] = {}
+        found: dict[str, Pair] = {name: bounds.of(*values) for name, bounds in self._mises.items()}
+        if self.names == found.keys():
+            return found
+        if self._stress is None:
+            self._stress = NodalStress(self._grid, self._of_plate(*self._points()))
+        self._stress.learn(pressure, shear)
         if self.HOOP in self.names:
             found[self.HOOP] = _hoop_bounds(self._stress.component(1, slice(0, self._rim), *values), shear, status)
         if self._bush is not None and self.names & {*self.BUSH}:
@@ -326,6 +347,19 @@ class StressBounds:
             hoop = self._stress.component(1, slice(self._rim + self._round, None), *values)
             found[self.SEAT] = _seat_bounds(hoop) if self._is_thick else _unbounded(len(hoop))
         return {name: found[name] for name in self.names}
+
+    def _of_plate(
+        self, theta: np.ndarray, depth: np.ndarray, seat: np.ndarray
+    ) -> Callable[[Tractions, np.ndarray], np.ndarray]:
+        """Return the stress at points of the plate, and at the angles of more points at the seat of a bush."""
+
+        def stress(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+            found = plate_stress(self._problem, tractions, remote, theta, depth)
+            if not seat.size:
+                return found
+            return np.c_[found, seat_stress(self._problem, tractions, remote, seat, np.zeros(seat.size))]
+
+        return stress
 
     def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Angles and depths of the points round the hole and round the bush, and angles of the points of its seat."""

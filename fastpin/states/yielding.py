@@ -1,106 +1,191 @@
-"""Warnings about von Mises stresses above the yield strengths of the bodies, on all edges of a joint."""
+"""The largest von Mises stress of each body in a state.
+
+The stress is looked at on circles: the edges of the body, and circles below the edge that the contact or the bush
+loads. Under a contact the largest stress lies below the edge.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fastpin.errors import InputWarning
-from fastpin.kernels.status import OPEN
+from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
+from fastpin.elasticity.tractions import Tractions
 from fastpin.model.angles import from_bottom
 from fastpin.model.bodies import Bushing, Tube
-from fastpin.model.doubts import are_given, are_loads_plausible, has_strengths, yield_doubt
-from fastpin.model.history import LoadHistory
-from fastpin.model.loads import LOADS
-from fastpin.model.points import Body, Points, material_of
+from fastpin.model.compliance import Compliance
+from fastpin.model.grid import Grid
+from fastpin.model.points import Body, Points, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
-from fastpin.states.quantities import load_point
-from fastpin.states.state import State
+from fastpin.model.units import units
+
+if TYPE_CHECKING:  # this module imports compiled code
+    from fastpin.states.state import State
 
 AROUND = 180
-"""Equally spaced angles of an edge, besides the closed nodes."""
+"""Equally spaced angles of a circle."""
+
+MOST_NODES = 400
+"""Most nodes at which the edges of a contact are looked at besides, evenly chosen."""
+
+DEPTHS = tuple(0.01 * 2.0**k for k in range(6))
+"""Depths of the circles below an edge, in units of the hole's radius."""
+
+OWNERS = ("pin", "plate", "bush")
+"""Bodies with a yield strength."""
+
+PREFIX = "von_mises_"
+"""Beginning of the names of the largest von Mises stresses among the extremes; an owner follows."""
 
 
-def yield_doubts(problem: Problem, history: LoadHistory, states: Iterable[State]) -> list[InputWarning]:
-    """Return a warning for each edge at which the von Mises stress exceeds the yield strength of its body.
+class Circle(NamedTuple):
+    """A circle on which the von Mises stress of a body is looked at.
 
-    A warning names the largest stress of the states, with its place. A body without a known yield strength has none.
-    The stress below the edges is not looked at.
-
-    Parameters
+    Attributes
     ----------
-    problem : Problem
-    history : LoadHistory
-        If its loads are in doubt, the stresses are not.
-    states : iterable of State
-        Such as those of :func:`worst_places`.
+    owner : str
+        One of :data:`OWNERS`.
+    body : {"plate", "pin", "seat"}
+        The body of its points.
+    depth : float
+        Depth of its points in the body, in units of the hole's radius.
+    edge : str
+        A key of :data:`fastpin.model.doubts.EDGES`: the edge, or the one above the circle.
     """
-    if are_given() or not are_loads_plausible(problem, history):
-        return []
-    kept, found = list(states), []
-    for edge, body, depth in edges(problem):
-        if material_of(problem, body).known_yield_strength is None:
-            continue
-        tops = [(*_largest(state, body, depth), state) for state in kept]
-        if not tops:
-            continue
-        stress, angle, state = max(tops, key=lambda top: top[0])
-        where = f"at {from_bottom(angle):z.1f} deg, load point {load_point(state):.5g}"
-        found.append(yield_doubt(problem, edge, stress, where))
-    return [doubt for doubt in found if doubt is not None]
+
+    owner: str
+    body: Body
+    depth: float
+    edge: str
+
+    @property
+    def is_edge(self) -> bool:
+        """Whether the circle is an edge."""
+        return self.depth == 0.0 or self.edge in ("rim of the bush", "bore of the pin")
 
 
-def edges(problem: Problem) -> Iterator[tuple[str, Body, float]]:
-    """The edges of a problem: their names, their bodies, and depths in the bodies, m. A rigid body has none.
-
-    The names are those of :data:`fastpin.model.doubts.EDGES`.
-    """
+def circles(problem: Problem) -> Iterator[Circle]:
+    """The circles of a problem. A rigid body has none; a compliance has the edge of its hole only."""
     bush, pin = problem.plate_body, problem.pin_body
-    if not problem.surfaces.plate.is_rigid:
-        yield ("bore of the bush" if isinstance(bush, Bushing) else "hole"), "plate", 0.0
     if isinstance(bush, Bushing):
-        yield "rim of the bush", "plate", bush.outer_radius - problem.hole_radius
+        wall = near_rim(problem, "seat") - 1.0
+        if not problem.surfaces.plate.is_rigid:
+            yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
+            yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
-            yield "seat", "seat", 0.0
+            yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
+    elif isinstance(bush, Compliance):
+        yield Circle("plate", "plate", 0.0, "hole")
+    elif not problem.surfaces.plate.is_rigid:
+        yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(_wall(problem, "plate")))
     if not problem.pair.pin.is_rigid:
-        yield "pin", "pin", 0.0
+        wall = _wall(problem, "pin")
+        yield from (Circle("pin", "pin", depth, "pin") for depth in _depths(wall))
         if isinstance(pin, Tube):
-            yield "bore of the pin", "pin", problem.hole_radius - pin.bore_radius
+            yield Circle("pin", "pin", wall, "bore of the pin")
 
 
-def worst_places(loads: np.ndarray, pressures: np.ndarray) -> list[int]:
-    """Return the places of the states that are most likely to have the largest stresses, in increasing order.
+def _wall(problem: Problem, body: Body) -> float:
+    far = far_rim(problem, body)
+    return math.inf if far is None else abs(far - near_rim(problem, body))
 
-    They have the largest pressure, or the largest size of one of the loads.
 
-    Parameters
+def _depths(wall: float) -> tuple[float, ...]:
+    return 0.0, *(depth for depth in DEPTHS if depth < 0.9 * wall)
+
+
+class Places(NamedTuple):
+    """The points of a body at which its von Mises stress is looked at.
+
+    Attributes
     ----------
-    loads : ndarray, shape (states, loads)
-    pressures : ndarray, shape (states,)
-        The largest pressure of each state.
+    body : {"plate", "pin", "seat"}
+        The body of the points.
+    theta, depth : ndarray, shape (m,)
+        Angles, rad, and depths in units of the hole's radius.
+    circle : list of Circle
+        The circle of each point.
     """
-    if not len(loads):
+
+    body: Body
+    theta: np.ndarray
+    depth: np.ndarray
+    circle: list[Circle]
+
+    @classmethod
+    def of(cls, problem: Problem, grid: Grid, owner: str) -> Places:
+        """The points of an owner of :data:`OWNERS`. An edge in contact has points at the nodes, too."""
+        around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
+        nodes = grid.theta[:: -(-grid.size // MOST_NODES)]
+        theta, depth, circle = [], [], []
+        for one in circles(problem):
+            if one.owner == owner:
+                touches = one.depth == 0.0 and one.body != "seat"
+                there = np.r_[around, nodes] if touches else around
+                theta.append(there)
+                depth.append(np.full(there.size, one.depth))
+                circle += [one] * there.size
+        return cls(circle[0].body, np.concatenate(theta), np.concatenate(depth), circle)
+
+    def stress(self, problem: Problem, tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        """Stresses (srr, stt, srt) at the points, shape (3, m), for tractions and a remote stress (sxx, syy, sxy)."""
+        if self.body == "pin":
+            return pin_stress(problem, tractions, self.theta, self.depth)
+        of = seat_stress if self.body == "seat" else plate_stress
+        return of(problem, tractions, remote, self.theta, self.depth)
+
+    def von_mises(self, problem: Problem, stress: np.ndarray) -> np.ndarray:
+        """Equivalent stresses of von Mises, shape (...,), from (srr, stt, srt), shape (3, ...)."""
+        radial, hoop, shear = stress
+        strain = problem.surfaces.plane == "strain"
+        axial = (material_of(problem, self.body).nu if strain else 0.0) * (radial + hoop)
+        squares = radial**2 + hoop**2 - radial * hoop + axial**2 - axial * (radial + hoop) + 3.0 * shear**2
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+class MisesPeak(NamedTuple):
+    """The largest von Mises stress of a body in a state.
+
+    Attributes
+    ----------
+    value : float
+        Pa.
+    angle : float
+        Its place, rad.
+    circle : Circle
+    """
+
+    value: float
+    angle: float
+    circle: Circle
+
+
+def von_mises_peak(state: State, owner: str) -> MisesPeak:
+    """The largest von Mises stress of an elastic body of :data:`OWNERS`, with straight lines between the nodes."""
+    places = Places.of(state.problem, state.grid, owner)
+    points = Points.at_depth(places.depth * state.problem.hole_radius, places.theta)
+    found = state.stress(points, places.body, straight=True).von_mises
+    top = int(np.argmax(found))
+    return MisesPeak(float(found[top]), float(places.theta[top]), places.circle[top])
+
+
+def yielding_owners(problem: Problem) -> list[str]:
+    """The elastic bodies of :data:`OWNERS` whose yield strength is known. Stresses without dimensions have none."""
+    if problem.dimensionless:
         return []
-    sizes = np.abs(loads)
-    tops = [int(np.argmax(column)) for column in sizes.T if column.any()]
-    return sorted({int(np.argmax(pressures)), *tops})
+    found = dict.fromkeys(each.owner for each in circles(problem) if strength_of(problem, each) is not None)
+    return list(found)
 
 
-def worst_states(states: Sequence[State]) -> list[State]:
-    """The states of :func:`worst_places`; none if no yield strength is known."""
-    if not states or not has_strengths(states[0].problem):
-        return []
-    loads = np.array([[state.load[name] for name in LOADS] for state in states])
-    pressures = np.array([float(state.pressure.max(initial=0.0)) for state in states])
-    return [states[place] for place in worst_places(loads, pressures)]
+def strength_of(problem: Problem, circle: Circle) -> float | None:
+    """The yield strength of the body of a circle, Pa; None if it is not known."""
+    return material_of(problem, circle.body).known_yield_strength
 
 
-def _largest(state: State, body: Body, depth: float) -> tuple[float, float]:
-    """The largest von Mises stress of a circle, Pa, and its angle, rad."""
-    around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
-    theta = np.r_[around, state.theta[state.status != OPEN]]
-    stress = state.stress(Points.at_depth(depth, theta), body, straight=True).von_mises
-    top = int(np.argmax(stress))
-    return float(stress[top]), float(theta[top])
+def place_words(problem: Problem, peak: MisesPeak) -> str:
+    """Words for the place of a peak: its depth below the edge if it has one, and its angle."""
+    depth = units(problem)["length"].text(peak.circle.depth * problem.hole_radius, 3)
+    return f"{'' if peak.circle.is_edge else f'{depth} below the edge, '}at {from_bottom(peak.angle):z.1f} deg"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fastpin.model.checks import file_path
-from fastpin.states.extremes import Found
-from fastpin.states.yielding import worst_places
+from fastpin.states.extremes import MARKS, Found, Side
 from fastpin.storage.damage import text_of
 from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
@@ -75,12 +75,11 @@ def marked_extremes(path: str | Path) -> Found:
     InputError
         See :func:`fastpin.load`.
     """
-    with open_result(file_path("path", path)) as file:
-        return read_extremes(file)
+    return stored_extremes(path, MARKS)
 
 
-def worst_stored(path: str | Path) -> list[int]:
-    """Return the places in a file of the states of :func:`fastpin.states.yielding.worst_places`.
+def stored_extremes(path: str | Path, wanted: Iterable[tuple[str, Side]]) -> Found:
+    """Return some extremes of :data:`fastpin.states.extremes.MARKS` of all states of a file.
 
     Raises
     ------
@@ -88,7 +87,7 @@ def worst_stored(path: str | Path) -> list[int]:
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        return worst_places(file["states/loads"][()], _largest_pressures(file))
+        return read_extremes(file, wanted)
 
 
 def _largest_pressures(file: Any) -> np.ndarray:

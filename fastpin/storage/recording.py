@@ -12,7 +12,7 @@ import numpy as np
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, check_callable, file_path, items, string, true_or_false, whole_number
-from fastpin.model.doubts import doubts, has_strengths, pressure_doubts, warn_of
+from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
@@ -22,11 +22,12 @@ from fastpin.solver.errors import ArcError, ConvergenceError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
-from fastpin.states.yielding import yield_doubts
+from fastpin.states.extremes import yield_extremes
+from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_history, read_options, read_problem
-from fastpin.storage.origin import largest_pressure, worst_stored
+from fastpin.storage.origin import largest_pressure, stored_extremes
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
 
@@ -173,9 +174,12 @@ def stored_case(path: str | Path) -> Case:
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
     found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
-    if has_strengths(task.problem):
-        found += yield_doubts(task.problem, task.history, load(path, worst_stored(path)))
-    return found
+    return found + yield_doubts(
+        task.problem,
+        task.history,
+        lambda: stored_extremes(path, yield_extremes(task.problem)),
+        lambda places: load(path, list(places)).states,
+    )
 
 
 def _check_names(options: Mapping[str, Any]) -> None:

@@ -171,7 +171,8 @@ def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
 def test_the_extremes_of_a_long_history_are_drawn_and_have_rows() -> None:
     corners = [{"P": 3e6 if k == 77 else 1e6 + 100.0 * k} for k in range(200)]
     source = Source.of_result(fastpin.solve(sample_result().problem, corners, nodes=61))
-    assert source.marks == {77: "largest pressure, largest shear, largest hoop stress"}
+    words = "largest pressure, largest shear, largest hoop stress, largest von Mises stress of the pin"
+    assert source.marks == {77: words}
     assert [state.step for state in source.peaks] == [77]
     assert [state.step for state in source.drawn][-1] == 199
     assert dict(zip((state.step for state in source.drawn), source.drawn.marks, strict=True))[77] == source.marks[77]

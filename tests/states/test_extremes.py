@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.elasticity.stress import plate_stress, seat_stress
+from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Ring
 from fastpin.model.history import LoadHistory
@@ -84,9 +86,10 @@ def test_extremes_are_the_readings_of_all_states(result: Result) -> None:
 
 def test_few_states_are_read(readings: list[str]) -> None:
     corners = [{"P": 3e6 if k == 37 else 1e6 + 1e4 * k} for k in range(80)]
-    found = marked_extremes(KeptStates(fastpin.solve(JOINTS["bush"], corners, nodes=101).states))
+    joint = replace(JOINTS["bush"], pair=MaterialPair(replace(STEEL, yield_strength=3e8), MATERIALS["7075-T6"]))
+    found = marked_extremes(KeptStates(fastpin.solve(joint, corners, nodes=101).states))
     assert found.keys() == MARKS.keys()
-    assert {extreme.place for extreme in found.values()} == {37}
+    assert {pair[0] for pair, extreme in found.items() if extreme.place != 37} <= {"von_mises_bush"}
     assert max(readings.count(name) for name in readings) <= 3
 
 
@@ -95,7 +98,13 @@ def test_stresses_of_hat_functions_add_up(result: Result) -> None:
         return
     theta = np.linspace(-3.0, 3.0, 17)
     bushed = isinstance(result.problem.plate_body, Bushing)
-    stress = NodalStress(result.problem, result.grid, theta, np.zeros(17), theta[: 5 * bushed])
+
+    def of(tractions: Tractions, remote: np.ndarray) -> np.ndarray:
+        found = plate_stress(result.problem, tractions, remote, theta, np.zeros(17))
+        seat = theta[: 5 * bushed]
+        return np.c_[found, seat_stress(result.problem, tractions, remote, seat, np.zeros(5))] if bushed else found
+
+    stress = NodalStress(result.grid, of)
     pressure, shear = (np.array([getattr(state, name) for state in result[:6]]) for name in ("pressure", "shear"))
     remote = np.zeros((6, 3))
     stress.learn(pressure, shear)

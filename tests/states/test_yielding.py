@@ -12,7 +12,8 @@ from fastpin import LoadHistory, Material, MaterialPair, Points, Problem, solve
 from fastpin.errors import InputWarning
 from fastpin.model import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.model.doubts import EDGES, doubts, doubts_given
-from fastpin.states.yielding import edges, worst_places, worst_states, yield_doubts
+from fastpin.states.yield_doubts import yield_doubts_of
+from fastpin.states.yielding import circles, von_mises_peak
 
 R, SEAT = 10e-3, 12.5e-3
 STEEL, BRONZE, ALUMINIUM = Material(210e9, 0.3), Material(103e9, 0.34), Material(71e9, 0.33)
@@ -47,11 +48,12 @@ def test_closed_forms_of_press_fits_are_the_stresses_of_an_unloaded_state(pin, p
     problem = Problem(MaterialPair(STEEL, ALUMINIUM, plane), R, -20e-6, 0.3, pin_body=PINS[pin], plate_body=body)
     state = solve(problem, [{"P": 1.0}], nodes=101)[-1]
     expected = problem.joint.assembly_stresses(problem.assembled_clearance)
-    assert sorted(expected) == sorted(edge for edge, _, _ in edges(problem))
+    edges = [circle for circle in circles(problem) if circle.is_edge]
+    assert sorted(expected) == sorted(circle.edge for circle in edges)
     assert max(expected.values()) > 5e7
-    for edge, part, depth in edges(problem):
-        found = state.stress(Points.at_depth(depth, AROUND), part).von_mises
-        assert found == pytest.approx(expected[edge], abs=1e-6 * max(expected.values()))
+    for circle in edges:
+        found = state.stress(Points.at_depth(circle.depth * R, AROUND), circle.body).von_mises
+        assert found == pytest.approx(expected[circle.edge], abs=1e-6 * max(expected.values()))
 
 
 def test_a_pin_with_clearance_has_no_stress_before_loads():
@@ -99,7 +101,7 @@ def test_states_that_yield_are_noticed_with_their_places():
     words = [str(each.message) for each in caught if issubclass(each.category, InputWarning)]
     mises = [each for each in words if each.startswith("von Mises stress")]
     assert any("of the plate at the seat of the bush, at " in each and "load point 2" in each for each in mises)
-    found = yield_doubts(problem, LoadHistory(HISTORY), worst_states(result.states))
+    found = yield_doubts_of(problem, LoadHistory(HISTORY), result.states)
     assert [str(doubt) for doubt in found] == mises
     # a finer search finds no more
     seat = result[1].stress(Points.at_depth(0.0, np.linspace(-np.pi, np.pi, 721)), "seat").von_mises.max() / 1e6
@@ -110,21 +112,49 @@ def test_states_that_yield_are_noticed_with_their_places():
 def test_nothing_is_said_without_a_strength_or_while_doubts_are_given():
     plain = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3, plate_body=BUSH)
     states = solve(plain, HISTORY, nodes=101).states
-    assert yield_doubts(plain, LoadHistory(HISTORY), states) == []
+    assert yield_doubts_of(plain, LoadHistory(HISTORY), states) == []
     problem = yielding(10e-6, plate=90e6)
     with doubts_given():
         states = solve(problem, HISTORY, nodes=101).states
-        assert yield_doubts(problem, LoadHistory(HISTORY), states) == []
-    assert yield_doubts(problem, LoadHistory(HISTORY), states) != []
+        assert yield_doubts_of(problem, LoadHistory(HISTORY), states) == []
+    assert yield_doubts_of(problem, LoadHistory(HISTORY), states) != []
 
 
-def test_the_worst_states():
-    loads = np.array([[1.0, 0.0, 0.0], [2.0, -1.0, 0.0], [0.0, 0.5, 0.0], [0.1, 0.0, 0.0]])
-    assert worst_places(loads, np.array([1.0, 2.0, 3.0, 0.0])) == [1, 2]
-    assert worst_places(loads[:0], np.zeros(0)) == []
+def test_the_largest_stress_is_that_of_all_states():
+    """It may be in a state with neither the largest pressure nor a largest load."""
+    lug = Bushing(replace(BRONZE, yield_strength=100e6), SEAT, 20e-6, inside=Ring(0.03))
+    problem = Problem(MaterialPair(STEEL, ALUMINIUM), R, 30e-6, 0.3, plate_body=lug)
+    history = [{"P": 2e6}, {"P": 2.9533e6, "Q": 4.9139e5}, {"P": 1e6, "Q": 8e5}, {"P": 3.6e6, "Q": 0.0}]
+    with doubts_given():
+        states = solve(problem, history, nodes=101).states
+    peaks = [von_mises_peak(state, "bush") for state in states]
+    place = int(np.argmax([peak.value for peak in peaks]))
+    assert place == 1
+    (said,) = map(str, yield_doubts_of(problem, LoadHistory(history), states))
+    assert f"{peaks[place].value / 1e6:.4g} MPa" in said
+    assert f"load point {place + 1}" in said
+
+
+def test_the_largest_stress_under_a_narrow_contact_lies_below_the_edge():
+    """In a Hertzian contact of half-width a it lies 0.7 a below. A finer search finds at most 4 % more."""
+    pair = MaterialPair(replace(STEEL, yield_strength=5e6), replace(STEEL, yield_strength=5e6))
+    problem = Problem(pair, R, 400e-6, 0.0)
+    with doubts_given():
+        state = solve(problem, [{"P": 5e5}], nodes=401)[0]
+    half = 0.5 * (state.contact[0][1] - state.contact[0][0])
+    for owner in ("pin", "plate"):
+        peak = von_mises_peak(state, owner)
+        assert 0.3 * half < peak.circle.depth < half
+        fine = Points.at_depth(np.linspace(0.0, half * R, 200)[:, None], state.theta[::8])
+        stress = state.stress(fine, owner, straight=True).von_mises
+        assert 1.1 * stress[0].max() < peak.value <= 1.001 * stress.max()
+        assert peak.value > 0.96 * stress.max()
+    said = [str(each) for each in yield_doubts_of(problem, LoadHistory([{"P": 5e5}]), [state])]
+    assert len(said) == 2
+    assert all("below the edge, at " in each for each in said)
 
 
 def test_every_edge_has_words():
     tube = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3, pin_body=Tube(5e-3), plate_body=BUSH)
     plain = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3)
-    assert {edge for problem in (tube, plain) for edge, _, _ in edges(problem)} == set(EDGES)
+    assert {circle.edge for problem in (tube, plain) for circle in circles(problem)} == set(EDGES)
