@@ -46,7 +46,7 @@ KEYWORDS: dict[str, tuple[str, ...]] = {
     "SolveOptions.changed": ("nodes", "method", "arc", "between", "keep"),
     "Result.plot": LOOK_FIELDS,
     "Result.fatigue": ("points", "depth", "constants"),
-    "Result.report": ("title", "case", "convergence", "progress"),
+    "Result.report": ("title", "about", "case", "convergence", "progress"),
     "Look.sheet": ("sharex",),
     "record": ("nodes", "method", "arc", "between", "keep", "slip_sums"),
 }
@@ -121,7 +121,7 @@ class Valid:
             damage.findley(HISTORY, 0.3),
             report.convergence.reported_series(study, problem, study.series[0].corner)[0],
             elasticity.PlateResult(compliance, 0.0, 0.0, 0.0, 100), benchmarks.Row("peak", "1", "0.5", 0.5),
-            Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}),
+            Curve({"mu": 0.4}, {"angle (deg)": np.zeros(3)}), model.About("a project", revision="B"),
             fastpin.Session, verification.solve_sliding(_sliding_problem(pair), {"P": 1.0, "Q": 1.0}),
         )  # fmt: skip
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}

@@ -12,6 +12,7 @@ import h5py
 from file_keys import table, words_of_docstring
 
 import fastpin
+from fastpin.model import About
 from fastpin.states.cycles import Cycle
 from fastpin.storage import layout
 from fastpin.storage.extremes import LEAST_STORED
@@ -19,6 +20,8 @@ from fastpin.storage.extremes import LEAST_STORED
 GROUPS = re.compile(r"^``(/\w*)``\s+(.*)$", re.MULTILINE)
 """A group and what it holds, in the docstring of the layout."""
 
+
+ABOUT = About("project", "author", "A", "2026-03-31")
 
 WORDS = {
     "complete": "whether the run has followed its whole history",
@@ -30,6 +33,10 @@ WORDS = {
     "platform": "its operating system",
     "run": "name of the run that has written the file",
     "title": "title of the case",
+    "project": "project of the case, if it names one",
+    "author": "author of the case, likewise",
+    "revision": "revision of the case, likewise",
+    "date": "date of the revision, likewise",
     "plane": '"strain" or "stress"',
     "units": "unit of each kind of quantity",
     "blocks": "a row for each block: corners, count, whether each time is a cycle, corners if cut, cycles inside",
@@ -74,7 +81,7 @@ def _write(path: Path) -> None:
     problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4, thickness=5e-3)
     cycles = fastpin.LoadHistory([{"Q": 6e5}, {"Q": -6e5}]).repeated(LEAST_STORED // 2)
     history = fastpin.LoadHistory([{"P": 2.4e6}]) + cycles
-    fastpin.record(problem, history, path, title="sample", nodes=61, slip_sums=True, save_after=[1])
+    fastpin.record(problem, history, path, title="sample", about=ABOUT, nodes=61, slip_sums=True, save_after=[1])
 
 
 def _members(group: h5py.Group, where: str) -> Iterator[tuple[str, ...]]:

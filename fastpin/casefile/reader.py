@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from datetime import date
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,7 +21,7 @@ from fastpin.casefile.materials import DUNDURS_KEYS, MATERIAL_KEYS, read_pair
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
 from fastpin.model.bodies import Plate, Tube
-from fastpin.model.case import Case, check_arc, check_keep
+from fastpin.model.case import About, Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -32,6 +33,7 @@ EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
 
 KEYS: dict[str, tuple[str, ...]] = {
+    "about": tuple(field.name for field in fields(About)),
     "pin": MATERIAL_KEYS,
     "plate": MATERIAL_KEYS,
     "dundurs": DUNDURS_KEYS,
@@ -149,6 +151,7 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
     shared, tables = shared or Shared(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
     title = source.root.checked("title", string) or ""
+    about = _about(source.section("about"))
     materials = known_materials(source, folder)
     pair = shared.part("pair", source, _given_of_pair(tables, materials), lambda: read_pair(source, materials))
     problem = _problem(source, folder, pair, materials)
@@ -166,7 +169,7 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
         _check_together(source, lambda: check_arc(problem, options))
     if history is not None:
         _check_together(source, lambda: check_keep(history, options))
-    return Case(problem, history, options, title) if problem is not None and history is not None else None
+    return Case(problem, history, options, title, about) if problem is not None and history is not None else None
 
 
 def _keys_of(tables: Mapping[str, Any]) -> object:
@@ -330,6 +333,14 @@ def _hub_and_thickness(contact: Section) -> tuple[dict[str, float | None], dict[
     if hub["hub_stiffness"] is not None:
         hub["hub_stiffness"] /= thickness
     return hub, {"thickness": thickness}
+
+
+def _about(section: Section) -> About:
+    """Project, author, revision and date. TOML has a type of its own for dates."""
+    given = {key: section.value(key) for key in KEYS["about"] if key in section}
+    if type(given.get("date")) is date:
+        given["date"] = given["date"].isoformat()
+    return section.build(About, given, dict.fromkeys(given, "")) or About()
 
 
 def _options(section: Section) -> SolveOptions:

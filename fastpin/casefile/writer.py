@@ -44,6 +44,7 @@ def case_text(case: Case) -> str:
     instance("case", case, Case, "a Case")
     blocks = [
         *([[f"title = {_value(case.title)}"]] if case.title else []),
+        ["[about]", *(f"{name} = {_value(value)}" for name, value in case.about.given().items())],
         ["[pin]", *_material(case.problem.pair.pin)],
         ["[plate]", *_material(case.problem.pair.plate)],
         ["[contact]", *_contact(case.problem)],

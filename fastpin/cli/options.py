@@ -243,9 +243,17 @@ def add_plot(commands: Any) -> None:
     plot.add_argument("--criterion", help="fatigue: smith-watson-topper (default), fatemi-socie, findley, ...")
 
 
+_ABOUT = {
+    "project": "project on the first page and in the head of each page",
+    "author": "author, likewise",
+    "revision": "revision of the report, likewise",
+    "date": "date of the revision, likewise",
+}
+
+
 def add_report(commands: Any) -> None:
     """Add ``report``."""
-    report = _command(commands, "report", "report", "run", "write one HTML page on a stored result, a case or a sweep")
+    report = _command(commands, "report", "report", "run", "write a page or a PDF on a result, a case or a sweep")
     report.add_argument(
         "source",
         metavar="FILE_OR_DIR",
@@ -253,9 +261,15 @@ def add_report(commands: Any) -> None:
         help="HDF5 file (run -o FILE); case file (TOML), which is solved first; or directory of a sweep",
     )
     report.add_argument(
-        "-o", "--output", metavar="PAGE", type=Path, help="the page (html; default: the source's name with .html)"
+        "-o",
+        "--output",
+        metavar="PAGE",
+        type=Path,
+        help="the report (html, pdf; default: the name with .html)",
     )
     report.add_argument("--title", help="title of the page of a result (default: the title of the case)")
+    for name, words in _ABOUT.items():
+        report.add_argument(f"--{name}", metavar="TEXT", help=f"{words} (default: that of the case)")
     report.add_argument("--case", metavar="FILE", type=Path, help="case file of an HDF5 file; the page shows its text")
     report.add_argument(
         "--plan", metavar="FILE", type=Path, help="plan of a sweep (default: the copy in its directory)"

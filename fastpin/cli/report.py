@@ -1,4 +1,4 @@
-"""``fastpin report``: one HTML page on a stored result, a case or a sweep."""
+"""``fastpin report``: a page or a PDF on a stored result, a case or a sweep."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from fastpin.cli.progress import LOAD_POINTS, READ_POINTS, Bar, progress_to
 from fastpin.cli.run import note_run
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, flag, say
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.case import Case
-from fastpin.pages.html import check_page
-from fastpin.pages.result import write_source
+from fastpin.model.case import About, Case
+from fastpin.pages.result import merged, write_source
 from fastpin.pages.source import Source
+from fastpin.pages.writing import check_page
 
 SECTIONS = "section {n:.0f} of {total:.0f}"
 """Text of the progress bar of the page."""
@@ -25,6 +25,10 @@ APPLIES = {"title": ("result", "case"), "case": ("result",), "plan": ("sweep",),
 
 KINDS = {"result": "a stored result", "case": "a case file", "sweep": "the directory of a sweep"}
 """Words for the kinds of sources."""
+
+
+ABOUT = ("project", "author", "revision", "date")
+"""Options that are fields of :class:`fastpin.model.About`."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         code = _WRITERS[kind](options, page)
     except InputError as error:
-        named = error.field in ("title", "case", "plan", "error_bars")
+        named = error.field in ("title", "case", "plan", "error_bars", *ABOUT)
         raise InputError(flag(error.field), error.reason) if named else error from None
     say(f"wrote {page}")
     return code
@@ -52,16 +56,23 @@ def _kind(source: Path) -> str:
     return "case" if source.suffix == ".toml" else "result"
 
 
+def _about(options: argparse.Namespace) -> About:
+    """Return project, author, revision and date as far as options give them."""
+    return About(**{name: getattr(options, name) or "" for name in ABOUT})
+
+
 def _of_result(options: argparse.Namespace, page: Path) -> int:
     with Bar(1, SECTIONS) as bar:
         given = {"title": options.title or "", "case": options.case, "progress": progress_to(bar)}
-        pages.write_report(options.source, page, **given)
+        pages.write_report(options.source, page, about=_about(options), **given)
     return EXIT_OK
 
 
 def _of_sweep(options: argparse.Namespace, page: Path) -> int:
     with Bar(1, SECTIONS) as bar:
-        pages.write_sweep_report(options.source, page, plan=options.plan, progress=progress_to(bar))
+        pages.write_sweep_report(
+            options.source, page, plan=options.plan, about=_about(options), progress=progress_to(bar)
+        )
     return EXIT_OK
 
 
@@ -80,6 +91,7 @@ def _case(source: Path) -> Case:
 def _of_case(options: argparse.Namespace, page: Path) -> int:
     """Solve a case, and write its page. A run that ends early has a page of its states."""
     case, code, reason = _case(options.source), EXIT_OK, None
+    case = dataclasses.replace(case, title=options.title or case.title, about=merged(case.about, _about(options)))
     if options.error_bars:
         case = dataclasses.replace(case, options=case.options.changed(error_bars=True))
     note_run(case)
@@ -94,7 +106,7 @@ def _of_case(options: argparse.Namespace, page: Path) -> int:
     source = Source.of_result(result, case=case, error=reason)
     source = dataclasses.replace(source, case_text=options.source.read_text(encoding="utf-8-sig"))
     with Bar(1, SECTIONS) as bar:
-        write_source(source, page, options.title or case.title, progress=progress_to(bar))
+        write_source(source, page, progress=progress_to(bar))
     return code
 
 

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             ended = _ending(lambda: solved.append(solver.solve(case.problem, case.history, **keywords)))
         else:
-            keywords |= {"title": case.title, "save_after": saved, "overwrite": options.overwrite}
+            keywords |= {"title": case.title, "about": case.about, "save_after": saved, "overwrite": options.overwrite}
             ended = _ending(lambda: storage.record(case.problem, case.history, options.output, **keywords))
     if options.output is not None:
         return _write_stored(case, options, ended)

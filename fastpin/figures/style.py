@@ -57,6 +57,9 @@ LEAST_DPI, MOST_DPI = 10.0, 1200.0
 SCREEN_DPI = 110.0
 """Dots per inch of a picture in a notebook."""
 
+FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
+"""The folder of Matplotlib's fonts, such as DejaVu Sans."""
+
 STYLE: Any = {
     "font.size": 9.0,
     "font.family": "sans-serif",

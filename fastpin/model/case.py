@@ -1,14 +1,49 @@
-"""A case: problem, load history, options and title, with the checks that need two of them."""
+"""A case: problem, load history, options, title and origin, with the checks that need two of them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 
 from fastpin.errors import InputError
 from fastpin.model.checks import instance, string
 from fastpin.model.history import LoadHistory
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+
+
+@dataclass(frozen=True)
+class About:
+    """Who made a case, and for what: a report names them on its first page and in the head of each page.
+
+    Attributes
+    ----------
+    project : str
+        Name or number of the project; empty if there is none, as the others.
+    author : str
+        Who answers for the case.
+    revision : str
+        Revision of the case or its report, such as "B".
+    date : str
+        Date of the revision, as it is to be printed.
+
+    Raises
+    ------
+    InputError
+        If a field is no text on one line of printable characters.
+    """
+
+    project: str = ""
+    author: str = ""
+    revision: str = ""
+    date: str = ""
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            string(name, value)
+
+    def given(self) -> dict[str, str]:
+        """The fields that are not empty, by name."""
+        return {name: value for name, value in asdict(self).items() if value}
 
 
 @dataclass(frozen=True)
@@ -22,6 +57,8 @@ class Case:
     options : SolveOptions
     title : str
         Empty if there is none.
+    about : About
+        Project, author, revision and date. No result depends on them.
 
     Raises
     ------
@@ -33,8 +70,10 @@ class Case:
     history: LoadHistory
     options: SolveOptions = field(default_factory=SolveOptions)
     title: str = ""
+    about: About = field(default_factory=About)
 
     def __post_init__(self) -> None:
+        instance("about", self.about, About, "an About")
         instance("problem", self.problem, Problem, "a Problem")
         instance("history", self.history, LoadHistory, "a LoadHistory")
         instance("options", self.options, SolveOptions, "a SolveOptions")

@@ -1,4 +1,4 @@
-"""Reports of results and sweeps: one HTML page that needs no other file.
+"""Reports of results and sweeps: one HTML page or a PDF that needs no other file.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -16,6 +16,9 @@ from fastpin.pages.content import Picture
 MOST_SVG = 250_000
 """Most characters of an inline SVG. Curves take some 50,000; a map of filled contours takes more as SVG than as PNG."""
 
+WIDTH_OF_BITMAP = 340
+"""Width of a bitmap on paper, points: some 120 mm."""
+
 _DROPPED = ("metadata", "style")
 """Elements of Matplotlib's SVG that a page does not need. Its style sheet would hold for the whole page."""
 
@@ -57,29 +60,46 @@ class Album:
             If the directory of temporary files has no room for the figure.
         """
         try:
-            markup = self._markup(draw, words, bitmap)
+            markup, svg = self._drawn(draw, words, bitmap)
         except OutputError as error:
             reason = f"a figure of the page {error.reason}; set TMPDIR to another directory"
             raise OutputError(tempfile.gettempdir(), reason) from None
         self._count += 1
-        return Picture(markup, caption, self._count)
+        return Picture(markup, caption, self._count, svg, words)
 
-    def _markup(self, draw: Callable[[Path], object], words: str, bitmap: bool) -> str:
+    def _drawn(self, draw: Callable[[Path], object], words: str, bitmap: bool) -> tuple[str, str]:
+        """Return the markup of a figure, and its file as SVG."""
         with tempfile.TemporaryDirectory(prefix="fastpin-") as folder:
             path = Path(folder) / "figure.svg"
             if not bitmap:
                 draw(path)
                 text = path.read_text(encoding="utf-8")
                 if len(text) <= MOST_SVG:
-                    return _svg(text, words, f"f{self._count + 1}-")
+                    markup = _svg(text, words, f"f{self._count + 1}-")
+                    return markup, _file_of(markup)
             path = path.with_suffix(".png")
             draw(path)
             return _png(path.read_bytes(), words)
 
 
-def _png(content: bytes, words: str) -> str:
-    data = base64.b64encode(content).decode("ascii")
-    return f'<img alt="{html.escape(words)}" src="data:image/png;base64,{data}">'
+def _png(content: bytes, words: str) -> tuple[str, str]:
+    """Return a PNG as an element ``img``, and inside an SVG of its size on paper."""
+    data = f"data:image/png;base64,{base64.b64encode(content).decode('ascii')}"
+    width, height = (int.from_bytes(content[k : k + 4]) for k in (16, 20))
+    high = WIDTH_OF_BITMAP * height / width
+    svg = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH_OF_BITMAP}pt" height="{high:.2f}pt" '
+        f'viewBox="0 0 {width} {height}">'
+        f'<image href="{data}" width="{width}" height="{height}"/></svg>'
+    )
+    return f'<img alt="{html.escape(words)}" src="{data}">', svg
+
+
+def _file_of(markup: str) -> str:
+    """Return an element ``svg`` of :func:`_svg` as a file: with the names, the size and the style that it lacks."""
+    width, height = re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', markup)[0]
+    size = f'width="{width}pt" height="{height}pt" stroke-linejoin="round" stroke-linecap="butt"'
+    return markup.replace("<svg ", f'<svg xmlns="http://www.w3.org/2000/svg" {size} ', 1)
 
 
 def _svg(text: str, words: str, prefix: str) -> str:

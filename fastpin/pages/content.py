@@ -1,4 +1,7 @@
-"""The content of a page: sections of text, tables and pictures. The template page.html turns it into HTML."""
+"""The content of a page: sections of text, tables and pictures.
+
+The template page.html turns it into HTML, and the template page.typ into a PDF.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from fastpin.errors import printable
+from fastpin.model.case import About
 from fastpin.report.table import Column
+
+
+def shown(text: str) -> str:
+    """Return a text with escapes for the characters that can't be printed. Lines and tabs stay."""
+    return "\n".join("\t".join(map(printable, line.split("\t"))) for line in text.split("\n"))
 
 
 @dataclass(frozen=True)
@@ -90,15 +100,21 @@ class Picture:
     Attributes
     ----------
     markup : str
-        An ``svg`` element, or an ``img`` element with its data. It is written to the page as it is.
+        An ``svg`` element, or an ``img`` element with its data. It is written to an HTML page as it is.
     caption : str
     number : int
         From 1.
+    svg : str
+        The file of the figure, SVG, for a PDF.
+    words : str
+        The text in place of the figure, for readers who can't see it.
     """
 
     markup: str
     caption: str
     number: int
+    svg: str = ""
+    words: str = ""
     kind: str = field(default="picture", init=False)
 
 
@@ -150,9 +166,22 @@ class Page:
     sections : sequence of Section
     made : str
         When and by which version the page was made.
+    about : About
+        Project, author, revision and date.
     """
 
     title: str
     lead: str
     sections: Sequence[Section]
     made: str
+    about: About = field(default_factory=About)
+
+    @property
+    def head(self) -> tuple[str, str]:
+        """The head of each page of paper: project and title on the left; revision, date and author on the right."""
+        given = self.about.given()
+        if "revision" in given:
+            given["revision"] = f"Revision {given['revision']}"
+        left, right = ("project",), ("revision", "date", "author")
+        project, others = ([given[name] for name in names if name in given] for names in (left, right))
+        return " · ".join([*project, self.title]), " · ".join(others)

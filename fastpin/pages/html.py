@@ -1,45 +1,26 @@
-"""The HTML of a page, and its file."""
+"""The HTML of a page."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import jinja2
 
-from fastpin.errors import InputError, printable
-from fastpin.model.checks import as_toml, file_path
-from fastpin.pages.content import Page
-from fastpin.storage.files import check_writable, replacing
-
-SUFFIXES = (".html", ".htm")
-"""Endings of the name of a page."""
+from fastpin.pages.content import Page, shown
 
 FOLDER = Path(__file__).parent
-"""The folder of the template and the style sheet."""
-
-
-def check_page(field: str, path: str | Path) -> Path:
-    """Return the path of a page to be written.
-
-    Raises
-    ------
-    InputError
-        With `field`, if the name does not end as a page's. Also if the file can't be written.
-    """
-    found = file_path(field, path)
-    if found.suffix.lower() not in SUFFIXES:
-        raise InputError(
-            field, f"must be the name of a page, which ends in {' or '.join(SUFFIXES)}, not {as_toml(found.name)}"
-        )
-    check_writable(found)
-    return found
+"""The folder of the templates and the style sheet."""
 
 
 def _shown(value: object) -> object:
-    """Return a text of a page with escapes for the characters that can't be printed. Lines and tabs stay."""
-    if not isinstance(value, str) or hasattr(value, "__html__"):
-        return value
-    return "\n".join("\t".join(map(printable, line.split("\t"))) for line in value.split("\n"))
+    """Return a text of a page as it can be printed. Markup stays."""
+    return shown(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+
+
+def _in_style(text: str) -> str:
+    """Return a text as a string of a style sheet. Letters and digits stay; all else is escaped by its number."""
+    return '"' + re.sub(r"[^A-Za-z0-9 ]", lambda found: f"\\{ord(found[0]):06x}", shown(text)) + '"'
 
 
 def html_of(page: Page) -> str:
@@ -53,17 +34,5 @@ def html_of(page: Page) -> str:
         lstrip_blocks=True,
     )
     style = (FOLDER / "page.css").read_text(encoding="utf-8")
-    return environment.get_template("page.html").render(page=page, style=style) + "\n"
-
-
-def write_page(page: Page, path: Path) -> None:
-    """Write a page, whole or not at all.
-
-    Raises
-    ------
-    InputError
-        If the file can't be written.
-    """
-    text = html_of(page)
-    with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    head = [_in_style(text) for text in page.head]
+    return environment.get_template("page.html").render(page=page, style=style, head=head) + "\n"

@@ -1,4 +1,4 @@
-"""The page of a result."""
+"""The report of a result."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 from fastpin.casefile.reader import parse_case
 from fastpin.casefile.toml_text import read_text
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.case import Case
+from fastpin.model.case import About, Case
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
-from fastpin.pages.html import check_page, write_page
 from fastpin.pages.sections import SECTIONS, Shared
 from fastpin.pages.source import Source, now
+from fastpin.pages.writing import check_page, write_page
 from fastpin.solver.result import Result
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
@@ -31,11 +31,12 @@ def write_report(
     path: str | Path,
     *,
     title: str = "",
+    about: About | None = None,
     case: str | Path | None = None,
     convergence: Convergence | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Write the report of a result: one HTML page with all figures inside, which needs no other file and no network.
+    """Write the report of a result: one HTML page or a PDF, with all figures inside. It needs no other file.
 
     Of a long history the page shows the last cycle and the ends of the table. A section that lacks its data says how
     to get them.
@@ -45,9 +46,12 @@ def write_report(
     result : Result or path
         A result, or the file of one. The run of the file may be finished, unfinished or going on.
     path : path
-        The page. Its name ends in .html or .htm. An existing page is overwritten, whole or not at all.
+        The report. Its name ends in .html, .htm or .pdf; a PDF needs the extra ``fastpin[pdf]``. An existing file is
+        overwritten, whole or not at all.
     title : str
-        Title of the page; that of the stored case unless given.
+        Title of the report; that of the stored case unless given.
+    about : About, optional
+        Project, author, revision and date. A field that is not given is that of the stored case.
     case : path, optional
         The case file of the result. Its text is shown on the page. Unless given, it is the file beside a stored result
         that has its name with .toml, if that is a case file of the same problem and loads.
@@ -67,6 +71,8 @@ def write_report(
     target = check_page("path", path)
     check_callable("progress", progress)
     string("title", title)
+    if about is not None:
+        instance("about", about, About, "an About")
     if convergence is not None:
         instance("convergence", convergence, Convergence, "a Convergence")
     if isinstance(result, Result):
@@ -79,13 +85,13 @@ def write_report(
                 source = replace(source, case_text=_case_text(file.with_suffix(".toml"), source.case))
     if case is not None:
         source = replace(source, case_text=_case_text(case, source.case))
-    write_source(source, target, title or source.case.title, convergence, progress)
+    named = replace(source.case, title=title or source.case.title, about=merged(source.case.about, about))
+    write_source(replace(source, case=named), target, convergence, progress)
 
 
 def write_source(
     source: Source,
     path: Path,
-    title: str,
     convergence: Convergence | None = None,
     progress: Progress | None = None,
 ) -> None:
@@ -98,7 +104,13 @@ def write_source(
     report(len(SECTIONS), len(SECTIONS))
     lead = "Frictional contact of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()}."
-    write_page(Page(title or "Report of a result", lead, sections, made), path)
+    title = source.case.title or "Report of a result"
+    write_page(Page(title, lead, sections, made, source.case.about), path)
+
+
+def merged(stored: About, given: About | None) -> About:
+    """Return the given fields, and the stored ones where none is given."""
+    return replace(stored, **given.given()) if given is not None else stored
 
 
 def _case_text(path: str | Path, case: Case) -> str:

@@ -10,12 +10,14 @@ from typing import Any
 
 from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, read_text
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.checks import check_callable, file_path
+from fastpin.model.case import About
+from fastpin.model.checks import check_callable, file_path, instance
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Listing, Page, Part, Section, Table, Text
-from fastpin.pages.html import check_page, write_page
+from fastpin.pages.result import merged
 from fastpin.pages.source import now
+from fastpin.pages.writing import check_page, write_page
 from fastpin.report.case import case_rows, corner_columns
 from fastpin.report.sweep import brief, chart, check_axes, run_columns
 from fastpin.storage.files import INDEX
@@ -42,19 +44,23 @@ def write_sweep_report(
     path: str | Path,
     *,
     plan: str | Path | None = None,
+    about: About | None = None,
     progress: Callable[[float, float], None] | None = None,
 ) -> None:
-    """Write the report of a sweep: one HTML page with its plan, maps or curves, a table of its runs, and failed runs.
+    """Write the report of a sweep: its plan, maps or curves, a table of its runs, and failed runs.
 
     Parameters
     ----------
     directory : path
         The directory of the sweep. The sweep may be going on.
     path : path
-        The page. Its name ends in .html or .htm. An existing page is overwritten, whole or not at all.
+        The report. Its name ends in .html, .htm or .pdf; a PDF needs the extra ``fastpin[pdf]``. An existing file is
+        overwritten, whole or not at all.
     plan : path, optional
         The plan. Unless given, it is the copy in the directory. The base case of the copy is looked for from the
         directory, and from the directory round it.
+    about : About, optional
+        Project, author, revision and date. A field that is not given is that of the base case.
     progress : callable, optional
         Called as ``progress(done, all)`` with numbers of sections.
 
@@ -68,6 +74,8 @@ def write_sweep_report(
     """
     target, folder = check_page("path", path), file_path("directory", directory)
     check_callable("progress", progress)
+    if about is not None:
+        instance("about", about, About, "an About")
     report = progress or (lambda done, total: None)
     with Index(folder) as index:
         digest, version = index.read_note("plan"), index.read_note("version")
@@ -85,7 +93,8 @@ def write_sweep_report(
         sections[0] = Section("overview", "Overview", [*sections[0].parts, Text(words, "note")])
     lead = "A parameter sweep of the frictional contact of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()} from {folder.resolve().name}/{INDEX}."
-    write_page(Page(found.title or "Report of a sweep", lead, sections, made), target)
+    named = merged(found.case(found.points[0]).about, about)
+    write_page(Page(found.title or "Report of a sweep", lead, sections, made, named), target)
 
 
 def _plan_of(folder: Path, digest: str | None) -> Plan:

@@ -236,7 +236,7 @@ class Result(Sequence[State]):
         return fatigue(states, criterion, body, **options)
 
     def report(self, path: str | Path, **options: Any) -> None:
-        """Write one HTML page on the result: case, loads, key figures, figures, checks.
+        """Write a report of the result, an HTML page or a PDF: case, loads, margins, key figures, figures, checks.
 
         Parameters
         ----------

@@ -20,6 +20,7 @@ from __future__ import annotations
 import functools
 import platform
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from datetime import UTC, datetime
 from importlib import metadata
 from typing import Any
@@ -30,6 +31,7 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
+from fastpin.model.case import About
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
@@ -42,7 +44,15 @@ from fastpin.states.marks import Marks
 from fastpin.states.old_borders import BITS
 from fastpin.states.state import State
 from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
-from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
+from fastpin.storage.damage import (
+    as_python,
+    check_between,
+    check_extremes,
+    check_finite,
+    dataset_of,
+    numbers_of,
+    text_of,
+)
 from fastpin.version import __version__
 
 FORMAT = "fastpin result"
@@ -256,6 +266,12 @@ def read_options(file: h5py.File) -> SolveOptions:
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
     options |= {name: stored[name] for name in ("keep", "shortcut", "slip_sums") if name in stored}
     return SolveOptions(**options)
+
+
+def read_about(file: h5py.File) -> About:
+    """Read who made the case of a result, and for what."""
+    stored = file["solver"].attrs
+    return About(**{each.name: text_of(stored.get(each.name, "")) for each in fields(About)})
 
 
 def write_statistics(file: h5py.File, statistics: Mapping[str, float]) -> None:

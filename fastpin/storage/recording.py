@@ -10,8 +10,17 @@ from typing import Any, Unpack
 import numpy as np
 
 from fastpin.errors import InputError, InputWarning
-from fastpin.model.case import Case
-from fastpin.model.checks import as_toml, check_callable, file_path, items, string, true_or_false, whole_number
+from fastpin.model.case import About, Case
+from fastpin.model.checks import (
+    as_toml,
+    check_callable,
+    file_path,
+    instance,
+    items,
+    string,
+    true_or_false,
+    whole_number,
+)
 from fastpin.model.doubts import doubts, pressure_doubts, warn_of
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
@@ -26,7 +35,7 @@ from fastpin.states.extremes import yield_extremes
 from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
-from fastpin.storage.layout import read_history, read_options, read_problem
+from fastpin.storage.layout import read_about, read_history, read_options, read_problem
 from fastpin.storage.origin import largest_pressure, stored_extremes
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
@@ -38,6 +47,7 @@ def record(
     path: str | Path,
     *,
     title: str = "",
+    about: About | None = None,
     save_after: Sequence[int] = (),
     overwrite: bool = False,
     grid: Grid | None = None,
@@ -59,6 +69,8 @@ def record(
         The file. Until the run ends, a journal and a checkpoint stand beside it.
     title : str
         Title of the run, stored in the file.
+    about : About, optional
+        Project, author, revision and date, stored in the file for its report.
     save_after : sequence of int
         Corners, counted from 1, with a restart in the file. ``load(path, after=corner)`` is quick at these corners.
     overwrite : bool
@@ -80,6 +92,8 @@ def record(
     path = file_path("path", path)
     check_writable(path, result=True)
     string("title", title)
+    if about is not None:
+        instance("about", about, About, "an About")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -96,7 +110,7 @@ def record(
             "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
         )
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title)
+    writer = FileRecorder(path, task, title, about or About())
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
@@ -159,7 +173,7 @@ def stored_error(path: str | Path) -> str | None:
 
 
 def stored_case(path: str | Path) -> Case:
-    """Read the case of a stored result: problem, history, options and title.
+    """Read the case of a stored result: problem, history, options, title, and who made it for what.
 
     Raises
     ------
@@ -168,7 +182,7 @@ def stored_case(path: str | Path) -> Case:
     """
     with open_result(file_path("path", path)) as file:
         title = text_of(file["solver"].attrs.get("title", ""))
-        return Case(read_problem(file), read_history(file), read_options(file), title)
+        return Case(read_problem(file), read_history(file), read_options(file), title, read_about(file))
 
 
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:

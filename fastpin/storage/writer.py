@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 
 from fastpin.errors import InputError, OutputError
+from fastpin.model.case import About
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.interrupt import deferred_interrupts
 from fastpin.solver.result import Restart
@@ -36,6 +37,7 @@ from fastpin.storage.layout import (
     count,
     cycle_rows,
     option_attributes,
+    read_about,
     read_rows,
     read_statistics,
     rows_of,
@@ -105,6 +107,7 @@ class FileRecorder:
     task : Task
         The task that is followed. Its stops get a restart in the file.
     title : str
+    about : About
 
     Attributes
     ----------
@@ -114,12 +117,12 @@ class FileRecorder:
         Whether an existing file may be replaced, also the file of an unfinished run.
     """
 
-    def __init__(self, path: Path, task: Task, title: str) -> None:
+    def __init__(self, path: Path, task: Task, title: str, about: About) -> None:
         self.path = path
         self.task = task
         self.chosen_arc = task.options.arc is None and task.grid is None
         self.overwrite = True
-        self._title = title
+        self._title, self._about = title, about
         self._file: JournaledFile | None = None
         self._h5: h5py.File
         self._run: Run
@@ -179,7 +182,12 @@ class FileRecorder:
         self._states, self._cycles, self._pending = [], [], 0
         self._at, self._stored, self._corner = [0, 0], [0, 0], [0, 0]
         task, system = self.task, run.system
-        extra = {"title": self._title, "arc_chosen": self.chosen_arc, "save_after": sorted(task.stops)}
+        extra = {
+            "title": self._title,
+            **self._about.given(),
+            "arc_chosen": self.chosen_arc,
+            "save_after": sorted(task.stops),
+        }
         write_head(
             self._h5,
             task.problem,
@@ -377,7 +385,7 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
                 check_growing(stored, task.grid.size)
                 read_statistics(stored)  # they are written again at the end
                 options = stored["solver"].attrs
-                writer = FileRecorder(path, task, str(options["title"]))
+                writer = FileRecorder(path, task, str(options["title"]), read_about(stored))
                 writer.chosen_arc = bool(options["arc_chosen"])
                 restart = _latest(path, stored, task.grid.size, lambda group: writer.reopen(file, h5, group))
                 h5.attrs.pop("error", None)

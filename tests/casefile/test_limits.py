@@ -11,6 +11,7 @@ import pytest
 from fastpin import casefile
 from fastpin.casefile.toml_text import MOST_BYTES, MOST_BYTES_OF_PLAN, MOST_FAULTS, MOST_PARTS, CaseText
 from fastpin.errors import CaseFileError
+from fastpin.model import About
 from fastpin.studies import read_outcomes, read_plan
 
 SECONDS = 20.0
@@ -72,6 +73,31 @@ def test_a_file_has_a_limit_by_its_kind(read: Callable[[Path], object], most: in
         with pytest.raises(CaseFileError) as caught:
             read(path)
         assert (f"is larger than {most:,} bytes" in str(caught.value)) == (size > most)
+
+
+@pytest.mark.parametrize("name", ["project", "author", "revision", "date"])
+def test_the_table_about_has_printable_characters_only(name: str) -> None:
+    def read(value: str) -> About:
+        example = casefile.EXAMPLE.replace("title", "# title", 1)
+        return casefile.parse_case(f"[about]\n{name} = {value}\n{example}").about
+
+    assert read('"A <b> é"').given() == {name: "A <b> é"}
+    assert read('""') == About()
+    with pytest.raises(
+        CaseFileError, match=rf"line 2: {name}: must be one line of printable characters, without \\x1b"
+    ):
+        read('"a\\u001b[31m"')
+    if name != "date":
+        with pytest.raises(CaseFileError, match=f"{name}: must be text in quotes"):
+            read("2026-03-31")
+
+
+def test_a_date_may_be_a_date_of_toml() -> None:
+    text = casefile.EXAMPLE.replace("[pin]", "[about]\ndate = 2026-03-31\n[pin]", 1)
+    assert casefile.parse_case(text).about == About(date="2026-03-31")
+    for wrong in ("2026-03-31T12:00:00", "12:00:00", "20260331"):
+        with pytest.raises(CaseFileError, match="date: must be text in quotes"):
+            casefile.parse_case(text.replace("2026-03-31", wrong))
 
 
 @pytest.mark.parametrize("title", ["a\x1b[31m", "a\nb", "a\tb", "a\u202eb", "a\x7f"])

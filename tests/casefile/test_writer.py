@@ -13,7 +13,7 @@ from fastpin import casefile
 from fastpin.casefile.reader import parse_case
 from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Plate, Ring, Tube
-from fastpin.model.case import Case
+from fastpin.model.case import About, Case
 from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
@@ -45,12 +45,13 @@ def test_a_written_case_reads_back_to_the_same_bits(name: str) -> None:
     loads = {"ux": 1e-5, "uy": -1e-5} if name == "driven" else {"P": 1e6, "Q": -1e5}
     rows = [{key: value * math.sin(k) for key, value in loads.items()} for k in range(1, 21)]
     case = Case(
-        problem, LoadHistory(rows), SolveOptions(nodes=61, arc=(-3.0, -0.1), slip_sums=True), 'a "title" \\ \xa0 µ'
-    )
+        problem, LoadHistory(rows), SolveOptions(nodes=61, arc=(-3.0, -0.1), slip_sums=True), 'a "title" \\ \xa0 µ',
+        About('a "project" \\', "", "B", "2026-03-31"),
+    )  # fmt: skip
     back = parse_case(casefile.case_text(case))
     assert back.problem == problem
     assert np.array_equal(back.history.values(), case.history.values())
-    assert (back.options, back.title) == (case.options, case.title)
+    assert (back.options, back.title, back.about) == (case.options, case.title, case.about)
 
 
 def test_named_rigid_and_worn_materials_are_written() -> None:

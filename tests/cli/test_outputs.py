@@ -54,6 +54,10 @@ TEXTS: dict[str, dict[str, str]] = {
 }
 """The options of texts and figures, with the ending of their files."""
 
+ENDINGS = [(name, option, ending) for name, found in TEXTS.items() for option, ending in found.items()]
+ENDINGS.append(("report", "--output", ".pdf"))
+"""Commands, their options and the endings of their files."""
+
 RESULTS = {"run": {"--output"}}
 DIRECTORIES = {"sweep": {"--output"}, "merge": {"--output"}, "paper": {"--output"}, "benchmarks": {"--output"}}
 INPUTS = {
@@ -132,13 +136,13 @@ KINDS: dict[str, tuple[Callable[[Path, Path, str], object], str]] = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(("command", "option"), [(name, option) for name in TEXTS for option in TEXTS[name]])
+@pytest.mark.parametrize(("command", "option", "ending"), ENDINGS)
 def test_no_text_or_figure_replaces_another_kind(
-    command: str, option: str, kind: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+    command: str, option: str, ending: str, kind: str, folder: Path, samples: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if kind == "input" and command in ("benchmarks", "verify"):
         return  # they have no input
-    path = Path(f"keep{TEXTS[command][option]}")
+    path = Path(f"keep{ending}")
     make, words = KINDS[kind]
     make(path, samples, command)
     before, outside = contents(folder), contents(samples)

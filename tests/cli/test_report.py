@@ -60,7 +60,11 @@ def test_a_case_that_ends_early_has_a_page_with_the_reason(case: Path, capsys: p
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["case.toml", "-o", "page.pdf"], "--output: must be the name of a page, which ends in .html or .htm, not"),
+        (
+            ["case.toml", "-o", "page.png"],
+            "--output: must be the name of a page, which ends in .html, .htm or .pdf",
+        ),
+        (["case.toml", "--author", "a\tb"], "--author: must be one line of printable characters, without \\t"),
         (["case.toml", "--plan", "x"], "--plan: has no effect on a case file; it is for the directory of a sweep"),
         (["a.h5", "--error-bars"], "--error-bars: has no effect on a stored result; it is for a case file"),
         ([".", "--title", "x"], "--title: has no effect on the directory of a sweep; it is for a stored result or a"),
@@ -86,3 +90,32 @@ def test_all_faults_of_a_case_are_listed(case: Path, capsys: pytest.CaptureFixtu
     case.write_text(CASE.replace("nodes = 121", "nodes = 1").replace("friction = 0.4", "friction = -1"))
     assert main(["report", str(case)]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 2
+
+
+def test_options_replace_who_made_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    about = '[about]\nproject = "<i>Hinge</i> \\";}</style>"\nrevision = "A"\nauthor = "A. Engineer"\n'
+    case.write_text(CASE.replace("[pin]", f"{about}[pin]", 1))
+    assert main(["run", str(case), "-o", "result.h5"]) == 0
+    for source in ("case.toml", "result.h5"):
+        assert main(["report", source, "-o", "page.html", "--revision", "B", "--date", "1 May 2026"]) == 0
+        text = Path("page.html").read_text(encoding="utf-8")
+        said = " ".join(Page(text).text.split())
+        assert 'Project<i>Hinge</i> ";}</style>' in said.replace("Project ", "Project")
+        for name, value in {"Author": "A. Engineer", "Revision": "B", "Date": "1 May 2026"}.items():
+            assert f"{name}{value}" in said.replace(f"{name} ", name)
+        left = text.partition('@top-left { content: "')[2].partition('"')[0]
+        assert left.startswith("\\00003ci\\00003eHinge")
+        assert left.endswith("A joint")
+        assert 'page " counter(page) " of " counter(pages)' in text
+    capsys.readouterr()
+
+
+def test_a_sweep_takes_who_made_its_base_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(CASE.replace("[pin]", '[about]\nproject = "Hinge"\n[pin]', 1))
+    Path("plan.toml").write_text('case = "case.toml"\n[grid]\n"contact.friction" = [0.1, 0.2]\nsolve.nodes = [41]\n')
+    assert main(["sweep", "plan.toml", "--workers", "1"]) == 0
+    assert main(["report", "plan", "-o", "page.html", "--author", "A. Engineer"]) == 0
+    said = Page(Path("page.html").read_text(encoding="utf-8")).text
+    assert "Hinge" in said
+    assert "A. Engineer" in said
+    capsys.readouterr()

@@ -255,10 +255,12 @@ def test_a_figure_has_the_same_markup_each_time() -> None:
 
 def test_a_large_figure_becomes_a_bitmap(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(album, "MOST_SVG", 10)
-    found = Album().picture(lambda path: path.write_text(f"a figure in {path.suffix}"), 'say "so"', "caption")
+    bitmap = b"\x89PNG\r\n\x1a\n" + bytes([0, 0, 0, 13]) + b"IHDR" + bytes([0, 0, 0, 200, 0, 0, 0, 100])
+    drawn = {".svg": b"a figure that is too long", ".png": bitmap}
+    found = Album().picture(lambda path: path.write_bytes(drawn[path.suffix]), 'say "so"', "caption")
     (element,) = Page(found.markup).attributes
     assert element[0] == "img"
-    assert base64.b64decode(element[1]["src"].rpartition(",")[2]) == b"a figure in .png"
+    assert base64.b64decode(element[1]["src"].rpartition(",")[2]) == bitmap
     assert element[1]["alt"] == 'say "so"'
 
 
@@ -341,12 +343,13 @@ def test_words_cover_all_names() -> None:
 @pytest.mark.parametrize(
     ("change", "field", "words"),
     [
-        ({"path": "page.txt"}, "path", 'must be the name of a page, which ends in .html or .htm, not "page.txt"'),
+        ({"path": "page.txt"}, "path", 'must be the name of a page, which ends in .html, .htm or .pdf, not "page.txt"'),
         ({"path": "no/page.html"}, "no/page.html", "the directory no does not exist"),
         ({"result": "missing.h5"}, "missing.h5", "there is no such file"),
         ({"result": "junk.h5"}, "junk.h5", "is no HDF5 file, and no result"),
         ({"result": 3.0}, "result", "must be"),
         ({"title": 5}, "title", "must be"),
+        ({"about": "me"}, "about", "must be an About"),
         ({"case": "other.toml"}, "case", "other.toml is not the case of this result: friction differs"),
         ({"convergence": 5}, "convergence", "must be a Convergence"),
         ({"progress": 5}, "progress", "must be"),

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from fastpin.errors import InputError, OutputError
+from fastpin.model.case import About
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.inputs import HDF5_SIGNATURE
@@ -571,3 +572,14 @@ def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, aga
     with pytest.raises(InputError, match="must be an ordinary file; please remove it"):
         resume(path) if again == "resume" else follow(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
     assert precious.read_text() == "keep"
+
+
+def test_a_file_keeps_who_made_its_case_also_after_an_interruption(problem, path):
+    about, history = About("Hinge 4711", "", "B <b>", "2026-03-31"), RANDOM
+    with pytest.raises(Interrupted):
+        follow(problem, history, path, title="title", about=about, nodes=61, arc=(-3.0, -0.1), progress=StopAt(20))
+    assert stored_case(path).about == about
+    resume(path)
+    assert (stored_case(path).title, stored_case(path).about) == ("title", about)
+    with pytest.raises(InputError, match="about: must be an About"):
+        follow(problem, history, path, about="me", overwrite=True)

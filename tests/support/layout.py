@@ -48,6 +48,7 @@ HOMES = {
     "argparse": ("cli",),
     "tqdm": ("cli",),
     "jinja2": ("pages",),
+    "typst": ("pages",),
     "shtab": ("cli",),
     "aiohttp": ("live",),
 }
@@ -59,7 +60,7 @@ PRINTS = "cli/terminal.py"
 OUTPUTS = ("report", "figures", "pages", "live", "cli")
 """Folders that show numbers to people. Their units come from ``units``, with the thickness of a problem."""
 
-OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab")
+OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab", "typst")
 """Packages that may be missing. They are imported inside functions."""
 
 MOST_LINES = 600

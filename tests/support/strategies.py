@@ -118,7 +118,7 @@ def options(draw: st.DrawFn, closed: bool = False) -> SolveOptions:
 
 @st.composite
 def cases(draw: st.DrawFn) -> fastpin.Case:
-    """Whole cases: problem, history, options and title. Materials have no names: case files can't give them."""
+    """Whole cases with title and who made them. Materials have no names: case files can't give them."""
     problem = draw(problems())
     pin, plate = (
         fastpin.Material.rigid() if body.is_rigid else fastpin.Material(body.E, body.nu)
@@ -127,7 +127,8 @@ def cases(draw: st.DrawFn) -> fastpin.Case:
     problem = dataclasses.replace(problem, pair=fastpin.MaterialPair(pin, plate, problem.pair.plane))
     history = draw(histories(problem))
     chosen = draw(options(problem.clearance < 0.0))
-    return fastpin.Case(problem, history, chosen, draw(words))
+    about = fastpin.model.About(*(draw(words) for _ in range(4)))
+    return fastpin.Case(problem, history, chosen, draw(words), about)
 
 
 def tables_of(case: fastpin.Case) -> Tables:
@@ -137,6 +138,7 @@ def tables_of(case: fastpin.Case) -> Tables:
     tables: Tables = {
         name: {"rigid": True} if body.is_rigid else {"E": body.E, "nu": body.nu} for name, body in bodies.items()
     }
+    tables["about"] = case.about.given()
     contact: dict[str, Any] = {"plane": problem.pair.plane, "friction": problem.friction}
     contact |= {"pin_load": problem.pin_load, "rotation": problem.rotation}
     if problem.dimensionless:

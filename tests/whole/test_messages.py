@@ -84,7 +84,11 @@ UNKNOWN_KEYS: list[tuple[str, str, str]] = [
         "[[repeat]]\nn = 3\n[solve]",
         "unknown section [[repeat]]; repeat is a key in [[load]] or [history]",
     ),
-    ("[solve]", "[xyzzy]\n[solve]", "unknown section [xyzzy]; the sections are [pin], [plate], [dundurs], [contact],"),
+    (
+        "[solve]",
+        "[xyzzy]\n[solve]",
+        "unknown section [xyzzy]; the sections are [about], [pin], [plate], [dundurs], [contact],",
+    ),
     ("[solve]", "[pin.title]\n[solve]", 'unknown key "title" in [pin]; the keys are material, E, nu, rigid,'),
     ("[pin]  ", "mu = 0.4\n[pin]  ", 'unknown key "mu" before the first section, did you mean "friction" in [contact]'),
     ('method = "path"', 'method = "exact"', 'method: must be "path" or "increment", not "exact", did you mean "path"?'),
