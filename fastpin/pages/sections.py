@@ -26,6 +26,7 @@ from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDU
 from fastpin.report.case import case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
+from fastpin.report.margins import HEADS, fatigue_margins, margin_rows, static_margins
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_column, state_columns
 from fastpin.report.table import MAX_ROWS, Column
@@ -49,6 +50,9 @@ NO_SLIP = "from corner {0.first:,} to {0.last:,} nothing slips beyond rounding"
 
 MOST_CHARACTERS = 20_000
 """Most characters of a listing: some four printed pages."""
+
+MOST_BLOCKS = 4
+"""Most blocks of cycles that the overview describes, a sentence each."""
 
 NO_STATE = "There is no state: the run ended before its first corner, or its states were not kept."
 """In place of a section that needs states."""
@@ -86,7 +90,9 @@ def overview(page: Shared) -> Section:
         sentences = [f"largest contact pressure in all kept states: {pressure}, load point {load_point(largest):.5g}"]
         sentences += [hoop_line(problem, source.peaks, body) for body in EDGES]
         sentences += [*bush_line(problem, source.peaks).splitlines()]
-        sentences += cycle_lines(problem, source.result.cycles, source.peaks)
+        lines = cycle_lines(problem, source.result.cycles, source.peaks)
+        many = f"{len(lines):,} blocks of cycles: see hysteresis and slip"
+        sentences += lines if len(lines) <= MOST_BLOCKS else [many]
         sentences += [] if cycle is None else [cycle_line(cycle) if _slips(cycle) else NO_SLIP.format(cycle)]
         known = [] if isinstance(source.fatigue, str) else source.fatigue
         sentences += [hot_spot_line(found, source.peaks) for found in known]
@@ -117,6 +123,20 @@ def _said(line: str) -> str:
 
 def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
+
+
+def margins(page: Shared) -> Section:
+    """Return the margins of yield, of the bush and of fatigue, each with the state that governs it."""
+    source, problem = page.source, page.source.case.problem
+    found = static_margins(problem, source.found, source.read)
+    cycle = [] if source.cycle is None else source.cycle.states
+    found += fatigue_margins(problem, source.fatigue, cycle)
+    run = "" if source.result.complete else " of an unfinished run"
+    words = f"Margins over all {source.points.size:,} kept states{run}: allowable/value - 1"
+    remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
+    remarks += "down to a third of the hole's radius below them; fastpin is elastic."
+    rows = margin_rows(problem, found)
+    return Section("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
 
 
 def case(page: Shared) -> Section:
@@ -305,6 +325,9 @@ def hysteresis(page: Shared) -> Section:
             parts.append(Text(_sentence(NO_SLIP.format(cycle))))
     if source.result.cycles:
         parts += _drawn(lambda: drawings.cycles(page.album, source.result))
+        lines = cycle_lines(source.case.problem, source.result.cycles, source.peaks)
+        if len(lines) > MOST_BLOCKS:
+            parts.append(Items([_sentence(line) for line in lines]))
     return Section("hysteresis", "Hysteresis and slip", parts)
 
 
@@ -419,7 +442,7 @@ def _shortened(text: str) -> str:
 
 
 SECTIONS: Sequence[Callable[[Shared], Section]] = (
-    overview, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue, convergence,
-    checks, provenance,
+    overview, margins, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue,
+    convergence, checks, provenance,
 )  # fmt: skip
 """All sections, in the order of the page."""

@@ -69,6 +69,7 @@ def _summary() -> Schema:
             "statistics": _map_of(_NUMBER, "counters of the solver, and its time, s"),
             "states": _list_of(_state()),
             "extremes": _extremes(),
+            "margins": _list_of(_margin()),
             "cycles": _list_of(_object({name: _of_cycle(name) for name in Cycle._fields})),
             "cycle": _or_null(_last_cycle()),
         }
@@ -140,6 +141,11 @@ def _extremes() -> Schema:
     extreme = _object({"value": _UNKNOWN, "place": _WHOLE, "load_point": _NUMBER})
     sides = {"smallest": extreme, "largest": extreme}
     return _object(dict.fromkeys(READINGS, _object(sides)), required=())
+
+
+def _margin() -> Schema:
+    texts, numbers = ("subject", "unit", "remark"), ("value", "allowable", "margin", "load_point")
+    return _object(dict.fromkeys(texts, _TEXT) | dict.fromkeys(numbers, _UNKNOWN))
 
 
 def _of_cycle(name: str) -> Schema:

@@ -18,9 +18,11 @@ from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.units import DEGREE, Unit, units
 from fastpin.report import cycle as cycle_report
+from fastpin.report.margins import document as margins_document
+from fastpin.report.margins import static_margins
 from fastpin.solver.result import Result
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import READINGS
+from fastpin.states.extremes import READINGS, Found
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees, load_point, quantity
 from fastpin.states.state import State
@@ -83,6 +85,7 @@ def document(
         "statistics": {} if result is None else result.statistics,
         "states": [] if result is None else [_state_summary(state) for state in result],
         "extremes": {} if result is None else _extremes_summary(result),
+        "margins": [] if result is None else _margins_summary(result),
         "cycles": [] if result is None else [_cycle_summary(problem, row) for row in result.cycles],
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
@@ -169,6 +172,15 @@ def _extremes_summary(result: Result) -> dict[str, Any]:
         name: {side: each._asdict() | {"value": shown(name, each.value)} for side, each in pair._asdict().items()}
         for name, pair in result.extremes().items()
     }
+
+
+def _margins_summary(result: Result) -> list[dict[str, Any]]:
+    """Return the margins of yield and of the bush over all states."""
+    found = Found()
+    for name, pair in result.extremes().items():
+        found |= {(name, "smallest"): pair.smallest, (name, "largest"): pair.largest}
+    rows = static_margins(result.problem, found, lambda places: [result.states[place] for place in places])
+    return margins_document(result.problem, rows)
 
 
 def json_ready(value: Any) -> Any:

@@ -1,0 +1,110 @@
+"""The table of margins: its values, the states that govern, and what it says where data lack."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
+from fastpin.damage import fatigue
+from fastpin.model import Bushing, FatigueConstants, Ring
+from fastpin.model.case import Case
+from fastpin.model.doubts import doubts_given
+from fastpin.report import summary
+from fastpin.report.margins import Margin, fatigue_margins, margin_rows, static_margins
+from fastpin.states.extremes import KeptStates, marked_extremes
+from fastpin.states.yielding import von_mises_peak
+
+STEEL, BRONZE = Material(210e9, 0.3), Material(103e9, 0.34, yield_strength=300e6)
+LIMITS = FatigueConstants(bending_limit=150e6, torsion_limit=90e6)
+ALUMINIUM = Material(71e9, 0.33, "sheet", LIMITS, yield_strength=503e6)
+LUG = Bushing(BRONZE, 12.5e-3, 20e-6, inside=Ring(0.03), friction=0.2)
+HISTORY = LoadHistory([{"P": 2e6}]) + LoadHistory([{"P": 3e6, "Q": 5e5}, {"P": 2e6, "Q": 0.0}]).repeated(2)
+
+
+def solved(history: LoadHistory = HISTORY, pair: MaterialPair | None = None, lug: Bushing = LUG) -> Result:
+    with doubts_given():
+        return solve(
+            Problem(pair or MaterialPair(STEEL, ALUMINIUM), 10e-3, 30e-6, 0.3, plate_body=lug), history, nodes=61
+        )
+
+
+def of(result: Result) -> dict[str, Margin]:
+    rows = static_margins(result.problem, marked_extremes(KeptStates(result.states)), KeptStates(result.states).read)
+    return {row.subject: row for row in rows}
+
+
+def test_margins_are_allowable_over_value_of_the_governing_state() -> None:
+    result = solved()
+    rows = of(result)
+    for owner, strength in (("bush", 300e6), ("plate", 503e6)):
+        values = [von_mises_peak(state, owner).value for state in result]
+        row = rows[f"{owner}: yield, von Mises"]
+        assert (row.value, row.allowable) == (max(values), strength)
+        assert row.load_point == values.index(max(values)) + 1
+        assert row.margin == pytest.approx(strength / max(values) - 1.0)
+    fits = [state.bush_fit() for state in result]
+    turning, opening = rows["bush: rotation, friction needed"], rows["bush: opening, press fit needed"]
+    assert turning.value == max(fit.least_friction for fit in fits)
+    assert turning.margin == pytest.approx(0.2 / turning.value - 1.0)
+    least = min(fits, key=lambda fit: fit.open_margin)
+    assert opening.margin == pytest.approx(least.press_fit_pressure / least.pressure_to_close - 1.0)
+    assert opening.load_point == fits.index(least) + 1
+
+
+def test_what_is_not_known_says_why() -> None:
+    result = solved(pair=MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=None)), lug=replace(LUG, friction=None))
+    rows = of(result)
+    for subject, words in {
+        "pin: yield, von Mises": "not known: no yield strength given",
+        "plate: yield, von Mises": "not known: no yield strength given",
+        "bush: rotation, friction needed": "not known: no friction between bush and plate given",
+    }.items():
+        assert rows[subject].remark == words
+        assert math.isnan(rows[subject].margin)
+    shown = {row[0]: row for row in margin_rows(result.problem, list(rows.values()))}
+    assert shown["pin: yield, von Mises"][1:5] == ("-", "-", "not known", "-")
+    none = {row.subject: row for row in static_margins(result.problem, {}, lambda places: [])}
+    assert none["bush: yield, von Mises"].remark == "not known: there is no state"
+    assert none["bush: opening, press fit needed"].remark == "not known: there is no state"
+
+
+def test_a_dimensionless_problem_has_no_margin_of_yield() -> None:
+    problem = Problem.from_load_parameter(MaterialPair(STEEL, ALUMINIUM), 0.5, 0.3)
+    with doubts_given():
+        result = solve(problem, [{"P": 1.0}], nodes=61)
+    assert of(result)["plate: yield, von Mises"].remark == "not known: the problem has no dimensions"
+
+
+def test_a_bush_that_opens_has_a_negative_margin() -> None:
+    rows = of(solved(LoadHistory([{"P": 9e6}]), lug=replace(LUG, interference=2e-6)))
+    assert rows["bush: opening, press fit needed"].margin < 0.0
+    assert rows["bush: rotation, friction needed"].margin == -1.0
+    assert rows["bush: rotation, friction needed"].remark == "the bush opens"
+
+
+def test_fatigue_is_of_the_last_cycle_and_says_so() -> None:
+    result = solved()
+    states = result.cycle().states
+    known = [fatigue(states, "smith-watson-topper", body) for body in ("plate", "seat")]
+    bore, seat = fatigue_margins(result.problem, known, states)
+    assert (bore.subject[:15], seat.subject[:15]) == ("last cycle only", "last cycle only")
+    assert "not known: no bending_limit and torsion_limit of the bush given" in bore.remark
+    findley = fatigue(states, "findley", "seat")
+    assert seat.subject.endswith("Findley")
+    assert seat.margin == pytest.approx(findley.limit / findley.hot_spot.parameter - 1.0)
+    for row in fatigue_margins(result.problem, "Fatigue needs a cycle: none has ended.", []):
+        assert row.remark == "not known: fatigue needs a cycle: none has ended"
+
+
+def test_the_summary_has_the_margins() -> None:
+    result = solved()
+    found = summary.document(Case(result.problem, result.history), result)["margins"]
+    rows = of(result)
+    assert [each["subject"] for each in found] == list(rows)
+    bush = next(each for each in found if each["subject"] == "bush: yield, von Mises")
+    assert (bush["allowable"], bush["unit"]) == (300e6, "Pa")
+    assert bush["margin"] == rows["bush: yield, von Mises"].margin
+    assert next(each for each in found if each["subject"] == "pin: yield, von Mises")["margin"] is None
