@@ -35,7 +35,7 @@ from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
-from fastpin.states.extremes import KeptStates, marked_extremes, marked_places, yield_extremes
+from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
 from fastpin.states.yield_doubts import yield_doubts, yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code
@@ -316,7 +316,7 @@ def _yield_doubts(case: Case, options: argparse.Namespace, result: solver.Result
     return yield_doubts(
         case.problem,
         case.history,
-        lambda: storage.stored_extremes(options.output, yield_extremes(case.problem)),
+        lambda: storage.stored_yield_extremes(options.output),
         lambda places: storage.load(options.output, list(places)).states,
     )
 

@@ -126,7 +126,7 @@ class Tree:
         filled = np.zeros((len(leaves), 2, cauchy.TERMS), dtype=complex)
         cauchy.moments(nodes, np.array(leaves), np.array(centres), *_gauss(), filled)
         all_moments = list(filled)
-        binomials = np.array([[float(math.comb(m, k)) for k in range(cauchy.TERMS)] for m in range(cauchy.TERMS)])
+        binomials = _binomials()
         level = list(range(len(leaves)))
         while len(level) > 1:
             level = [
@@ -143,6 +143,12 @@ def _gauss() -> tuple[np.ndarray, np.ndarray]:
     """Gauss points and weights on (0, 1)."""
     points, weights = np.polynomial.legendre.leggauss(GAUSS)
     return 0.5 * (points + 1.0), 0.5 * weights
+
+
+@cache
+def _binomials() -> np.ndarray:
+    """Binomial coefficients m over k of the moments, shape (TERMS, TERMS)."""
+    return np.array([[float(math.comb(m, k)) for k in range(cauchy.TERMS)] for m in range(cauchy.TERMS)])
 
 
 def _joined(

@@ -22,7 +22,7 @@ from fastpin.states.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point
 from fastpin.states.reading_bounds import NUMBERS, Block, Bounds
 from fastpin.states.state import State
-from fastpin.states.yielding import OWNERS, PREFIX, von_mises_peak, yielding_owners
+from fastpin.states.yielding import OWNERS, PREFIX, strength_of, von_mises_peak, yielding_owners
 
 Side = Literal["smallest", "largest", "largest magnitude"]
 """Which extreme of a quantity, as the ``take`` of an outcome."""
@@ -69,6 +69,10 @@ MARKS: dict[tuple[str, Side], str] = {
     **{(PREFIX + owner, "largest"): f"largest von Mises stress of the {owner}" for owner in OWNERS},
 }
 """The extremes that texts, tables and figures show, with their words."""
+
+
+FAR = 2.0
+"""Yield strength over stress, in the states of the largest tractions and loads, beyond which no state is near yield."""
 
 
 class Extreme(NamedTuple):
@@ -163,9 +167,30 @@ def marked_extremes(kept: Kept) -> Found:
     return find_extremes(kept, MARKS)
 
 
-def yield_extremes(problem: Problem) -> list[tuple[str, Side]]:
-    """Return the extremes that tell whether a body yields: quantities and sides."""
-    return [(PREFIX + owner, "largest") for owner in yielding_owners(problem)]
+def yield_extremes(kept: Kept) -> Found:
+    """Find the largest von Mises stress of each body that may yield.
+
+    Left out is a body without a known strength, and one that is far from it in the states of the largest tractions and
+    loads: then the stresses of all other states need not be computed.
+    """
+    owners = yielding_owners(kept.problem)
+    states = kept.read(_most_loaded(kept)) if owners else []
+    near = [owner for owner in owners if any(_is_near_yield(state, owner) for state in states)]
+    return find_extremes(kept, [(PREFIX + owner, "largest") for owner in near])
+
+
+def _most_loaded(kept: Kept) -> list[int]:
+    """Return the places of the states with the largest pressure, shear or size of a load."""
+    columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
+    sizes = np.concatenate(columns)
+    return sorted({int(np.argmax(column)) for column in sizes.T})
+
+
+def _is_near_yield(state: State, owner: str) -> bool:
+    """Whether the largest von Mises stress of a body is above 1/:data:`FAR` of its yield strength."""
+    peak = von_mises_peak(state, owner)
+    strength = strength_of(state.problem, peak.circle)
+    return strength is not None and FAR * peak.value > strength
 
 
 def find_extremes(kept: Kept, wanted: Iterable[tuple[str, Side]]) -> Found:

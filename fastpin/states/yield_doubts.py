@@ -8,7 +8,7 @@ from fastpin.errors import InputWarning
 from fastpin.model.doubts import are_given, are_loads_plausible, yield_doubt
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.states.extremes import Found, KeptStates, find_extremes, yield_extremes
+from fastpin.states.extremes import Found, KeptStates, yield_extremes
 from fastpin.states.state import State
 from fastpin.states.yielding import PREFIX, place_words, von_mises_peak, yielding_owners
 
@@ -52,4 +52,4 @@ def yield_doubts_of(problem: Problem, history: LoadHistory, states: Sequence[Sta
     if not states:
         return []
     kept = KeptStates(states)
-    return yield_doubts(problem, history, lambda: find_extremes(kept, yield_extremes(problem)), kept.read)
+    return yield_doubts(problem, history, lambda: yield_extremes(kept), kept.read)

@@ -6,13 +6,13 @@ A file names the states of its extremes. It may be anybody's: each value is read
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import h5py
 import numpy as np
 
 from fastpin.states import extremes
-from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept, Side
+from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
 from fastpin.states.reading_bounds import NUMBERS, Block
 from fastpin.states.state import State
 from fastpin.storage import hdf5
@@ -66,13 +66,10 @@ class StoredStates:
         return read_states(self._file, self.problem, self.grid, places, self._corners)
 
 
-def read_extremes(file: h5py.File, wanted: Iterable[tuple[str, Side]]) -> Found:
-    """Return some extremes of :data:`fastpin.states.extremes.MARKS` of all states of a file."""
-    kept, pairs = StoredStates(file), list(wanted)
-    stored = _stored(file, kept)
-    if stored is None:
-        return extremes.find_extremes(kept, pairs)
-    return {pair: stored[pair] for pair in pairs if pair in stored}
+def read_extremes(file: h5py.File, find: Callable[[Kept], Found] = extremes.marked_extremes) -> Found:
+    """Return the extremes of all states of a file: those that it names, or those that are found."""
+    kept = StoredStates(file)
+    return _stored(file, kept) or find(kept)
 
 
 def write_extremes(file: h5py.File, kept: Kept | None = None) -> None:

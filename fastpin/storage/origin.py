@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fastpin.model.checks import file_path
-from fastpin.states.extremes import MARKS, Found, Side
+from fastpin.states.extremes import Found, yield_extremes
 from fastpin.storage.damage import text_of
 from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
@@ -75,11 +74,12 @@ def marked_extremes(path: str | Path) -> Found:
     InputError
         See :func:`fastpin.load`.
     """
-    return stored_extremes(path, MARKS)
+    with open_result(file_path("path", path)) as file:
+        return read_extremes(file)
 
 
-def stored_extremes(path: str | Path, wanted: Iterable[tuple[str, Side]]) -> Found:
-    """Return some extremes of :data:`fastpin.states.extremes.MARKS` of all states of a file.
+def stored_yield_extremes(path: str | Path) -> Found:
+    """Return extremes of all states of a file, among them those of :func:`fastpin.states.extremes.yield_extremes`.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def stored_extremes(path: str | Path, wanted: Iterable[tuple[str, Side]]) -> Fou
         See :func:`fastpin.load`.
     """
     with open_result(file_path("path", path)) as file:
-        return read_extremes(file, wanted)
+        return read_extremes(file, yield_extremes)
 
 
 def _largest_pressures(file: Any) -> np.ndarray:

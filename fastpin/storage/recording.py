@@ -31,12 +31,11 @@ from fastpin.solver.errors import ArcError, ConvergenceError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
 from fastpin.solver.task import Task, as_history, check_options, check_start
-from fastpin.states.extremes import yield_extremes
 from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.layout import read_about, read_history, read_options, read_problem
-from fastpin.storage.origin import largest_pressure, stored_extremes
+from fastpin.storage.origin import largest_pressure, stored_yield_extremes
 from fastpin.storage.store import load, open_result
 from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
 
@@ -191,7 +190,7 @@ def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     return found + yield_doubts(
         task.problem,
         task.history,
-        lambda: stored_extremes(path, yield_extremes(task.problem)),
+        lambda: stored_yield_extremes(path),
         lambda places: load(path, list(places)).states,
     )
 

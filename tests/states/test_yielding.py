@@ -12,6 +12,7 @@ from fastpin import LoadHistory, Material, MaterialPair, Points, Problem, solve
 from fastpin.errors import InputWarning
 from fastpin.model import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.model.doubts import EDGES, doubts, doubts_given
+from fastpin.states import extremes
 from fastpin.states.yield_doubts import yield_doubts_of
 from fastpin.states.yielding import circles, von_mises_peak
 
@@ -158,3 +159,15 @@ def test_every_edge_has_words():
     tube = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3, pin_body=Tube(5e-3), plate_body=BUSH)
     plain = Problem(MaterialPair(STEEL, ALUMINIUM), R, 20e-6, 0.3)
     assert {circle.edge for problem in (tube, plain) for circle in circles(problem)} == set(EDGES)
+
+
+def test_states_far_from_yield_are_not_searched(monkeypatch):
+    """The largest stresses of all states are found only if a body comes near its yield strength."""
+    asked = []
+    monkeypatch.setattr(extremes, "find_extremes", lambda kept, wanted: asked.append(wanted) or {})
+    loads = [{"P": 4e5}, {"P": 8e5, "Q": 1e5}, {"P": 1e5}]
+    for plate, near in ((503e6, []), (100e6, [("von_mises_plate", "largest")])):
+        pair = MaterialPair(STEEL, replace(ALUMINIUM, yield_strength=plate))
+        states = solve(Problem(pair, R, 40e-6, 0.15), loads, nodes=61).states
+        extremes.yield_extremes(extremes.KeptStates(states))
+        assert asked.pop() == near
