@@ -11,7 +11,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
-from scipy.interpolate import PchipInterpolator
 
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Sheet
@@ -22,6 +21,7 @@ from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.checks import as_toml
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice, chosen_places, even_choice
+from fastpin.states.curves import traction_patches
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
@@ -38,9 +38,6 @@ MOST_TICKS = 12
 
 NEARLY_ROUND = 340.0
 """Length of an axis, degrees, from which on it goes all round: with further whole steps it would be more than that."""
-
-FINEST = 0.5
-"""Largest distance of the points of a drawn curve, degrees."""
 
 SAME = 1e-3
 """Difference of two states, in parts of the largest tractions, below which one line shows both: it is 0.1 points."""
@@ -284,13 +281,11 @@ class Frame:
     def curves(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return angle, pressure and shear of a drawn state; NaN between its contact zones.
 
-        They follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. Their
-        points gather there. Between the nodes elsewhere they are smooth.
+        They are the curves of :mod:`fastpin.states.curves`.
         """
         parts = [np.zeros((0, 3))]
         gap = np.full((1, 3), np.nan)
-        for patch in state.refined.tractions.patches:
-            points = _smoothed(np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]]))
+        for points in traction_patches(state):
             if points[-1, 0] - points[0, 0] > 360.0 - 1e-6:
                 points = self._rolled(points)
             else:
@@ -298,10 +293,7 @@ class Frame:
                 points[:, 0] += 360.0 * round((0.5 * sum(self.limits) - middle) / 360.0)
             parts += [points, gap]
         angle, pressure, shear = np.concatenate(parts[:-1] if len(parts) > 1 else parts).T
-        pressure = without_rounding(pressure)
-        most = state.problem.friction * pressure  # fits and cubics may pass the bound by some 0.5 % of the peak
-        shear = np.clip(shear, -most, most)
-        return angle, pressure, without_rounding(shear, float(np.nanmax(pressure, initial=0.0)))
+        return angle, without_rounding(pressure), without_rounding(shear, float(np.nanmax(pressure, initial=0.0)))
 
     def _rolled(self, points: np.ndarray) -> np.ndarray:
         """A curve all round that begins and ends where the axis does."""
@@ -324,18 +316,6 @@ class Frame:
                 parts.append((left, right - left))
             first += 360.0
         return parts
-
-
-def _smoothed(points: np.ndarray) -> np.ndarray:
-    """A curve with more points where its own are far apart: on monotone cubics, which keep its corners and peaks."""
-    steps = np.diff(points[:, 0])
-    wide = np.flatnonzero(steps > FINEST)
-    if len(points) < 3 or not wide.size:
-        return points
-    shares = [np.arange(1, math.ceil(steps[k] / FINEST)) / math.ceil(steps[k] / FINEST) for k in wide]
-    between = np.concatenate([points[k, 0] + steps[k] * share for k, share in zip(wide, shares, strict=True)])
-    every = np.unique(np.r_[points[:, 0], between])
-    return np.column_stack([every, PchipInterpolator(points[:, 0], points[:, 1:])(every)])
 
 
 def _middle_of_longest_gap(touched: np.ndarray) -> int:

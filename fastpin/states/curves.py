@@ -1,0 +1,88 @@
+"""Curves of the tractions of a state, for figures and the live page.
+
+They follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. Their points
+gather there. Between the nodes elsewhere they are smooth.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from fastpin.states.state import State
+
+FINEST = 0.5
+"""Largest distance of the points of a curve, degrees."""
+
+THINNINGS = 4
+"""Passes that thin a curve out. Each one drops at most every other point."""
+
+
+def traction_patches(state: State) -> list[np.ndarray]:
+    """The curve of each contact zone, shape (k, 3): degrees from the bottom, pressure and shear traction.
+
+    The angles increase, and may lie some whole turns from the bottom. The tractions are in Pa or F/R. A curve all round
+    ends where it begins, a whole turn further.
+    """
+    patches = []
+    for patch in state.refined.tractions.patches:
+        points = _smoothed(np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]]))
+        most = state.problem.friction * points[:, 1]  # fits and cubics may pass the bound by some 0.5 % of the peak
+        points[:, 2] = np.clip(points[:, 2], -most, most)
+        patches.append(points)
+    return patches
+
+
+def _smoothed(points: np.ndarray) -> np.ndarray:
+    """A curve with more points where its own are far apart: on monotone cubics, which keep its corners and peaks."""
+    steps = np.diff(points[:, 0])
+    wide = np.flatnonzero(steps > FINEST)
+    if len(points) < 3 or not wide.size:
+        return points
+    shares = [np.arange(1, math.ceil(steps[k] / FINEST)) / math.ceil(steps[k] / FINEST) for k in wide]
+    between = np.concatenate([points[k, 0] + steps[k] * share for k, share in zip(wide, shares, strict=True)])
+    every = np.unique(np.r_[points[:, 0], between])
+    return np.column_stack([every, PchipInterpolator(points[:, 0], points[:, 1:])(every)])
+
+
+def thinned(points: np.ndarray, error: float) -> np.ndarray:
+    """A curve, shape (k, 3), with fewer points. Straight lines between them are wrong by at most `error` a pass."""
+    for _ in range(THINNINGS):
+        if len(points) < 3:
+            break
+        before, middle, after = points[:-2:2], points[1:-1:2], points[2::2]
+        share = (middle[:, :1] - before[:, :1]) / (after[:, :1] - before[:, :1])
+        needed = np.any(np.abs(before + share * (after - before) - middle)[:, 1:] > error, axis=1)
+        keep = np.ones(len(points), dtype=bool)
+        keep[1:-1:2] = needed
+        points = points[keep]
+    return points
+
+
+def one_turn(patches: list[np.ndarray]) -> np.ndarray:
+    """The curves on one turn as a single array, shape (k, 3). Between two curves is a row of NaN.
+
+    The angles increase from -180 to 180 degrees from the bottom. A curve across the top has a part at either end.
+    """
+    parts = []
+    for points in patches:
+        first = math.floor((points[0, 0] + 180.0) / 360.0)
+        last = math.ceil((points[-1, 0] + 180.0) / 360.0)
+        parts += [_part(points - [360.0 * turn, 0.0, 0.0]) for turn in range(first, last)]
+    parts = sorted((part for part in parts if len(part) > 1), key=lambda part: part[0, 0])
+    joined: list[np.ndarray] = []
+    for part in parts:
+        if joined and part[0, 0] > joined[-1][-1, 0]:
+            joined.append(np.full((1, 3), np.nan))
+        joined.append(part)
+    return np.concatenate(joined) if joined else np.zeros((0, 3))
+
+
+def _part(points: np.ndarray) -> np.ndarray:
+    """The part of a curve from -180 to 180 degrees."""
+    low, high = max(points[0, 0], -180.0), min(points[-1, 0], 180.0)
+    inside = points[(points[:, 0] > low) & (points[:, 0] < high)]
+    ends = [np.interp([low, high], points[:, 0], column) for column in points.T]
+    return np.insert(np.column_stack(ends), 1, inside, axis=0)
