@@ -5,14 +5,13 @@ from __future__ import annotations
 import argparse
 import sys
 import webbrowser
-from collections.abc import Callable
 
 from fastpin import casefile, live
 from fastpin.cli.options import literal
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, fail, say
 from fastpin.errors import InputError
-from fastpin.live.contact import NODES, LiveContact
-from fastpin.live.protocol import MOST_LIVE_NODES
+from fastpin.live.contact import NODES, NODES_OF_CLASS, LiveContact
+from fastpin.live.protocol import ALONE, CLASS
 from fastpin.model.checks import whole_number
 from fastpin.model.doubts import doubts_given
 from fastpin.model.grid import LEAST_NODES
@@ -20,36 +19,48 @@ from fastpin.model.grid import LEAST_NODES
 MOST_PORT = 65_535
 """Largest port."""
 
+PACKAGES = "aiohttp", "segno"
+"""What the extra "live" installs."""
+
+SHARED = """\
+whoever reaches {host} over the network and has this whole address can open the page: up to {most} visitors
+nothing is encrypted: use a network that you trust, and give the address to your class only
+"Share" on the page shows the address as a QR code"""
+
 
 def run(options: argparse.Namespace) -> int:
     """Serve the page of a case, and open it in the browser."""
     case = casefile.builtin_case() if options.case is None else casefile.read_case(options.case)
-    given = NODES if options.nodes is None else literal(options.nodes)
-    nodes = whole_number("--nodes", given, LEAST_NODES, MOST_LIVE_NODES)
+    usual, limits = (NODES, ALONE) if options.host is None else (NODES_OF_CLASS, CLASS)
+    given = usual if options.nodes is None else literal(options.nodes)
+    nodes = whole_number("--nodes", given, LEAST_NODES, limits.nodes)
     port = whole_number("--port", literal(options.port), 0, MOST_PORT)
-    serve = server()
-    if serve is None:
-        return fail("the live page needs the package aiohttp: pip install 'fastpin[live]'", EXIT_FAILED)
+    try:
+        serve, host = live.serve, "" if options.host is None else live.address_of_machine(options.host)
+    except ImportError as error:
+        if error.name not in PACKAGES:
+            raise
+        return fail(f"the live page needs the package {error.name}: pip install 'fastpin[live]'", EXIT_FAILED)
+    except InputError as error:
+        raise _option(error) from None
 
     def ready(address: str) -> None:
-        say(f"live page: {address}", "Ctrl-C ends it")
+        say(f"live page: {address}")
+        if host:
+            say(*SHARED.format(host=host, most=limits.sessions).splitlines())
+        say("Ctrl-C ends it")
         sys.stdout.flush()
         if options.browser and not webbrowser.open(address):
             say("note: no browser was found; open the address above in one", file=sys.stderr)
 
     try:
         with doubts_given():  # the page shows them, for each problem that is tried
-            serve(lambda: LiveContact(case, nodes), port, ready)
+            serve(lambda: LiveContact(case, nodes, limits), port, ready, host, limits)
     except InputError as error:
-        raise InputError(f"--{error.field}" if error.field == "port" else error.field, error.reason) from None
+        raise _option(error) from None
     return EXIT_OK
 
 
-def server() -> Callable[[Callable[[], LiveContact], int, Callable[[str], None]], None] | None:
-    """The function that serves the page; None if its package is not installed."""
-    try:
-        return live.serve
-    except ImportError as error:
-        if error.name == "aiohttp":
-            return None
-        raise
+def _option(error: InputError) -> InputError:
+    """Return the error with the name of an option as its field."""
+    return InputError(f"--{error.field}" if error.field in ("host", "port") else error.field, error.reason)

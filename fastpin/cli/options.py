@@ -286,7 +286,13 @@ def add_live(commands: Any) -> None:
     """Add ``live``."""
     live = _command(commands, "live", "live", "run", "open a page in the browser: drag the load with the mouse")
     live.add_argument("case", type=Path, nargs="?", help="case file (TOML); without one: the built-in case")
-    live.add_argument("--nodes", metavar="N", help="number of nodes round the hole, 5 to 1601 (default 201)")
+    live.add_argument("--nodes", metavar="N", help="number of nodes round the hole, 5 to 1600 (default 200)")
+    live.add_argument(
+        "--host",
+        metavar="ADDRESS",
+        help="share the page with a class at this address of the machine, such as 192.168.1.20; "
+        "everyone who reaches it and has the page's address can use the page (5 to 400 nodes, default 100)",
+    )
     live.add_argument("--port", metavar="N", default="0", help="port of the page (default: a free one)")
     live.add_argument(
         "--no-browser", dest="browser", action="store_false", help="print the address, and open no browser"

@@ -9,7 +9,7 @@ import gc
 import math
 import threading
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from fastpin.errors import FastpinError, InputError
 from fastpin.kernels.status import OPEN
 from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
-from fastpin.live.protocol import MOST_LIVE_NODES, MOST_PICTURES, MOST_UNDONE, MOST_UNDONE_NODES, Message, refusal
+from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
 from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
 from fastpin.model.compliance import Compliance
@@ -29,14 +29,21 @@ from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
-from fastpin.model.units import units
+from fastpin.model.units import FIXED_PREFIXES, units
 from fastpin.solver.errors import ConvergenceError, SolveError
 from fastpin.solver.session import ALL_ROUND, Session
 from fastpin.states.state import State
 from fastpin.version import __version__
 
-NODES = 201
-"""Nodes round the hole, by default. Peak pressures of the built-in case are then good to 1e-4, peak shears to 1e-3."""
+NODES = 200
+"""Nodes round the hole, by default. Peak pressures of the built-in case are then good to 1e-4, peak shears to 1e-3.
+
+A multiple of four puts a node at the bottom, at the top and at either side. So a load in these directions has a
+symmetric contact. Between two nodes, one of them would be the first to close, and would turn the pin a little.
+"""
+
+NODES_OF_CLASS = 100
+"""Nodes round the hole in a class: half the work."""
 
 LEAST_CLOSED = 20
 """Nodes in contact under the first load. Of fewer, curves are coarse, and the peak of the shear may be anywhere."""
@@ -45,7 +52,8 @@ MOST_PLAYED = 500
 """Corners of the case's history that the page can play."""
 
 MOST_LEFT = 4
-"""Sessions left behind before the garbage is collected. Each is in a cycle of references, with 32 MB of tables."""
+"""Sessions left behind by all contacts before the garbage is collected. Each is in a cycle of references, with 32 MB of
+tables."""
 
 NO_GESTURE = -1
 """The gesture of what stands alone. Those of a page are not negative."""
@@ -82,6 +90,7 @@ class LiveContact:
     case : Case
     nodes : int
         Nodes round the hole.
+    limits : Limits
 
     Attributes
     ----------
@@ -91,8 +100,10 @@ class LiveContact:
         Why the first corner of the case was not carried; "" if it was.
     """
 
-    def __init__(self, case: Case, nodes: int = NODES) -> None:
-        self._case, self._nodes = case, nodes
+    _left = 0  # sessions left behind by all contacts
+
+    def __init__(self, case: Case, nodes: int = NODES, limits: Limits = ALONE) -> None:
+        self._case, self._nodes, self._limits = case, nodes, limits
         self._scales = Scales(case.problem, case.history)
         self._past: deque[Mark] = deque(maxlen=MOST_UNDONE)
         self._future: list[Mark] = []
@@ -100,7 +111,7 @@ class LiveContact:
         self._trail: list[int] = []
         self._shown: list[int] = []
         self._grids: dict[str, tuple[Grid, str]] = {}
-        self._serial, self._gesture, self._left = 0, NO_GESTURE, 0
+        self._serial, self._gesture = 0, NO_GESTURE
         self._reference: Answer | None = None
         self._known: dict[str, Any] = {}
         self._stop = threading.Event()
@@ -117,13 +128,28 @@ class LiveContact:
 
     def obey(self, message: Message) -> list[Answer]:
         """Carry out a message, and return the answers. Errors become answers; the contact is then where it was."""
+        work = self.steps(message)
+        try:
+            while True:
+                next(work)
+        except StopIteration as done:
+            return list(done.value)
+
+    def steps(self, message: Message) -> Generator[None, None, list[Answer]]:
+        """Carry out a message as :meth:`obey` does, with a pause after each step of a long history.
+
+        Until the generator has ended, nothing else may be asked of the contact. If it is closed before its end, the
+        contact is where it was.
+        """
         before = self._mark()
         self._stop.clear()
         try:
             if message.kind == "hello":
                 self._known, self._shown = {}, []
             else:
-                getattr(self, f"_obey_{message.kind}")(**message.fields)
+                work = getattr(self, f"_obey_{message.kind}")(**message.fields)
+                if work is not None:
+                    yield from work
         except InputError as error:
             self._return_to(before)
             return [refusal(message.id, error)]
@@ -140,9 +166,9 @@ class LiveContact:
 
     def _collect(self, before: Session) -> None:
         """Count the sessions that are left, and collect them now and then. Python itself would wait for long."""
-        self._left += before is not self.session
-        if self._left >= MOST_LEFT:
-            self._left = 0
+        LiveContact._left += before is not self.session
+        if LiveContact._left >= MOST_LEFT:
+            LiveContact._left = 0
             gc.collect()
 
     def stop(self) -> None:
@@ -158,17 +184,19 @@ class LiveContact:
         if mark is not None:
             self._remember(mark, gesture)
 
-    def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> None:
+    def _obey_change(self, changes: dict[str, Any], follow: str, gesture: int) -> Iterator[None]:
         fields = changed_fields(self.session.problem, changes)
         session = self.session.copy()
         session.change(replay="none", **fields)
         if session.grid is not None and follow == "load" and session.grid.size != self._nodes:
             session = self._new_session(session.problem)  # the nodes may have been too many for the new problem
-        self._lead(session, follow, gesture)
+        return self._lead(session, follow, gesture)
 
-    def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> None:
+    def _obey_nodes(self, nodes: int, follow: str, gesture: int) -> Iterator[None]:
+        if nodes > self._limits.nodes:
+            raise InputError("nodes", f"must be at most {self._limits.nodes} on this page, not {nodes}")
         mark, self._nodes = self._lasting_mark(), nodes
-        self._lead(self._new_session(self.session.problem), follow, gesture, mark)
+        return self._lead(self._new_session(self.session.problem), follow, gesture, mark)
 
     def _obey_undo(self) -> None:
         if not self._past:
@@ -208,8 +236,11 @@ class LiveContact:
         present = history.values()[-1]
         return [_named(np.where(np.all(np.isnan(given), axis=0), np.nan, present))]
 
-    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> None:
-        """Lead a new session from no load, and make it the present one. `mark` is the place before."""
+    def _lead(self, session: Session, follow: str, gesture: int, mark: Mark | None = None) -> Iterator[None]:
+        """Lead a new session from no load, and make it the present one. `mark` is the place before.
+
+        There is a pause after each load.
+        """
         mark, rows = mark or self._lasting_mark(), self._rows(follow)
         self.session, self._trail = session, []
         allowed = {control["name"] for control in load_controls(session.problem, self._scales)}
@@ -222,6 +253,7 @@ class LiveContact:
                 self._begin(loads, gesture)
             else:
                 self._step(self.session, loads, gesture)
+                yield
         if left_out:
             self.sentence = f"The changed problem takes no {' and no '.join(left_out)}: left out"
         self._remember(mark, gesture)
@@ -233,7 +265,7 @@ class LiveContact:
     def _begin(self, loads: dict[str, float], gesture: int) -> None:
         """Follow the first load, with more nodes if the contact is narrow.
 
-        If it is too narrow for :data:`MOST_LIVE_NODES` nodes all round, the solver chooses the nodes.
+        If it is too narrow for the most nodes all round, the solver chooses the nodes.
         """
         session, nodes = self.session, self._nodes
         while True:
@@ -242,11 +274,11 @@ class LiveContact:
                 closed = np.count_nonzero(state.status != OPEN) or nodes
             except ConvergenceError:
                 closed = 1
-            if closed >= LEAST_CLOSED or nodes == MOST_LIVE_NODES:
+            if closed >= LEAST_CLOSED or nodes >= self._limits.nodes:
                 break
-            nodes = min(math.ceil(nodes * max(2.0, LEAST_CLOSED / closed)), MOST_LIVE_NODES)
+            nodes = min(4 * math.ceil(0.25 * nodes * max(2.0, LEAST_CLOSED / closed)), self._limits.nodes)
             session = Session(session.problem, nodes, arc=ALL_ROUND, undo=0)
-        if closed == 1:
+        if closed < LEAST_CLOSED:
             session = Session(session.problem, self._nodes, undo=0)
             state = session.advance(loads)
         self.session = session
@@ -259,7 +291,7 @@ class LiveContact:
             shown, self._serial, gesture, self._grid_name(state.grid), self._case.history
         )
         self._trail.append(self._serial)
-        if len(self._pictures) > MOST_PICTURES:
+        if len(self._pictures) > self._limits.pictures:
             oldest = next(iter(self._pictures))
             del self._pictures[oldest]
             if self._trail[0] == oldest:
@@ -277,7 +309,7 @@ class LiveContact:
         """Make the place before a gesture one to go back to. What was undone before is forgotten."""
         if gesture != self._gesture or gesture == NO_GESTURE:
             self._past.append(mark)
-            while sum(past.size for past in self._past) > MOST_UNDONE_NODES:
+            while sum(past.size for past in self._past) > self._limits.undone_nodes:
                 self._past.popleft()
         self._future.clear()
         self._gesture = gesture
@@ -337,6 +369,7 @@ class LiveContact:
         """The problem, its controls and its loads."""
         return case_document(self._case.title, self.session.problem, self._scales) | {
             "nodes": self._nodes,
+            "most_nodes": self._limits.nodes,
             "history": [_named(row) for row in self._case.history.values(np.full(len(LOADS), np.nan))[:MOST_PLAYED]],
         }
 
@@ -392,6 +425,7 @@ def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
+        "prefixes": {} if problem.dimensionless else FIXED_PREFIXES,
         "dimensionless": problem.dimensionless,
         "friction": problem.friction,
         "radius": problem.hole_radius,

@@ -11,8 +11,11 @@ import numpy as np
 from fastpin.model.angles import BOTTOM, degrees_from_bottom, from_bottom, interval_from_bottom
 from fastpin.model.doubts import pressure_doubts
 from fastpin.model.history import LoadHistory
+from fastpin.report.case import ROUNDING
 from fastpin.report.summary import json_ready
+from fastpin.states.curves import one_turn, thinned, traction_patches
 from fastpin.states.load_cycle import LoadCycle
+from fastpin.states.quantities import sizes
 from fastpin.states.state import State
 
 EVERY = 2.0
@@ -20,6 +23,12 @@ EVERY = 2.0
 
 BESIDE = (-0.4, -0.1, -0.02, 0.0, 0.02, 0.1, 0.4)
 """Further points, in degrees from each border of contact and stick. The hoop stress has its sharp peaks there."""
+
+LEAST_IN_CONTACT = 41
+"""Points in a contact at least: a narrow one is shown as large as a wide one."""
+
+CURVE_ERROR = 2e-4
+"""Error of the straight lines in a curve of tractions, in parts of the peak pressure: a tenth of a pixel."""
 
 
 def packed(values: np.ndarray, kind: str = "<f4") -> str:
@@ -32,7 +41,13 @@ def hoop_degrees(state: State) -> np.ndarray:
     borders = [degrees_from_bottom(angle) for ends in (*state.contact, *state.stick) for angle in ends]
     beside = np.add.outer(borders, BESIDE).ravel()
     regular = np.linspace(-180.0, 180.0, round(360.0 / EVERY) + 1)
-    return np.unique(np.concatenate([regular, np.remainder(beside + 180.0, 360.0) - 180.0]).astype(np.float32))
+    inside = [np.degrees(np.linspace(*ends, LEAST_IN_CONTACT)) + 90.0 for ends in state.contact if _is_narrow(*ends)]
+    further = np.remainder(np.concatenate([beside, *inside]) + 180.0, 360.0) - 180.0
+    return np.unique(np.concatenate([regular, further]).astype(np.float32))
+
+
+def _is_narrow(start: float, stop: float) -> bool:
+    return math.degrees(stop - start) < EVERY * LEAST_IN_CONTACT
 
 
 def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHistory) -> dict[str, Any]:
@@ -55,7 +70,9 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
     dict
         Numbers in SI units, or in the units of a dimensionless problem. Angles are in degrees from the bottom of the
         hole. The entry "doubt" is a warning of a pressure above the yield strength, or "". The entry "loops" has a pair
-        for each load: the load, and the displacement on which it does work.
+        for each load: the load, and the displacement on which it does work. The entry "rounding" has a value for each
+        kind of quantity: smaller ones are shown as 0, as in tables. The entry "curves" has the tractions as figures
+        draw them, with NaN between two contact zones; "pressure" and "shear" are those of the nodes.
     """
     rigid = state.problem.surfaces.plate.is_rigid
     return {
@@ -63,11 +80,13 @@ def picture(state: State, serial: int, gesture: int, grid: str, history: LoadHis
         "gesture": gesture,
         "grid": grid,
         **json_ready(_numbers(state)),
+        "rounding": {kind: ROUNDING * size for kind, size in sizes(state).items()},
         "doubt": "; ".join(map(str, pressure_doubts(state.problem, history, [state.pressure]))),
         "pressure": packed(state.pressure),
         "shear": packed(state.shear),
         "gap": packed(state.gap),
         "status": packed(state.status, "i1"),
+        "curves": _curves(state),
         "hoop": None if rigid else _hoop(state),
     }
 
@@ -91,6 +110,12 @@ def _numbers(state: State) -> dict[str, Any]:
         "residual": max(state.residuals.values()),
         "loops": {name: (float(loop.load[0]), float(loop.displacement[0])) for name, loop in loops.items()},
     }
+
+
+def _curves(state: State) -> dict[str, str]:
+    error = CURVE_ERROR * state.peak_pressure
+    columns = one_turn([thinned(points, error) for points in traction_patches(state)]).T
+    return {name: packed(column) for name, column in zip(("degrees", "pressure", "shear"), columns, strict=True)}
 
 
 def _hoop(state: State) -> dict[str, str]:

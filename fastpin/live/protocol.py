@@ -21,7 +21,8 @@ stop       End a long history that is being followed. It has no answer: the mess
 The server answers each message with one of these:
 
 =========  ==========================================================================================================
-welcome    To hello. ``session``: the name of the session; ``version`` of fastpin.
+welcome    To hello. ``session``: the name of the session; ``version`` of fastpin; ``shared``: the address of the page
+           if others may open it, or "".
 pictures   The history of the page changes: ``drop`` pictures at its beginning go, the next ``keep`` stay, those behind
            them go, and the pictures ``add`` are appended. ``grids``: angles of the nodes by the name of a grid.
            ``undos``, ``redos``: gestures that can be undone and redone. ``case``: the problem and its controls, if they
@@ -33,7 +34,8 @@ skipped    A load of a drag that was passed over because a later one came.
 =========  ==========================================================================================================
 
 Values are per thickness in SI units, as in Python. A unit of the page is an object with ``name`` and ``factor``: a
-value times the factor is in this unit, in N with a thickness. Controls and ``units`` of a case name their units so.
+value times the factor is in this unit, in N with a thickness. Controls and ``units`` of a case name their units so. Its
+``prefixes`` are the choices of prefixes that do not depend on the size of a value.
 
 Arrays are little-endian float32 (the status: int8) in base64. Numbers outside arrays have all their digits. NaN is
 null. A message that is no such message is answered by "refused".
@@ -62,22 +64,48 @@ MOST_CONNECTIONS = 16
 """Most open connections. Each page has one."""
 
 MOST_SESSIONS = 8
-"""Most sessions, each of them a contact with its history: some 20 MB with 201 nodes."""
+"""Most sessions, each of them a contact with its history: some 20 MB with 200 nodes."""
 
 MOST_PICTURES = 2_000
-"""Pictures of a history that are remembered: a minute of dragging, up to 12 MB with 201 nodes."""
+"""Pictures of a history that are remembered: a minute of dragging, up to 20 MB with 200 nodes."""
 
 MOST_UNDONE = 200
 """Gestures that can be undone."""
 
 MOST_UNDONE_NODES = 20_000
-"""Nodes of all states for undo together: 99 gestures with 201 nodes, 12 with 1,601. A state takes 4 kB a node."""
+"""Nodes of all states for undo together: 100 gestures with 200 nodes, 12 with 1,600. A state takes 4 kB a node."""
 
-MOST_LIVE_NODES = 1_601
+MOST_LIVE_NODES = 1_600
 """Most nodes of a live contact. A step then takes half a second."""
 
 MOST_NUMBER = 2**53
 """Largest whole number that a page can send: beyond, JavaScript's numbers have gaps."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The limits of a server and of its contacts.
+
+    Attributes
+    ----------
+    connections, sessions : int
+        Open connections of all pages; contacts.
+    pictures, undone_nodes, nodes : int
+        Of each contact: remembered pictures, nodes of all states for undo, nodes round the hole.
+    """
+
+    connections: int = MOST_CONNECTIONS
+    sessions: int = MOST_SESSIONS
+    pictures: int = MOST_PICTURES
+    undone_nodes: int = MOST_UNDONE_NODES
+    nodes: int = MOST_LIVE_NODES
+
+
+ALONE = Limits()
+"""The limits of a page for this machine."""
+
+CLASS = Limits(connections=80, sessions=40, pictures=500, undone_nodes=2_000, nodes=400)
+"""The limits of a page for a class: 40 visitors. A step of one of them keeps the others waiting for 30 ms at most."""
 
 FOLLOW = ("load", "history")
 """What follows a change of the problem: one straight step to the present load, or all loads again."""

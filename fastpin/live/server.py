@@ -1,46 +1,61 @@
-"""The server of the live page, on this machine only.
+"""The server of the live page: on this machine only, or for a class at an address of this machine.
 
 The page and its websocket stand under a random token. Host and Origin are checked, so no other page of the browser can
 reach the server. docs/live.md lists the limits; their numbers stand in :mod:`fastpin.live.protocol`.
 
-Contacts are computed in one thread, one after the other. The loop of the server stays free meanwhile.
+Contacts are computed in one thread, one after the other. The loop of the server stays free meanwhile. Each contact has
+one piece of work in the queue of this thread at most, and a piece ends after :data:`TURN`. So pages take turns.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import functools
 import hmac
+import io
+import ipaddress
 import json
 import logging
 import secrets
 import socket
 import time
 from collections import deque
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+import segno
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from fastpin.errors import FastpinError, InputError
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import live_page, page_files, recorded_page
 from fastpin.live.protocol import (
+    ALONE,
     MOST_A_SECOND,
     MOST_BYTES,
-    MOST_CONNECTIONS,
-    MOST_SESSIONS,
     MOST_WAITING,
+    Limits,
     Message,
     read_message,
     refusal,
 )
+from fastpin.model.checks import as_toml
 from fastpin.version import __version__
 
 ADDRESS = "127.0.0.1"
-"""The only address on which the server listens: that of this machine, for this machine."""
+"""The address on which the server listens unless another one is given: that of this machine, for this machine."""
+
+PLAIN_PORT = 80
+"""The port that browsers leave out of the Host."""
+
+ELSEWHERE = "192.0.2.1", 9
+"""An address that belongs to nobody, for a question to the routing table. Nothing is sent there."""
+
+TURN = 0.05
+"""Seconds after which a long history lets the work of other pages pass."""
 
 TOKEN_BYTES = 16
 """Random bytes of the token: 128 bits can't be guessed."""
@@ -137,10 +152,15 @@ class RateLimit:
 
 
 class Sessions:
-    """The contacts of all pages by name. A page that comes back finds its contact again."""
+    """The contacts of all pages by name. A page that comes back finds its contact again.
 
-    def __init__(self) -> None:
+    There are `most` of them.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most = most
         self._contacts: dict[str, LiveContact] = {}
+        self._turns: dict[str, asyncio.Lock] = {}
         self._open: set[str] = set()
 
     def find(self, name: str) -> str | None:
@@ -159,20 +179,22 @@ class Sessions:
         InputError
             If all contacts have pages.
         """
-        if len(self._contacts) >= MOST_SESSIONS:
+        if len(self._contacts) >= self._most:
             idle = next((name for name in self._contacts if name not in self._open), None)
             if idle is None:
-                raise InputError(
-                    "session", f"{MOST_SESSIONS} pages are open, no more are served; close one, and reload"
-                )
-            del self._contacts[idle]
+                raise InputError("session", f"{self._most} pages are open, no more are served; close one, and reload")
+            del self._contacts[idle], self._turns[idle]
 
     def add(self, contact: LiveContact) -> str:
         """Add the contact of a new page, and return its name."""
         name = secrets.token_urlsafe(TOKEN_BYTES)
-        self._contacts[name] = contact
+        self._contacts[name], self._turns[name] = contact, asyncio.Lock()
         self._open.add(name)
         return name
+
+    def turn(self, name: str) -> asyncio.Lock:
+        """The lock of a contact: who holds it may ask the contact for something."""
+        return self._turns[name]
 
     def release(self, name: str) -> None:
         """Note that a page has gone. Its contact stays."""
@@ -191,7 +213,16 @@ class Sessions:
 
 
 class Server:
-    """The server of the page. ``make`` makes the contact of a new page.
+    """The server of the page.
+
+    Parameters
+    ----------
+    make : callable
+        ``make()`` returns the contact of a new page.
+    host : str
+        The address of this machine on which the server listens. At another one than :data:`ADDRESS` it shares the page:
+        others may open it, and the page shows its address as a QR code.
+    limits : Limits
 
     Attributes
     ----------
@@ -201,11 +232,12 @@ class Server:
         The address of the page; "" before :meth:`running`.
     """
 
-    def __init__(self, make: Callable[[], LiveContact]) -> None:
+    def __init__(self, make: Callable[[], LiveContact], host: str = "", limits: Limits = ALONE) -> None:
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.address = ""
         self._hosts: tuple[str, ...] = ()
-        self._make, self._sessions = make, Sessions()
+        self._make, self._sessions = make, Sessions(limits.sessions)
+        self._host, self._shared, self._limits = host or ADDRESS, bool(host), limits
         self._greeting = asyncio.Lock()
         self._files = page_files()
         self._page, self._map = live_page()
@@ -220,20 +252,24 @@ class Server:
         Raises
         ------
         InputError
-            If the port can't be used.
+            If the address or the port can't be used.
         """
         application = web.Application(client_max_size=MOST_BYTES, middlewares=[self._guard])
         application.router.add_get("/{token}/", self._send_page)
         application.router.add_get("/{token}/socket", self._talk)
+        application.router.add_get("/{token}/code.svg", self._send_code)
         application.router.add_get("/{token}/save/{session}/{file}", self._save)
         application.router.add_get("/{token}/{file:.*}", self._send_file)
         runner = web.AppRunner(application, access_log=None, logger=requests_log, shutdown_timeout=LAST_WAIT)
-        listening = bound_socket(port)
+        listening = bound_socket(self._host, port, self._limits.connections)
         try:
             await runner.setup()
-            host = f"{ADDRESS}:{listening.getsockname()[1]}"
-            self._hosts = host, host.replace(ADDRESS, "localhost")
-            self.address = f"http://{host}/{self.token}/"
+            port = listening.getsockname()[1]
+            names = [f"[{self._host}]" if ":" in self._host else self._host]
+            if self._host == ADDRESS:
+                names.append("localhost")
+            self._hosts = tuple(name if port == PLAIN_PORT else f"{name}:{port}" for name in names)
+            self.address = f"http://{self._hosts[0]}/{self.token}/"
             await web.SockSite(runner, listening).start()
             yield self
         finally:
@@ -280,6 +316,14 @@ class Server:
             return _refused(404, "There is no such file.")
         return web.Response(body=found[0], content_type=found[1], charset="utf-8")
 
+    async def _send_code(self, request: web.Request) -> web.Response:
+        """Send the QR code of the page's address."""
+        if not self._shared:
+            return _refused(404, "There is no such file.")
+        drawing = io.BytesIO()
+        segno.make(self.address, micro=False).save(drawing, kind="svg", light="white", xmldecl=False)
+        return web.Response(body=drawing.getvalue(), content_type="image/svg+xml")
+
     async def _save(self, request: web.Request) -> web.Response:
         """Send the history of a page as a case file, or as a recording."""
         name, file = request.match_info["session"], request.match_info["file"]
@@ -291,7 +335,8 @@ class Server:
             return contact.case_text() if file == "case.toml" else recorded_page(contact.recording())
 
         try:
-            body = await self._compute(text)
+            async with self._sessions.turn(name):
+                body = await self._compute(text)
         except InputError as error:
             return _refused(409, str(error))
         headers = {"Content-Disposition": f'attachment; filename="{file}"'}
@@ -306,9 +351,9 @@ class Server:
         if request.headers.get("Origin") is None:
             return _refused(403, "Only the page may use this server.")
         page = web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=HEARTBEAT, compress=False)
-        if self._connections >= MOST_CONNECTIONS:
+        if self._connections >= self._limits.connections:
             await page.prepare(request)  # a page can read messages, but not why a websocket was refused
-            sentence = f"{MOST_CONNECTIONS} pages are open, no more are served; close one, and reload"
+            sentence = f"{self._limits.connections} pages are open, no more are served; close one, and reload"
             await _send(page, refusal(None, InputError("connection", sentence)))
             await page.close(code=WSCloseCode.TRY_AGAIN_LATER)
             return page
@@ -370,8 +415,8 @@ class Server:
                 try:
                     if not mailbox.session:
                         await self._greet(page, mailbox, message)
-                    contact = self._sessions[mailbox.session]
-                    text = await self._compute(functools.partial(_answers, contact, message))
+                    async with self._sessions.turn(mailbox.session):
+                        text = await self._obey(self._sessions[mailbox.session], message)
                 except (ConnectionError, RuntimeError):
                     raise
                 except Exception as error:
@@ -383,6 +428,18 @@ class Server:
         finally:
             self._sessions.release(mailbox.session)
 
+    async def _obey(self, contact: LiveContact, message: Message) -> list[str]:
+        """Carry out a message in turn with the work of other pages, and return the answers as text."""
+        work = contact.steps(message)
+        try:
+            while True:
+                text = await self._compute(functools.partial(_answers, work, message))
+                if text is not None:
+                    return list(text)
+        finally:  # a page that has gone leaves its work: the contact goes back to where it was
+            with contextlib.suppress(RuntimeError):  # the server ends
+                self._thread.submit(work.close)
+
     async def _greet(self, page: web.WebSocketResponse, mailbox: Mailbox, message: Message) -> None:
         """Find the contact of a page, or make one."""
         if message.kind != "hello":
@@ -393,15 +450,26 @@ class Server:
                 self._sessions.make_room()
                 name = self._sessions.add(await self._compute(self._make))
             mailbox.session = name
-        await _send(page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__})
+        shared = self.address if self._shared else ""
+        await _send(
+            page, {"kind": "welcome", "id": message.id, "session": name, "version": __version__, "shared": shared}
+        )
 
 
-def _answers(contact: LiveContact, message: Message) -> list[str]:
-    """The answers of a contact as text. Whatever goes wrong is an answer too, and the page lives on."""
+def _answers(work: Generator[None, None, list[dict[str, Any]]], message: Message) -> list[str] | None:
+    """Go on with a message for a while. Return its answers as text at its end, and None before.
+
+    Whatever goes wrong is an answer too, and the page lives on.
+    """
+    end = time.monotonic() + TURN
     try:
-        return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in contact.obey(message)]
+        while time.monotonic() < end:
+            next(work)
+    except StopIteration as done:
+        return [json.dumps(answer, allow_nan=False, separators=(",", ":")) for answer in done.value]
     except Exception as error:
         return [_failure(message, error)]
+    return None
 
 
 def _failure(message: Message, error: Exception) -> str:
@@ -428,27 +496,62 @@ def _refused(status: int, sentence: str) -> web.Response:
     return web.Response(status=status, text=f"{sentence}\n", headers=HEADERS)
 
 
-def bound_socket(port: int) -> socket.socket:
-    """A socket on a port of this machine; 0 means any free one.
+def address_of_machine(host: str) -> str:
+    """Return an address of this machine in numbers, as browsers write it.
 
     Raises
     ------
     InputError
-        If the port can't be used.
+        If it is no single address.
     """
-    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        found = ipaddress.ip_address(host)
+    except ValueError:
+        found = None
+    if found is None or found.is_unspecified or found.is_multicast or "%" in host:
+        raise InputError("host", f"must be one address of this machine in numbers{_such_as()}, not {as_toml(host)}")
+    return str(found)
+
+
+def _such_as() -> str:
+    """Return a sentence's part with the address of this machine in its network, or "" without one."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
+        try:
+            asking.connect(ELSEWHERE)
+        except OSError:
+            return ""
+        return f", such as {asking.getsockname()[0]}"
+
+
+def bound_socket(host: str, port: int, most: int) -> socket.socket:
+    """A socket on a port of an address of this machine; 0 means any free one. `most` connections may wait.
+
+    Raises
+    ------
+    InputError
+        If the address or the port can't be used.
+    """
+    found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        found.bind((ADDRESS, port))
-        found.listen(MOST_CONNECTIONS)
+        found.bind((host, port))
+        found.listen(most)
     except OSError as error:
         found.close()
+        if error.errno == errno.EADDRNOTAVAIL:
+            raise InputError("host", f"{host} is no address of this machine{_such_as()}") from None
         reason = (error.strerror or str(error)).lower()
         raise InputError("port", f"{port} can't be used: {reason}; choose another one, or leave it out") from None
     return found
 
 
-def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
+def serve(
+    make: Callable[[], LiveContact],
+    port: int,
+    ready: Callable[[str], None],
+    host: str = "",
+    limits: Limits = ALONE,
+) -> None:
     """Serve the page until Ctrl-C.
 
     Parameters
@@ -459,15 +562,18 @@ def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], Non
         0 means any free port.
     ready : callable
         ``ready(address)`` is called once the page can be opened.
+    host : str
+        An address of this machine, at which others may open the page. "" shares it with nobody.
+    limits : Limits
 
     Raises
     ------
     InputError
-        If the port can't be used.
+        If the address or the port can't be used.
     """
 
     async def run() -> None:
-        async with Server(make).running(port) as server:
+        async with Server(make, host, limits).running(port) as server:
             ready(server.address)
             await asyncio.Event().wait()
 

@@ -29,8 +29,11 @@ from selenium.webdriver.common.keys import Keys
 import fastpin
 from fastpin import casefile
 from fastpin.live.contact import LiveContact
+from fastpin.live.pictures import CURVE_ERROR
+from fastpin.live.protocol import CLASS
 from fastpin.live.recording import record_page
 from fastpin.live.server import Server
+from fastpin.states.curves import traction_patches
 from tests.support.live_pages import FREE, contact, served
 
 BROWSER, DRIVER = (shutil.which(name) for name in ("chromium", "chromedriver"))
@@ -47,7 +50,7 @@ WAIT = 20.0
 """Seconds after which something is missing. Other processes may slow the machine down."""
 
 SLOWEST = 60.0
-"""Milliseconds that 95 % of the updates with 201 nodes may take."""
+"""Milliseconds that 95 % of the updates with 200 nodes may take."""
 
 QUIET = 25.0
 """Percent of the processors that other processes may take on a quiet machine."""
@@ -214,14 +217,12 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
     tab.drag(circle, 20)
     state = solved(tab.live)[-1]
     angle, _, pressure = tab.curve("pressure")
-    degrees = np.degrees(state.theta) + 90.0
-    assert np.allclose(angle[:-1], degrees, atol=1e-4)
-    assert angle[-1] == pytest.approx(180.0, abs=1e-4)
-    close = {"rtol": 1e-6, "atol": 1e-6 * state.pressure.max() * 1e-6}  # float32, in MPa
-    assert np.allclose(pressure[:-1], 1e-6 * state.pressure, **close)
+    ((degrees, found, shears),) = [points.T for points in traction_patches(state)]
+    close = {"rtol": 0.0, "atol": 5.0 * CURVE_ERROR * 1e-6 * state.peak_pressure}  # of four thinnings, in MPa
+    assert np.allclose(pressure, 1e-6 * np.interp(angle, degrees, found), **close)
     _, _, upper, lower, shear = tab.curve("shear")
-    assert np.allclose(shear[:-1], 1e-6 * state.shear, **close)
-    assert np.allclose(upper[:-1], 0.4e-6 * state.pressure, **close)
+    assert np.allclose(shear, 1e-6 * np.interp(angle, degrees, shears), **close)
+    assert np.allclose(upper, 0.4 * pressure)
     assert np.array_equal(lower, -upper)
     where, _, hoop = tab.curve("hoop")
     assert f"{hoop.max():.4g} MPa" in tab.run("return document.getElementById('numbers').textContent")
@@ -230,6 +231,49 @@ def test_charts_show_the_tractions_of_solve(tab: Tab) -> None:
         r"peak pressure([\d.]+) MPa", tab.run("return document.getElementById('numbers').textContent")
     )
     assert float(shown) == float(f"{1e-6 * state.peak_pressure:.4g}")
+
+
+DRAWN = """
+const plot = fastpin.charts.charts[arguments[0]], lines = [], {lineTo, moveTo} = Path2D.prototype;
+for (const name of ["lineTo", "moveTo"]) {
+  const drawn = Path2D.prototype[name];
+  Path2D.prototype[name] = function (x, y) { lines.push([x, y]); drawn.call(this, x, y); };
+}
+fastpin.charts.show();
+return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
+  Object.assign(Path2D.prototype, {lineTo, moveTo});
+  done([lines, [[0, "x"], [1, "x"], [0, "y"], [1, "y"]].map(([value, axis]) => plot.valToPos(value, axis, true))]);
+})));
+"""
+"""Draws the charts once more. The answer has the points of all lines on the canvas, and the places of 0 and 1."""
+
+
+def test_curves_on_the_canvas_follow_the_roots_at_the_edges(tab: Tab) -> None:
+    """Whole pixels and straight segments from the outermost node to the edge were wrong by several pixels."""
+    state = tab.live.session.state
+    lines, (x0, x1, y0, y1) = tab.run(DRAWN, "pressure")
+    points = np.array([place for place in lines if None not in place])  # a gap has no place
+    ((edge, _),) = [np.degrees(ends) + 90.0 for ends in state.contact]
+    edges = state.refined.tractions.patches[0]
+    degrees, pressure = np.degrees(edges[:, 0]) + 90.0, 1e-6 * edges[:, 1]
+    x, y = (points[:, 0] - x0) / (x1 - x0), (points[:, 1] - y0) / (y1 - y0)
+    near = (x > edge) & (x < edge + 3.0) & (y > 0.0)
+    off = abs(y - np.interp(x, degrees, pressure)) * abs(y1 - y0)
+    drawn = near & (off < 0.5)
+    assert np.count_nonzero(drawn) >= 12  # where two nodes stand
+    assert off[drawn].max() < 0.1
+    assert np.any(abs(points[drawn] - np.round(points[drawn])) > 0.1)
+    assert abs((points[:, 0] - x0) / (x1 - x0) - edge).min() < 1e-3  # the curve begins at the edge
+
+
+def zoomed(tab: Tab) -> list[tuple[float, float]]:
+    """Return the windows of the charts round the hole, and that of the map."""
+    tab.settle()
+    found = tab.run(
+        "return [...Object.values(fastpin.charts.charts).map((one) => one.scales.x), fastpin.map.chart.scales.y]"
+        ".map((scale) => [scale.min, scale.max])"
+    )
+    return [tuple(ends) for ends in found]
 
 
 def test_a_marked_part_of_a_curve_fills_all_charts(tab: Tab) -> None:
@@ -241,13 +285,44 @@ def test_a_marked_part_of_a_curve_fills_all_charts(tab: Tab) -> None:
     for part in (0.3, 0.4, 0.5):
         tab.mouse("mouseMoved", x + part * width, y)
     tab.mouse("mouseReleased", x + 0.5 * width, y, 0)
-    scales = "return Object.values(fastpin.charts.charts).map((one) => [one.scales.x.min, one.scales.x.max])"
-    for ends in tab.run(scales):
+    for ends in zoomed(tab):
         assert ends == pytest.approx([-90.0, 0.0], abs=3.0)
     tab.drag(circle, 5)  # new curves keep the window
-    assert tab.run(scales)[0] == pytest.approx([-90.0, 0.0], abs=3.0)
+    assert zoomed(tab)[0] == pytest.approx([-90.0, 0.0], abs=3.0)
     tab.run("document.querySelector('#shear-chart .u-over').dispatchEvent(new MouseEvent('dblclick', {bubbles: true}))")
-    assert tab.run(scales) == [[-180, 180]] * 3
+    assert zoomed(tab) == [(-180, 180)] * 4
+
+
+NARROW = FREE.replace("clearance = 1e-5", "clearance = 1e-4").replace("P = 1e6", "P = 1e5")
+"""A case with a contact of twelve degrees."""
+
+
+@pytest.mark.parametrize("load", [{"P": 1e5}, {"P": -1e5}, {"P": 0.0, "Q": -1e5}])
+def test_charts_show_a_narrow_contact_larger_until_the_whole_hole_is_wanted(
+    chrome: webdriver.Chrome, load: dict[str, float]
+) -> None:
+    with served(lambda: contact(NARROW, 100)) as running:
+        tab = Tab(chrome, running)
+        tab.run("return fastpin.link.ask('reset')")
+        tab.run("return fastpin.link.ask('load', {loads: arguments[0], gesture: 1, drag: false})", load)
+        state = tab.live.session.state
+        ((start, stop),) = [np.degrees(ends) + 90.0 for ends in state.contact]
+        for low, high in zoomed(tab):
+            turn = 360.0 * round((0.5 * (low + high - start - stop)) / 360.0)
+            assert low < start + turn < stop + turn < high
+            assert high - low < 2.0 * (stop - start)
+        angle, _, pressure = tab.curve("pressure")
+        assert np.isfinite(pressure).sum() > 30
+        assert np.nanmax(pressure) == pytest.approx(1e-6 * state.peak_pressure, rel=1e-3)
+        tab.click("zoom")
+        assert zoomed(tab) == [(-180, 180)] * 4
+        tab.click("zoom")
+        assert zoomed(tab)[0][1] - zoomed(tab)[0][0] < 2.0 * (stop - start)
+        assert np.array_equal(tab.curve("pressure")[0], angle)
+        tab.set("clearance", "-5")  # a contact all round is shown with the whole hole
+        tab.settle()
+        assert zoomed(tab) == [(-180, 180)] * 4
+        assert not tab.run("return document.getElementById('zoom').offsetWidth")
 
 
 def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
@@ -272,6 +347,24 @@ def test_the_loop_shows_the_work_of_the_load(tab: Tab) -> None:
         return float(np.sum(0.5 * (loads[1:] + loads[:-1]) * np.diff(ways)))
 
     assert area(bent, scale) == pytest.approx(area(way, 1e-6), rel=1e-6)
+
+
+def test_the_loop_begins_with_the_load_that_acts(tab: Tab) -> None:
+    shown = "return document.getElementById('loop-load').value"
+    assert tab.run(shown) == "P"  # only P acts
+    assert tab.run("return fastpin.loops.chart.data[1][1]") == [2.42]
+    tab.drag(lambda part: (40.0 * part, 0.0), 5)
+    assert tab.run(shown) == "Q"
+    tab.set("sxx", "20")
+    tab.settle()
+    assert tab.run(shown) == "sxx"
+    tab.run(
+        "const place = document.getElementById('loop-load'); place.value = 'P';"
+        "place.dispatchEvent(new Event('change', {bubbles: true}))"
+    )
+    tab.set("sxx", "30")
+    tab.settle()
+    assert tab.run(shown) == "P"  # a choice of the user stays
 
 
 def test_undo_redo_and_reset(tab: Tab) -> None:
@@ -303,6 +396,164 @@ def test_arrow_keys_move_the_load(tab: Tab) -> None:
     tab.settle()
     assert tab.run("return fastpin.history.latest.load.P") == pytest.approx(load["P"] - 0.1 * size)
     assert tab.run("return fastpin.history.undos") == 2
+
+
+def press(tab: Tab, *keys: str) -> None:
+    """Press keys where the focus is, as a user does who has just opened the page."""
+    tab.chrome.switch_to.window(tab.handle)
+    webdriver.ActionChains(tab.chrome).send_keys(*keys).perform()
+    tab.settle()
+
+
+def test_arrow_keys_move_the_load_wherever_the_focus_is(tab: Tab) -> None:
+    chrome = tab.chrome
+    chrome.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride", {"width": 800, "height": 500, "deviceScaleFactor": 1, "mobile": False}
+    )
+    size = tab.run("return fastpin.history.case.axes[0].size")
+    press(tab, Keys.ARROW_RIGHT, Keys.ARROW_DOWN)
+    load = tab.run("return fastpin.history.latest.load")
+    assert (load["Q"], load["P"]) == (pytest.approx(0.02 * size), pytest.approx(2.42e6 + 0.02 * size))
+    assert tab.run("return window.scrollY") == 0
+    tab.run("document.getElementById('field-friction').focus({preventScroll: true})")
+    press(tab, Keys.ARROW_RIGHT)
+    tab.run("document.querySelector(`[data-key='Q slider']`).focus({preventScroll: true})")
+    press(tab, Keys.ARROW_UP)  # a slider has its own keys
+    after = tab.run("return fastpin.history.latest.load")
+    assert after["P"] == load["P"]
+    tab.run("document.activeElement.blur(); window.scrollTo(0, document.body.scrollHeight)")
+    before = tab.run("return window.scrollY")
+    assert tab.run("return fastpin.drawing.canvas.getBoundingClientRect().bottom") < 0
+    press(tab, Keys.ARROW_UP)  # the drawing is out of sight: the key scrolls the page
+    tab.wait("return window.scrollY < arguments[0]", before)
+    assert tab.run("return fastpin.history.latest.load.P") == after["P"]
+    chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+@pytest.mark.parametrize(
+    ("text", "friction"),
+    [("0,3", 0.3), ("0.3", 0.3), (" ,3 ", 0.3), ("3e-1", 0.3), ("2,5E-1", 0.25), ("1,000.5", None), ("0,3,1", None),
+     ("a", None), ("1 0", None)],
+)  # fmt: skip
+def test_a_decimal_comma_is_read_as_one(tab: Tab, text: str, friction: float | None) -> None:
+    """The browser is English. Its number fields would take 0,3 for 3."""
+    field = tab.chrome.find_element(By.ID, "field-friction")
+    tab.chrome.switch_to.window(tab.handle)
+    field = tab.chrome.find_element(By.ID, "field-friction")
+    field.send_keys(Keys.CONTROL, "a")
+    field.send_keys(text, Keys.ENTER)
+    tab.settle()
+    assert tab.live.session.problem.friction == (0.4 if friction is None else friction)
+    expected = f'friction μ: "{text}" is no number; write 1234.5 or 1234,5' if friction is None else ""
+    assert tab.message == expected
+    if friction is None:
+        assert tab.run("return document.getElementById('field-friction').value") == "0.4000"
+
+
+def test_the_handle_of_a_large_load_stays_inside(tab: Tab) -> None:
+    def tip() -> list[float]:
+        return tab.run(
+            "const {drawing, history} = fastpin, tip = drawing.tip(history.latest.load);"
+            "return [tip[0] / drawing.canvas.clientWidth, tip[1] / drawing.canvas.clientHeight]"
+        )
+
+    tab.set("P", "30")
+    tab.settle()
+    assert max(tip()) < 0.99
+    assert min(tip()) > 0.01
+    note = tab.run("return document.getElementById('scale-note').textContent")
+    assert note.endswith("; arrow of the load at 1/10")
+    before = tab.live.session.state.load["Q"]
+    tab.drag(lambda part: (30.0 * part, 0.0), 3)  # a drag keeps the scale
+    moved = tab.live.session.state.load["Q"] - before
+    tab.click("undo")
+    tab.click("undo")
+    tab.settle()
+    tab.drag(lambda part: (30.0 * part, 0.0), 3)
+    assert moved == pytest.approx(10.0 * tab.live.session.state.load["Q"], rel=0.1)
+
+
+def test_gaps_are_described_plainly(chrome: webdriver.Chrome) -> None:
+    note = "return document.getElementById('scale-note').textContent"
+    with served(lambda: contact(FREE.replace("clearance = 1e-5", "clearance = 1e-3"), 61)) as running:
+        tab = Tab(chrome, running)
+        assert tab.run(note) == "gaps to scale"
+        tab.set("clearance", "0.01")
+        tab.settle()
+        assert re.fullmatch(r"gaps enlarged \d+ times", tab.run(note))
+
+
+def test_rounding_is_shown_as_zero(chrome: webdriver.Chrome) -> None:
+    with served(lambda: contact(nodes=200)) as running:
+        tab = Tab(chrome, running)
+        numbers = tab.run("return document.getElementById('numbers').innerText").replace("\t", " ")
+        assert "pin turns 0 rad" in numbers
+        assert "pin moves right 0 m" in numbers
+
+
+@pytest.mark.parametrize("thickness", ["", "thickness = 0.01\n"])
+def test_units_of_kilonewtons_and_millimetres(chrome: webdriver.Chrome, thickness: str) -> None:
+    text = FREE.replace("friction = 0.3\n", f"friction = 0.3\n{thickness}")
+    if thickness:
+        text = text.replace("P = 1e6", "P = 1e4")
+    with served(lambda: contact(text, 61)) as running:
+        tab = Tab(chrome, running)
+        tab.run(
+            "const place = document.getElementById('units'); place.value = 'kN, mm';"
+            "place.dispatchEvent(new Event('change', {bubbles: true}))"
+        )
+        tab.settle()
+        force = "kN" if thickness else "kN/m"
+        page = tab.run("return document.body.innerText").replace("\t", " ")
+        assert f"\nP {'10.00' if thickness else '1000'} {force} " in page
+        assert "µm" not in page
+        assert ("/m" not in page) == bool(thickness)
+        assert tab.run("return document.getElementById('field-clearance').value") == "0.01000"
+        tab.set("P", "5,5" if thickness else "550")
+        tab.set("clearance", "0,02")
+        tab.settle()
+        assert tab.live.session.state.load["P"] == pytest.approx(5.5e5, rel=1e-15)
+        assert tab.live.session.problem.clearance == 2e-5
+
+
+def test_a_prescribed_rotation_and_its_kind_have_controls_of_their_own(chrome: webdriver.Chrome) -> None:
+    text = FREE.replace("friction = 0.3\n", 'friction = 0.3\nrotation = "fixed"\n') + "rotation = 0.001\n"
+    with served(lambda: contact(text, 61)) as running:
+        tab = Tab(chrome, running)
+        assert tab.run("return document.getElementById('field-rotation').value") == "1.000"
+        assert tab.run("return document.querySelector(`select[data-key='rotation']`).value") == "fixed"
+
+
+def test_a_shared_page_shows_its_qr_code(chrome: webdriver.Chrome, server: Server) -> None:
+    assert not Tab(chrome, server).run("return document.getElementById('share').offsetWidth")
+    with served(lambda: contact(nodes=61, limits=CLASS), host="127.0.0.1", limits=CLASS) as running:
+        tab = Tab(chrome, running)
+        tab.click("share")
+        tab.wait("return document.getElementById('code').naturalWidth > 20")
+        assert tab.run("return document.getElementById('shared').textContent") == running.address
+        tab.click("shared-close")
+        assert tab.trouble() == []
+        choices = tab.run("return [...document.querySelector(`[data-key='nodes']`).options].map((one) => one.value)")
+        assert choices == ["61", "100", "200", "400"]
+
+
+@pytest.mark.parametrize("width", [420, 360])
+def test_texts_of_the_drawing_do_not_overlap(chrome: webdriver.Chrome, width: int) -> None:
+    with served(lambda: contact(FREE, 61)) as running:
+        tab = Tab(chrome, running)
+        sizes = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        chrome.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
+        tab.set("P", "30")
+        tab.settle()
+        help_box, note = (
+            tab.run(
+                "const box = document.getElementById(arguments[0]).getBoundingClientRect();"
+                "return [box.top, box.bottom]", name
+            )
+            for name in ("help", "scale-note")
+        )  # fmt: skip
+        chrome.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        assert help_box[1] < note[0]
 
 
 @pytest.mark.parametrize(
@@ -368,12 +619,13 @@ def test_two_ways_to_the_same_load_have_two_shears(tab: Tab) -> None:
     words = tab.run("return document.getElementById('lesson').textContent")
     assert words.startswith("Same load as the reference, reached in another way: the shear differs by up to")
     _, before, _, _, shear = tab.curve("shear")
-    straight = np.nanmax(np.abs(before - shear))
+    straight = np.max(np.abs(np.nan_to_num(before) - np.nan_to_num(shear)))
     assert f"{straight:.3g} MPa" in words
     # The page's reference is the state of one straight step, and its curve the state of the detour.
     problem, load = tab.live.session.problem, tab.live.session.state.load
     result = fastpin.solve(problem, [{"P": load["P"], "Q": load["Q"]}], grid=tab.live.session.grid)
-    assert np.allclose(before[:-1], 1e-6 * result[-1].shear, rtol=1e-5, atol=1e-4)
+    kept = tab.run("return Array.from(fastpin.history.reference.shear)")
+    assert np.allclose(kept, result[-1].shear, rtol=1e-5, atol=100.0)
 
 
 def test_the_case_is_played_and_the_history_scrubbed(tab: Tab) -> None:
@@ -544,11 +796,11 @@ move();
 """Moves the pressed mouse in the page itself: the driver would be too slow."""
 
 
-@pytest.mark.parametrize("nodes", [101, 201, 401])
+@pytest.mark.parametrize("nodes", [100, 200, 400])
 def test_updates_come_fast_enough_for_a_drag(chrome: webdriver.Chrome, nodes: int) -> None:
     """From the message of the page to its picture, while the mouse moves.
 
-    The processor time of server and browser together has a limit with 101 and 201 nodes. Other processes take time
+    The processor time of server and browser together has a limit with 100 and 200 nodes. Other processes take time
     from both, so the time that passes has its limit on a quiet machine only. It is printed in any case.
     """
     with served(lambda: contact(nodes=nodes)) as running:
@@ -568,7 +820,7 @@ def test_updates_come_fast_enough_for_a_drag(chrome: webdriver.Chrome, nodes: in
     text = f"{nodes} nodes: {rate}; median {median:.0f} ms, 95 % {slow:.0f} ms, others took {busy:.0f} % before"
     print(text)
     assert len(times) > 20
-    if nodes <= 201:
+    if nodes <= 200:
         assert spent < SLOWEST, text
         if busy < QUIET:
             assert slow < SLOWEST, text

@@ -15,10 +15,13 @@ from fastpin import casefile
 from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
 from fastpin.live.contact import LiveContact
+from fastpin.live.pictures import CURVE_ERROR
+from fastpin.live.protocol import ALONE, CLASS, Limits
 from fastpin.model.bodies import Bushing, Ring, Tube
+from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance
-from tests.support.live_pages import FREE, NODES, Page, contact, floats
+from tests.support.live_pages import FREE, NODES, Page, contact, floats, message
 
 P, Q = 2.42e6, 7.26e5
 ARRAYS = {"pressure": "pressure", "shear": "shear", "gap": "gap"}
@@ -246,7 +249,7 @@ def test_a_case_that_fails_at_once_says_why() -> None:
 def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     page = Page(contact(FREE, 101))
     page.tell("change", changes={"clearance": 2e-4})
-    assert 101 < page.live.session.grid.size < contact_module.MOST_LIVE_NODES
+    assert 101 < page.live.session.grid.size < ALONE.nodes
     assert np.count_nonzero(page.live.session.state.pressure) >= contact_module.LEAST_CLOSED
     page.tell("change", changes={"clearance": 1e-5})
     assert page.live.session.grid.size == 101
@@ -255,10 +258,9 @@ def test_a_narrow_contact_gets_more_nodes_until_it_is_wide_again() -> None:
     assert (page.live.session.grid.size, page.latest["case"]["nodes"]) == (101, 101)
 
 
-def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contact_module, "MOST_LIVE_NODES", 41)
+def test_a_contact_too_narrow_for_the_circle_gets_nodes_of_its_own() -> None:
     text = FREE.replace("clearance = 1e-5", "clearance = 1e-3").replace("P = 1e6", "P = 1e4")
-    page = Page(contact(text, 41))
+    page = Page(contact(text, 41, Limits(nodes=41)))
     assert page.latest["sentence"] == ""
     session = page.live.session
     assert np.count_nonzero(session.state.pressure) > 5
@@ -304,9 +306,8 @@ def test_a_new_page_gets_the_whole_history() -> None:
 
 
 def test_the_history_and_its_memory_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contact_module, "MOST_PICTURES", 20)
     monkeypatch.setattr(contact_module, "MOST_UNDONE", 30)
-    page = Page(contact(nodes=21))
+    page = Page(contact(nodes=21, limits=Limits(pictures=20)))
     drag(page, 5, 30)
     assert len(page.pictures) == 20
     assert page.live.session.history is not None
@@ -407,9 +408,73 @@ def test_gestures_that_can_be_undone_hold_no_matrices() -> None:
     assert np.array_equal(session.state.shear, again.shear)
 
 
-def test_states_for_undo_have_few_nodes_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    page = Page(contact())
-    monkeypatch.setattr(contact_module, "MOST_UNDONE_NODES", 10 * page.live.session.grid.size)
+def test_states_for_undo_have_few_nodes_together() -> None:
+    page = Page(contact(limits=Limits(undone_nodes=10 * NODES)))
     for k in range(20):
         page.tell("load", loads={"Q": 1e4 * k}, gesture=k)
     assert page.latest["undos"] == 10
+
+
+@pytest.mark.parametrize("load", [{"P": P}, {"P": -P}, {"P": 0.0, "Q": P}, {"P": 0.0, "Q": -P}])
+def test_a_symmetric_load_turns_the_pin_by_rounding_only(load: dict[str, float]) -> None:
+    """With 201 nodes none stands at the bottom: one of its neighbours closed first, and the pin turned by 28 nrad."""
+    assert contact_module.NODES % 4 == contact_module.NODES_OF_CLASS % 4 == 0
+    page = Page(contact(nodes=contact_module.NODES))
+    page.tell("reset")
+    page.tell("load", loads=load)
+    (picture,) = page.pictures
+    assert abs(picture["rotation"]) <= picture["rounding"]["rotation"]
+    assert picture["rounding"]["rotation"] < 1e-9 * abs(picture["dx"] + picture["dy"]) / 1e-3
+
+
+def test_the_curves_of_a_picture_are_those_of_figures() -> None:
+    page = Page(contact(nodes=200))
+    drag(page, 5, 4, 0.5)
+    state = page.live.session.state
+    found = [floats(page.pictures[-1]["curves"][name]) for name in ("degrees", "pressure", "shear")]
+    ((angle, pressure, shear),) = [points.T for points in traction_patches(state)]
+    close = 5.0 * CURVE_ERROR * state.peak_pressure  # of four thinnings, and float32
+    assert np.allclose(np.interp(angle, found[0], found[1]), pressure, rtol=0.0, atol=close)
+    assert np.allclose(np.interp(angle, found[0], found[2]), shear, rtol=0.0, atol=close)
+    assert found[0].size < 0.6 * angle.size
+    edges = np.degrees([end for ends in state.contact for end in ends]) + 90.0
+    assert found[0][[0, -1]] == pytest.approx(edges, abs=1e-4)
+    assert np.array_equal(found[1][[0, -1]], [0.0, 0.0])
+
+
+def test_curves_across_the_top_have_a_part_at_either_end() -> None:
+    page = Page(contact())
+    page.tell("reset")
+    page.tell("load", loads={"P": -P})
+    degrees, pressure = (floats(page.pictures[-1]["curves"][name]) for name in ("degrees", "pressure"))
+    assert np.isnan(degrees).sum() == 1
+    assert np.nanmin(degrees) == -180.0
+    assert np.nanmax(degrees) == 180.0
+    assert pressure[0] == pytest.approx(pressure[-1]) == pytest.approx(np.nanmax(pressure), rel=1e-3)
+    page.tell("reset")
+    page.tell("change", changes={"clearance": -1e-4})
+    page.tell("load", loads={"P": 1e4})
+    degrees = floats(page.pictures[-1]["curves"]["degrees"])
+    assert not np.isnan(degrees).any()
+    assert np.all(np.diff(degrees) >= 0.0)
+
+
+def test_a_long_history_pauses_and_leaves_the_contact_where_it_was() -> None:
+    page = Page(contact(nodes=41))
+    drag(page, 5, 6)
+    before = page.live.session
+    work = page.live.steps(message("change", changes={"friction": 0.3}, follow="history"))
+    for _ in range(3):
+        next(work)
+    assert page.live.session is not before
+    work.close()
+    assert page.live.session is before
+    answer = page.tell("change", changes={"friction": 0.3}, follow="history")
+    assert (answer["kind"], len(page.pictures)) == ("pictures", 7)
+
+
+def test_a_class_has_fewer_nodes() -> None:
+    page = Page(contact(nodes=41, limits=CLASS))
+    assert page.latest["case"]["most_nodes"] == CLASS.nodes
+    assert page.tell("nodes", nodes=CLASS.nodes + 1)["sentence"] == "nodes: must be at most 400 on this page, not 401"
+    assert page.live.session.grid.size <= CLASS.nodes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import io
 import json
 import re
 import socket
@@ -15,6 +16,7 @@ from typing import Any
 
 import aiohttp
 import pytest
+import segno
 
 from fastpin import casefile
 from fastpin.cli import live as live_command
@@ -23,7 +25,16 @@ from fastpin.errors import InputError
 from fastpin.live import server as server_module
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import page_files
-from fastpin.live.protocol import MOST_A_SECOND, MOST_BYTES, MOST_CONNECTIONS, MOST_SESSIONS, Message
+from fastpin.live.protocol import (
+    ALONE,
+    CLASS,
+    MOST_A_SECOND,
+    MOST_BYTES,
+    MOST_CONNECTIONS,
+    MOST_SESSIONS,
+    Limits,
+    Message,
+)
 from fastpin.live.server import Server
 from tests.support.live_pages import contact, served
 
@@ -379,13 +390,13 @@ def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_a_slow_solve_does_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    obey = LiveContact.obey
+    steps = LiveContact.steps
 
-    def slow(self: LiveContact, message: Message) -> list[dict[str, Any]]:
+    def slow(self: LiveContact, message: Message) -> Iterator[None]:
         time.sleep(0.05)
-        return obey(self, message)
+        return (yield from steps(self, message))
 
-    monkeypatch.setattr(LiveContact, "obey", slow)
+    monkeypatch.setattr(LiveContact, "steps", slow)
 
     async def work(client: aiohttp.ClientSession) -> None:
         talk = await connect(client, running)
@@ -484,6 +495,175 @@ def test_history_and_recording_are_sent_as_files(server: Server) -> None:
     assert (status, 'id="recording"' in text) == (200, True)
 
 
+# -- a class -----------------------------------------------------------------------------------------------------------
+
+SHARED = "127.0.0.3"
+"""An address that reaches this machine only, and is another one than that of a page for oneself."""
+
+
+@pytest.fixture(scope="module")
+def shared() -> Iterator[Server]:
+    with served(lambda: contact(nodes=21, limits=CLASS), host=SHARED, limits=CLASS) as running:
+        yield running
+
+
+def test_a_shared_page_needs_its_token(shared: Server) -> None:
+    assert shared.address.startswith(f"http://{SHARED}:")
+    assert get(shared.address)[0] == 200
+    wrong = shared.address.replace(shared.token, "x" * len(shared.token))
+    missing = shared.address.replace(f"{shared.token}/", "")
+    for address in (wrong, missing, f"{wrong}main.js", f"{wrong}code.svg", f"{missing}socket"):
+        assert get(address)[:2] == (
+            403, "The address lacks the token: take the address that fastpin live has printed.\n"
+        )  # fmt: skip
+
+    async def work(client: aiohttp.ClientSession) -> int:
+        with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+            await client.ws_connect(f"{wrong}socket", headers={"Origin": f"http://{host_of(shared)}"})
+        talk = await connect(client, shared)
+        await talk.hello()
+        assert (await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
+        return caught.value.status
+
+    assert ask(work) == 403
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1", "example.org", SHARED])
+def test_a_shared_page_answers_to_its_own_address_only(shared: Server, host: str) -> None:
+    port = host_of(shared).split(":")[1]
+    other = host if host == SHARED else f"{host}:{port}"
+    assert get(shared.address, Host=other)[:2] == (403, "This server answers to its own address only.\n")
+    assert get(shared.address, Origin=f"http://{other}")[:2] == (403, "Another page may not use this server.\n")
+
+
+def test_a_shared_page_listens_at_its_address_only(shared: Server) -> None:
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.1", int(host_of(shared).split(":")[1])), 2.0)
+
+
+def test_an_address_of_the_sixth_version_stands_in_brackets() -> None:
+    try:
+        with served(lambda: contact(nodes=21), host="::1", limits=CLASS) as running:
+            assert running.address.startswith("http://[::1]:")
+            assert get(running.address)[0] == 200
+    except InputError as error:
+        pytest.skip(str(error))
+
+
+def test_the_qr_code_is_that_of_the_address(server: Server, shared: Server) -> None:
+    status, text, headers = get(f"{shared.address}code.svg")
+    assert (status, headers["Content-Type"]) == (200, "image/svg+xml")
+    path = io.BytesIO()
+    segno.make(shared.address, micro=False).save(path, kind="svg", light="white", xmldecl=False)
+    assert text == path.getvalue().decode()
+    assert get(f"{server.address}code.svg")[0] == 404  # a page for oneself is not shared
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        for running, address in ((server, ""), (shared, shared.address)):
+            talk = await connect(client, running)
+            await talk.send("hello", session="")
+            assert json.loads((await talk.page.receive()).data)["shared"] == address
+
+    ask(work)
+
+
+def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
+    few = Limits(connections=5, sessions=3)
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        talks = [await connect(client, running) for _ in range(3)]
+        for talk in talks:
+            await talk.hello()
+        late = await connect(client, running)
+        assert "3 pages are open" in (await late.tell("hello", session=""))["sentence"]
+        waiting = await connect(client, running)
+        beyond = await connect(client, running)
+        assert "5 pages are open" in (await beyond.answer(None))["sentence"]
+        for talk in talks:
+            assert (await talk.tell("load", loads={"Q": 1e5}, gesture=1, drag=False))["kind"] == "pictures"
+        assert not waiting.page.closed
+
+    with served(lambda: contact(nodes=21, limits=few), host=SHARED, limits=few) as running:
+        ask(work)
+
+
+def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    step = LiveContact._step
+
+    def slow(self: LiveContact, *arguments: Any) -> None:
+        time.sleep(0.03)
+        step(self, *arguments)
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        one, other = await connect(client, running), await connect(client, running)
+        name, _ = await one.hello()
+        await other.hello()
+        for k in range(60):
+            await one.tell("load", loads={"Q": 1e3 * k}, gesture=1, drag=False)
+        monkeypatch.setattr(LiveContact, "_step", slow)
+        number = await one.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
+        await asyncio.sleep(0.1)
+        for k in range(5):  # each of them waits for a turn, not for the history of two seconds
+            began = time.monotonic()
+            await other.tell("load", loads={"Q": 1e3 * k}, gesture=1, drag=False)
+            times.append(time.monotonic() - began)
+        case = asyncio.create_task(client.get(f"{running.address}save/{name}/case.toml").__aenter__())
+        assert (await one.answer(number))["kind"] == "pictures"
+        text = await (await case).text()  # waits for the whole history
+        assert casefile.parse_case(text).history.values()[-1, 1] == 59e3
+
+    times: list[float] = []
+    with served(lambda: contact(nodes=21, limits=CLASS), host=SHARED, limits=CLASS) as running:
+        ask(work)
+    assert sorted(times)[2] < 0.5
+
+
+def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    step = LiveContact._step
+
+    def slow(self: LiveContact, *arguments: Any) -> None:
+        time.sleep(0.05)
+        step(self, *arguments)
+
+    async def work(client: aiohttp.ClientSession) -> None:
+        talk = await connect(client, running)
+        name, _ = await talk.hello()
+        for k in range(40):
+            await talk.tell("load", loads={"Q": 1e3 * k}, gesture=1, drag=False)
+        monkeypatch.setattr(LiveContact, "_step", slow)
+        await talk.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
+        await asyncio.sleep(0.2)
+        await talk.page.close()
+        for _ in range(100):
+            again = await connect(client, running)
+            found, pictures = await again.hello(name)
+            if found == name:
+                break
+            await again.page.close()
+            await asyncio.sleep(0.02)
+        assert found == name
+        assert (pictures["case"]["friction"], pictures["add"][-1]["load"]["Q"]) == (0.4, 39e3)
+
+    with served(lambda: contact(nodes=21)) as running:
+        ask(work)
+
+
+def test_the_command_says_who_can_reach_a_shared_page(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def serve(
+        make: Callable[[], LiveContact], port: int, ready: Callable[[str], None], host: str, limits: Limits
+    ) -> None:
+        assert (make().session.grid.size, host, limits) == (100, SHARED, CLASS)
+        ready(f"http://{SHARED}:1/token/")
+
+    monkeypatch.setattr(live_command.live, "serve", serve)
+    assert main(["live", "--no-browser", "--host", SHARED]) == 0
+    said = capsys.readouterr().out
+    assert f"whoever reaches {SHARED} over the network and has this whole address can open the page" in said
+    assert "nothing is encrypted" in said
+
+
 # -- the command -------------------------------------------------------------------------------------------------------
 
 
@@ -498,7 +678,13 @@ def test_a_port_in_use_is_refused_with_one_sentence(server: Server, capsys: pyte
     ("arguments", "sentence"),
     [
         (["--port", "70000"], "--port: must be a whole number from 0 to 65535, not 70000"),
-        (["--nodes", "many"], '--nodes: must be a whole number from 5 to 1601, not "many"'),
+        (["--host", "somewhere"], "--host: must be one address of this machine in numbers"),
+        (["--host", "0.0.0.0"], 'not "0.0.0.0"'),
+        (["--host", "::"], 'not "::"'),
+        (["--host", "fe80::1%eth0"], 'not "fe80::1%eth0"'),
+        (["--host", "203.0.113.7"], "--host: 203.0.113.7 is no address of this machine"),
+        (["--host", "127.0.0.1", "--nodes", "401"], "--nodes: must be a whole number from 5 to 400, not 401"),
+        (["--nodes", "many"], '--nodes: must be a whole number from 5 to 1600, not "many"'),
         (["nothing.toml"], "nothing.toml: there is no such file"),
     ],
 )
@@ -507,21 +693,24 @@ def test_wrong_arguments(arguments: list[str], sentence: str, capsys: pytest.Cap
     assert sentence in capsys.readouterr().err
 
 
-def test_without_its_package_the_command_says_how_to_install_it() -> None:
+@pytest.mark.parametrize("package", ["aiohttp", "segno"])
+def test_without_its_package_the_command_says_how_to_install_it(package: str) -> None:
     program = (
-        "import sys; sys.modules['aiohttp'] = None; from fastpin.cli.main import main; "
+        f"import sys; sys.modules['{package}'] = None; from fastpin.cli.main import main; "
         "sys.exit(main(['live', '--no-browser']))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
-    assert done.stderr == "fastpin: the live page needs the package aiohttp: pip install 'fastpin[live]'\n"
+    assert done.stderr == f"fastpin: the live page needs the package {package}: pip install 'fastpin[live]'\n"
 
 
 def test_the_command_prints_the_address_and_says_that_there_is_no_browser(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def serve(make: Callable[[], LiveContact], port: int, ready: Callable[[str], None]) -> None:
-        assert (make().session.grid.size, port) == (71, 0)
+    def serve(
+        make: Callable[[], LiveContact], port: int, ready: Callable[[str], None], host: str, limits: Limits
+    ) -> None:
+        assert (make().session.grid.size, port, host, limits) == (71, 0, "", ALONE)
         ready("http://127.0.0.1:1/token/")
 
     opened: list[str] = []

@@ -51,6 +51,7 @@ HOMES = {
     "typst": ("pages",),
     "shtab": ("cli",),
     "aiohttp": ("live",),
+    "segno": ("live",),
 }
 """Packages that only some folders may import."""
 

@@ -1,28 +1,35 @@
 // Curves round the hole: pressure, shear with its bounds, hoop stress. Stick and slip are shaded.
 
 import { INK, REFERENCE, SOFT, ofStatus } from "live/colours";
+import { partsOf, together } from "live/curves";
 import { peak } from "live/drawing";
 import { digits, scaled } from "live/units";
+import { Follower, WHOLE } from "live/window";
 
 const FONT = "11px system-ui, sans-serif";
 const GRID = { stroke: "#e6e9ec", width: 1 };
-const WHOLE = [-180, 180]; // the whole hole, degrees from the bottom
-const STEPS = [45, 30, 15, 10, 5, 2, 1]; // between two ticks of an angle, degrees
-const LEAST = 3; // degrees of the narrowest window
+const STEPS = [45, 30, 15, 10, 5, 2, 1, 0.5, 0.2, 0.1]; // between two ticks of an angle, degrees
+const LEAST = 0.5; // degrees of the narrowest window
 
 export function axis(more = {}) {
   return { stroke: SOFT, font: FONT, grid: GRID, ticks: { ...GRID, size: 4 }, ...more };
 }
 
 export function angleAxis(more = {}) {
-  return axis({ splits: (_, __, low, high) => ticks(low, high), values: (_, splits) => splits.map((angle) => `${angle}°`.replace("-", "−")), size: 24, ...more });
+  return axis({ splits: (_, __, low, high) => ticks(low, high), values: (_, splits) => splits.map(angleText), size: 24, ...more });
 }
 
 // Ticks of an angle between two ends: at least five of them.
-function ticks(low, high) {
-  const step = STEPS.find((one) => (high - low) / one >= 5) ?? 1, found = [];
-  for (let angle = Math.ceil(low / step) * step; angle <= high; angle += step) found.push(angle);
+export function ticks(low, high) {
+  const step = STEPS.find((one) => (high - low) / one >= 5) ?? STEPS.at(-1), found = [];
+  for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
   return found;
+}
+
+// An angle at most half a turn from the bottom.
+function angleText(angle) {
+  const turned = angle > 180 ? angle - 360 : angle < -180 ? angle + 360 : angle;
+  return `${brief(turned)}°`;
 }
 
 export function valueAxis(more = {}) {
@@ -53,7 +60,10 @@ export class RoundCharts {
     this.history = history;
     this.peaks = { pressure: 0, shear: 0, high: 0, low: 0 }; // in SI units; they change seldom, so that axes do not flicker
     this.ranges = {};
-    this.window = WHOLE;
+    this.follower = new Follower();
+    this.choice = "contact"; // or "whole", or the ends of the part that was marked
+    this.button = document.getElementById("zoom");
+    this.button.addEventListener("click", () => this.zoom(this.isWhole ? "contact" : "whole"));
     this.charts = {};
     for (const name of Object.keys(CURVES)) this.charts[name] = this.make(name);
   }
@@ -63,8 +73,8 @@ export class RoundCharts {
     return chart(document.getElementById(`${name}-chart`), {
       scales: { x: { time: false, range: () => this.window }, y: { range: () => this.ranges[name] ?? [0, 1] } },
       axes: [angleAxis(), valueAxis()],
-      cursor: { sync: { key: "round" }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => this.zoom(WHOLE) }, points: { show: false } },
-      series: [{}, ...series.map(([label, stroke, width, dash]) => ({ label, stroke, width, dash, points: { show: false } }))],
+      cursor: { sync: { key: "round" }, drag: { x: true, y: false, setScale: false }, bind: { dblclick: () => () => this.zoom("whole") }, points: { show: false } },
+      series: [{}, ...series.map(([label, stroke, width, dash]) => ({ label, stroke, width, dash, pxAlign: 0, points: { show: false } }))],
       hooks: { drawClear: [(plot) => this.shade(plot, name === "hoop")], setCursor: [(plot) => this.read(plot, name)], setSelect: [(plot) => this.select(plot)] },
     }, [[-180, 180], ...series.map(() => [null, null])]);
   }
@@ -78,22 +88,40 @@ export class RoundCharts {
     if (high - low >= LEAST) this.zoom([low, high]);
   }
 
-  zoom(window) {
-    this.window = window;
-    for (const one of Object.values(this.charts)) one.setScale("x", { min: window[0], max: window[1] });
+  // Show the contact if it is narrow, the whole hole, or a part between two angles.
+  zoom(choice) {
+    this.choice = choice;
+    this.onZoom();
+  }
+
+  get window() {
+    return this.windowOf(this.follower);
+  }
+
+  // The window of a chart whose own contacts are followed.
+  windowOf(follower) {
+    return this.choice === "contact" ? follower.window : this.choice === "whole" ? WHOLE : this.choice;
+  }
+
+  get isWhole() {
+    return this.window === WHOLE;
+  }
+
+  showButton() {
+    this.button.textContent = this.isWhole ? "Zoom to contact" : "Whole hole";
+    this.button.hidden = this.isWhole && this.follower.window === WHOLE;
   }
 
   shade(plot, faint) {
     const picture = this.history.shown;
     if (!picture) return;
     const { left, top, width, height } = plot.bbox;
-    const zones = [...picture.stick.map((ends) => [...ends, 0]), ...picture.slip];
     plot.ctx.save();
     plot.ctx.beginPath();
     plot.ctx.rect(left, top, width, height);
     plot.ctx.clip();
     plot.ctx.globalAlpha = faint ? 0.15 : 0.25;
-    for (const [start, stop, sign] of zones) {
+    for (const [start, stop, sign] of picture.zones) {
       plot.ctx.fillStyle = ofStatus(sign);
       for (const turn of [-360, 0, 360]) {
         const from = plot.valToPos(start + turn, "x", true), to = plot.valToPos(stop + turn, "x", true);
@@ -110,9 +138,10 @@ export class RoundCharts {
     const largest = (of) => Math.max(0, ...both.map(of));
     this.peaks.pressure = peak(this.peaks.pressure, largest((one) => one.peak_pressure));
     this.peaks.shear = peak(this.peaks.shear, largest((one) => Math.max(Math.abs(one.peak_shear), mu * one.peak_pressure)));
+    this.follower.follow(both.flatMap((one) => one.contact));
+    this.showButton();
     const scale = scaled(this.peaks.pressure, unit);
-    this.fill("pressure", scale.factor, (one, k) => one.pressure[k], []);
-    this.fill("shear", scale.factor, (one, k) => one.shear[k], [mu, -mu]);
+    this.fill(scale.factor, mu);
     this.fillHoop(both, unit);
     for (const name of ["pressure", "shear"]) this.label(name, scale.unit);
   }
@@ -121,30 +150,21 @@ export class RoundCharts {
     document.getElementById(`${name}-unit`).textContent = unit ? `[${unit}]` : "";
   }
 
-  // The curves at the nodes, in the order of the angle. A whole circle ends where it begins.
-  fill(name, factor, value, bounds) {
+  // The curves of pressure and shear. They end at the edges of the contact.
+  fill(factor, mu) {
     const { shown, reference } = this.history;
-    const same = reference && shown && reference.nodes === shown.nodes;
-    const base = shown ?? reference;
-    const chart = this.charts[name];
-    if (!base) {
-      chart.setData([[-180, 180], ...CURVES[name].map(() => [null, null])]);
-      return;
+    const { x, values } = together([shown, reference].map((one) => (one ? partsOf(one.curves) : [])), this.window);
+    const along = (number, name, by = factor) => values(number, name).map((value) => (value === null ? null : by * value));
+    for (const name of ["pressure", "shear"]) {
+      const top = factor * this.peaks[name] || 1, bounds = name === "shear" ? [mu, -mu] : [];
+      this.ranges[name] = [name === "shear" ? -top : 0, top];
+      this.put(name, x, [along(1, name), ...bounds.map((bound) => along(0, "pressure", factor * bound)), along(0, name)]);
     }
-    const { order, degrees, whole } = base.nodes;
-    const x = order.map((k) => degrees[k]);
-    if (whole) x.push(x[0] + 360);
-    const along = (of) => {
-      const found = order.map((k) => factor * of(k));
-      if (whole) found.push(found[0]);
-      return found;
-    };
-    const others = reference && !same ? resampled(reference, base, (k) => factor * value(reference, k), whole) : null;
-    const before = !reference ? x.map(() => null) : same ? along((k) => value(reference, k)) : others;
-    const limits = bounds.map((mu) => (shown ? along((k) => mu * shown.pressure[k]) : x.map(() => null)));
-    const top = factor * this.peaks[name] || 1;
-    this.ranges[name] = [name === "shear" ? -top : 0, top];
-    chart.setData([x, before, ...limits, shown ? along((k) => value(shown, k)) : x.map(() => null)]);
+  }
+
+  put(name, x, values) {
+    const ends = x.length > 1 ? [x, ...values] : [WHOLE, ...values.map(() => [null, null])];
+    this.charts[name].setData(ends);
   }
 
   fillHoop(both, unit) {
@@ -160,44 +180,18 @@ export class RoundCharts {
     const most = scale.factor * Math.max(this.peaks.high, this.peaks.low) || 1;
     // The axis shows zero, and a little beyond it.
     this.ranges.hoop = [-Math.max(scale.factor * this.peaks.low, 0.05 * most), Math.max(scale.factor * this.peaks.high, 0.05 * most)];
-    const x = [...new Set(known.flatMap((one) => [...one.hoop.degrees]))].sort((a, b) => a - b);
-    const along = (one) => (one?.hoop ? interpolated(one.hoop, x, scale.factor) : x.map(() => null));
-    this.charts.hoop.setData([x, along(reference), along(shown)]);
+    const { x, values } = together([shown, reference].map((one) => (one?.hoop ? partsOf(one.hoop) : [])), this.window);
+    this.put("hoop", x, [1, 0].map((number) => values(number, "stress").map((value) => (value === null ? null : scale.factor * value))));
     this.label("hoop", scale.unit);
   }
 
-  // The values under the mouse stand behind the unit.
+  // The value under the mouse stands behind the unit.
   read(plot, name) {
-    const { idx } = plot.cursor;
-    const place = document.getElementById(`${name}-unit`);
-    const unit = place.textContent.split("  ")[0];
-    const value = idx === null || idx === undefined ? null : plot.data.at(-1)[idx];
-    place.textContent = value === null || value === undefined ? unit : `${unit}  ${digits(value)} at ${digits(plot.data[0][idx], 3)}°`;
+    const { left } = plot.cursor, place = document.getElementById(`${name}-unit`);
+    const unit = place.textContent.split("  ")[0], values = plot.data.at(-1), x = plot.data[0];
+    const angle = left >= 0 ? plot.posToVal(left, "x") : NaN, next = x.findIndex((one) => one >= angle);
+    const ends = [values[next - 1] ?? null, values[next] ?? null], share = (angle - x[next - 1]) / (x[next] - x[next - 1] || 1);
+    const value = ends.includes(null) ? null : ends[0] + share * (ends[1] - ends[0]);
+    place.textContent = value === null ? unit : `${unit}  ${digits(value)} at ${angleText(Number(angle.toPrecision(3)))}`;
   }
-}
-
-// The hoop stress at the angles `x`, which have those of the curve among them; both ascend.
-function interpolated({ degrees, stress }, x, factor) {
-  let k = 0;
-  return x.map((angle) => {
-    while (k < degrees.length - 2 && degrees[k + 1] <= angle) k++;
-    const part = (angle - degrees[k]) / (degrees[k + 1] - degrees[k]);
-    return factor * (stress[k] + part * (stress[k + 1] - stress[k]));
-  });
-}
-
-// The values of a picture with other nodes, at the nodes of `base`: those of the nearest node.
-function resampled(picture, base, value, whole) {
-  const { degrees } = picture.nodes;
-  const found = base.nodes.order.map((k) => {
-    let best = 0;
-    degrees.forEach((angle, j) => { if (away(angle, base.nodes.degrees[k]) < away(degrees[best], base.nodes.degrees[k])) best = j; });
-    return value(best);
-  });
-  if (whole) found.push(found[0]);
-  return found;
-}
-
-function away(one, other) {
-  return Math.abs(((one - other + 540) % 360) - 180);
 }

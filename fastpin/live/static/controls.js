@@ -1,7 +1,7 @@
 // Sliders and fields: loads, and everything of the problem that can be changed.
 
 import { newGesture } from "live/lead";
-import { digits, inBaseUnit, scaled } from "live/units";
+import { digits, inBaseUnit, numberText, scaled } from "live/units";
 
 const GROUPS = { loads: "Loads", contact: "Contact", pin: "Pin", plate: "Plate", bush: "Bush", solver: "Solver" };
 const NAMES = {
@@ -15,19 +15,19 @@ const WORDS = { centre: "at its centre", body: "as body force", strain: "plane s
 const LOAD_ENDS = 1.5; // ends of the sliders of loads, in parts of the usual load
 
 export class Controls {
-  constructor(history, leader, before) {
-    Object.assign(this, { history, leader, before });
+  constructor(history, leader, before, say) {
+    Object.assign(this, { history, leader, before, say });
     this.place = document.getElementById("sliders");
-    this.setters = new Map(); // by name: puts a value into its control
+    this.setters = new Map(); // by key: puts a value into its control
     this.kinds = "";
     this.follow = "load";
   }
 
   // Show a problem. Controls stay where they are if the problem has the same ones: one of them may be in the hand.
-  make() {
+  make(isNew = false) {
     const { loads, controls, nodes } = this.history.case;
     const kinds = JSON.stringify([loads.map((load) => [load.name, load.size]), controls.map((one) => [one.name, one.choices])]);
-    if (kinds !== this.kinds) this.build(loads, controls, nodes);
+    if (isNew || kinds !== this.kinds) this.build(loads, controls, nodes);
     this.kinds = kinds;
     this.show();
   }
@@ -38,7 +38,7 @@ export class Controls {
     const groups = new Map(Object.keys(GROUPS).map((name) => [name, []]));
     for (const load of loads) {
       const most = LOAD_ENDS * load.size;
-      const control = { name: load.name, unit: load.unit, least: -most, most, value: 0 };
+      const control = { name: load.name, key: loadKey(load), unit: load.unit, least: -most, most, value: 0 };
       groups.get("loads").push(this.slider(control, (value, gesture) => this.leader.drag({ [load.name]: value }, gesture)));
     }
     for (const control of controls) {
@@ -60,7 +60,7 @@ export class Controls {
   // Put the present loads and the present problem into their controls.
   show() {
     const load = this.history.latest?.load ?? {}, { loads, controls, nodes } = this.history.case;
-    for (const { name } of loads) this.setters.get(name)({ value: load[name] ?? 0 });
+    for (const one of loads) this.setters.get(loadKey(one))({ value: load[one.name] ?? 0 });
     for (const control of controls) this.setters.get(control.name)(control);
     this.setters.get("nodes")({ value: `${nodes}` });
   }
@@ -73,8 +73,7 @@ export class Controls {
     range.type = "range";
     Object.assign(range, { min: control.least, max: control.most, step: "any", value: control.value });
     range.dataset.key = `${control.name} slider`;
-    field.type = "number";
-    field.step = "any";
+    Object.assign(field, { type: "text", inputMode: "decimal", className: "number", autocomplete: "off" }); // a number field drops the comma
     field.dataset.key = control.name;
     field.id = `field-${control.name}`;
     label.htmlFor = field.id;
@@ -84,8 +83,9 @@ export class Controls {
     note.textContent = unit;
     right.append(field, " ", note);
     line.append(label, right, range);
-    let gesture = null;
-    this.setters.set(control.name, ({ value, least, most }) => {
+    let gesture = null, present = control.value;
+    this.setters.set(control.key ?? control.name, ({ value, least, most }) => {
+      present = value;
       if (document.activeElement !== field) field.value = plain(value * factor);
       if (gesture !== null) return; // the slider is in the hand
       if (least !== undefined) Object.assign(range, { min: least, max: most });
@@ -100,7 +100,12 @@ export class Controls {
     range.addEventListener("change", () => { gesture = null; });
     range.addEventListener("dblclick", () => { if (control.least < 0) { range.value = 0; move(0); gesture = null; } });
     field.addEventListener("change", () => {
-      if (field.value !== "") move(inBaseUnit(field.value, scale));
+      const text = numberText(field.value);
+      if (text !== null) move(inBaseUnit(text, scale));
+      else {
+        if (field.value.trim()) this.say(`${label.textContent}: "${field.value}" is no number; write 1234.5 or 1234,5`);
+        field.value = plain(present * factor);
+      }
       gesture = null;
     });
     return line;
@@ -122,7 +127,7 @@ export class Controls {
   }
 
   solver(nodes) {
-    const choices = Object.fromEntries([...new Set([101, 201, 401, 801, nodes])].sort((a, b) => a - b).map((n) => [n, `${n}`]));
+    const choices = Object.fromEntries([...new Set([...[100, 200, 400, 800].filter((one) => one <= this.history.case.most_nodes), nodes])].sort((a, b) => a - b).map((n) => [n, `${n}`]));
     return this.chooser({ name: "nodes", value: `${nodes}`, choices }, (value, gesture) =>
       this.leader.send("nodes", { nodes: Number(value), follow: this.follow, gesture }));
   }
@@ -131,6 +136,11 @@ export class Controls {
     const choices = { load: "straight to the load", history: "whole history again" };
     return this.chooser({ name: "after a change", value: this.follow, choices }, (value) => { this.follow = value; });
   }
+}
+
+// The key of a load's setter. The problem has a field "rotation" too.
+function loadKey({ name }) {
+  return `load ${name}`;
 }
 
 function nameOf(name) {

@@ -1,14 +1,16 @@
 // The pin in its hole: bodies to scale, gaps enlarged, tractions and zones on the arc, the load as an arrow.
 
 import { INK, PRESSURE, REFERENCE, SOFT, WARNING, ofStatus } from "live/colours";
-import { OPEN } from "live/history";
+import { partsOf, valueAt } from "live/curves";
 import { digits } from "live/units";
 
 const REACH = 0.62; // length of the arrow of a load of usual size, in hole radii
 const HIGH = 0.42; // height of the largest pressure, in hole radii
 const GAP = 0.05; // width in which a usual clearance is drawn, in hole radii
 const ARROWS = 8; // degrees between two arrows of the shear
-const LABEL = 0.7; // place of the angles, in hole radii from the centre
+const SHRINKS = [1, 2, 5, 10, 20, 50, 100, 1000, 1e4, 1e5, 1e6]; // how much smaller the arrow of a large load is drawn
+const BORDER = 14; // pixels that its handle keeps from the border
+const LABEL = 0.77; // place of the angles, in hole radii from the centre
 const LONG = 0.17; // length of the largest arrow of the shear, in hole radii
 
 export class Drawing {
@@ -18,7 +20,8 @@ export class Drawing {
     this.context = canvas.getContext("2d");
     this.most = 0; // pressure that is drawn at full height
     this.lost = null; // a load that nothing carries
-    this.target = null; // the load under the mouse
+    this.held = false; // whether the load is dragged: the scale of its arrow then stays as it is
+    this.shrink = 1; // how much smaller the arrow of the load is drawn than a usual one
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
@@ -37,18 +40,25 @@ export class Drawing {
   }
 
   // The place of a load on the canvas: the tip of its arrow.
-  tip(load) {
+  tip(load, shrink = this.shrink) {
     const { x, y, radius } = this.frame();
     const [right, up] = this.history.case.axes;
-    const along = (axis) => (axis.sign * load[axis.load] * REACH * radius) / axis.size;
+    const along = (axis) => (axis.sign * load[axis.load] * REACH * radius) / axis.size / shrink;
     return [x + along(right), y - along(up)];
+  }
+
+  // Draw the arrow of a large load smaller, so that its handle stays inside.
+  fit(load, { width, height }) {
+    if (this.held) return;
+    const isInside = ([px, py]) => px > BORDER && px < width - BORDER && py > BORDER && py < height - BORDER;
+    this.shrink = SHRINKS.find((shrink) => isInside(this.tip(load, shrink))) ?? SHRINKS.at(-1);
   }
 
   // The loads at a place of the canvas.
   loadsAt(px, py) {
     const { x, y, radius } = this.frame();
     const [right, up] = this.history.case.axes;
-    const value = (axis, pixels) => (axis.sign * pixels * axis.size) / (REACH * radius);
+    const value = (axis, pixels) => (axis.sign * pixels * this.shrink * axis.size) / (REACH * radius);
     return { [right.load]: value(right, px - x), [up.load]: value(up, y - py) };
   }
 
@@ -63,6 +73,7 @@ export class Drawing {
     pen.clearRect(0, 0, width, height);
     pen.lineJoin = "round";
     const frame = this.frame(), picture = this.history.shown;
+    if (picture) this.fit(picture.load, frame);
     this.bodies(pen, frame);
     this.pin(pen, frame, picture);
     if (picture) {
@@ -111,9 +122,10 @@ export class Drawing {
   pin(pen, { x, y, radius }, picture) {
     const { case: given } = this.history;
     const usual = Math.max(Math.abs(given.clearance), 0.3 * given.yielded);
-    const times = (GAP * given.radius) / usual; // how much gaps are enlarged
-    this.note.textContent = given.dimensionless ? "gap enlarged" : `gap drawn ${digits(times, 2)} times larger`;
-    const width = (gap) => radius * (1 - Math.min((gap * times) / given.radius, 0.4));
+    const times = Math.max((GAP * given.radius) / usual, 1); // how much gaps are enlarged
+    this.remark(given, times);
+    const most = times > 1 ? 0.4 : 0.95; // of the radius
+    const width = (gap) => radius * (1 - Math.min((gap * times) / given.radius, most));
     pen.beginPath();
     if (picture) {
       const { nodes } = picture;
@@ -122,12 +134,9 @@ export class Drawing {
         pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
       });
       if (!nodes.whole) {
-        // beyond the arc the pin is drawn as rigid
-        const first = nodes.theta.at(-1), turn = 2 * Math.PI - (first - nodes.theta[0]);
-        for (let k = 1; k < 60; k++) {
-          const angle = first + (turn * k) / 60;
-          const gap = given.clearance - picture.dx * Math.cos(angle) - picture.dy * Math.sin(angle);
-          const size = width(Math.max(gap, 0));
+        const [first, turn, gapAt] = rigidGap(picture, given.clearance);
+        for (let k = 1; k < 180; k++) {
+          const angle = first + (turn * k) / 180, size = width(Math.max(gapAt(angle), 0));
           pen.lineTo(x + size * Math.cos(angle), y - size * Math.sin(angle));
         }
       }
@@ -160,60 +169,57 @@ export class Drawing {
     }
   }
 
+  // How gaps and the load are drawn.
+  remark(given, times) {
+    const gaps = times === 1 ? "gaps to scale" : given.dimensionless ? "gaps enlarged" : `gaps enlarged ${digits(times, 2)} times`;
+    this.note.textContent = this.shrink === 1 ? gaps : `${gaps}; arrow of the load at 1/${this.shrink}`;
+  }
+
   pressure(pen, { x, y, radius }, picture, fill, stroke) {
-    for (const run of closedRuns(picture)) {
-      const out = run.map((k) => {
-        const size = radius * (1 + (HIGH * picture.pressure[k]) / this.most), angle = picture.nodes.theta[k];
-        return [x + size * Math.cos(angle), y - size * Math.sin(angle)];
-      });
-      const ends = [run.at(-1), run[0]].map((k) => picture.nodes.theta[k]);
+    for (const { degrees, pressure } of partsOf(picture.curves)) {
       pen.beginPath();
-      for (const place of out) pen.lineTo(...place);
+      degrees.forEach((angle, k) => {
+        const size = radius * (1 + (HIGH * pressure[k]) / this.most), turned = onCircle(angle);
+        pen.lineTo(x + size * Math.cos(turned), y - size * Math.sin(turned));
+      });
       pen.strokeStyle = stroke;
       pen.lineWidth = 1.5;
       pen.stroke();
       if (fill) {
-        if (run.length === picture.status.length) {
-          pen.closePath();
-          pen.moveTo(x + radius, y);
-          pen.arc(x, y, radius, 0, 2 * Math.PI, true);
-        } else {
-          pen.arc(x, y, radius, -ends[0], -ends[1]);
-        }
+        pen.arc(x, y, radius, -onCircle(degrees.at(-1)), -onCircle(degrees[0]));
         pen.fillStyle = fill;
-        pen.fill("evenodd");
+        pen.fill();
       }
     }
   }
 
   // A band along the edge of the hole in the colours of stick and slip.
   zones(pen, { x, y, radius }, picture) {
-    const { theta } = picture.nodes;
-    const half = 0.5 * (theta[1] - theta[0]);
     pen.lineWidth = Math.max(5, 0.028 * radius);
-    picture.status.forEach((status, k) => {
-      if (status === OPEN) return;
+    for (const [start, stop, status] of picture.zones) {
       pen.beginPath();
-      pen.arc(x, y, radius, -theta[k] - half * 1.05, -theta[k] + half * 1.05);
+      pen.arc(x, y, radius, -onCircle(stop), -onCircle(start));
       pen.strokeStyle = ofStatus(status);
       pen.stroke();
-    });
+    }
   }
 
-  // Arrows along the pin: the shear traction on it.
+  // Arrows along the pin: the shear traction on it. A narrow contact has shorter ones.
   shear(pen, { x, y, radius }, picture) {
-    const { theta, degrees } = picture.nodes;
-    const size = picture.nodes.theta.length;
-    const stride = Math.max(1, Math.round(ARROWS / Math.abs(degrees[Math.min(2, size - 1)] - degrees[1] || 1)));
+    const parts = partsOf(picture.curves), largest = this.most * Math.max(this.history.case.friction, 1e-3);
     pen.lineWidth = 2;
-    for (let k = 0; k < size; k += stride) {
-      const shear = picture.shear[k] / (this.most * Math.max(this.history.case.friction, 1e-3));
-      if (picture.status[k] === OPEN || Math.abs(shear) < 0.03) continue;
-      const angle = theta[k], long = LONG * Math.max(-1.2, Math.min(1.2, shear));
-      const ring = 0.87 * radius;
-      const middle = [x + ring * Math.cos(angle), y - ring * Math.sin(angle)];
-      const along = [-Math.sin(angle) * long * radius, -Math.cos(angle) * long * radius];
-      arrow(pen, middle[0] - along[0] / 2, middle[1] - along[1] / 2, middle[0] + along[0] / 2, middle[1] + along[1] / 2, INK, 7);
+    for (const part of parts) {
+      const start = part.degrees[0], wide = part.degrees.at(-1) - start;
+      const step = wide / Math.max(Math.round(wide / ARROWS), 1);
+      for (let place = start + 0.5 * step; place < start + wide; place += step) {
+        const shear = valueAt(part, "shear", place) / largest;
+        if (Math.abs(shear) < 0.03) continue;
+        const angle = onCircle(place), long = LONG * Math.min(step / ARROWS, 1) * Math.max(-1.2, Math.min(1.2, shear));
+        const ring = 0.87 * radius;
+        const middle = [x + ring * Math.cos(angle), y - ring * Math.sin(angle)];
+        const along = [-Math.sin(angle) * long * radius, -Math.cos(angle) * long * radius];
+        arrow(pen, middle[0] - along[0] / 2, middle[1] - along[1] / 2, middle[0] + along[0] / 2, middle[1] + along[1] / 2, INK, 7);
+      }
     }
   }
 
@@ -311,22 +317,18 @@ export function peak(before, value) {
   return value > before || value < before / 3 ? value * 1.15 : before;
 }
 
-// The runs of neighbouring closed nodes, as lists of nodes. A run may go across the end of a whole circle.
-function closedRuns(picture) {
-  const { status, nodes } = picture, size = status.length, found = [];
-  const open = status.findIndex((one) => one === OPEN);
-  if (open < 0) return [[...Array(size).keys()]];
-  let run = [];
-  for (let k = 0; k <= size; k++) {
-    const node = nodes.whole ? (open + k) % size : k;
-    const closed = (nodes.whole || k < size) && status[node] !== OPEN;
-    if (closed) run.push(node);
-    else if (run.length) {
-      found.push(run);
-      run = [];
-    }
-  }
-  return found;
+// Beyond an arc of nodes the pin is drawn as rigid. The answer has the end of the arc, the angle to its beginning, and
+// the gap: that of a circle which has the gaps of both ends.
+function rigidGap({ nodes: { theta }, gap }, clearance) {
+  const [start, stop] = [theta[0], theta.at(-1)], [one, other] = [clearance - gap[0], clearance - gap.at(-1)];
+  const part = Math.sin(stop - start);
+  const right = (one * Math.sin(stop) - other * Math.sin(start)) / part, up = (other * Math.cos(start) - one * Math.cos(stop)) / part;
+  return [stop, 2 * Math.PI - (stop - start), (angle) => clearance - right * Math.cos(angle) - up * Math.sin(angle)];
+}
+
+// An angle from the bottom, in degrees, as the angle from the right, in rad.
+function onCircle(angle) {
+  return ((angle - 90) * Math.PI) / 180;
 }
 
 function arrow(pen, x, y, tx, ty, colour, head, backwards = false) {

@@ -1,6 +1,6 @@
 // Files that the page gives: a picture of itself, and its loads when the server is gone.
 
-import { INK } from "live/colours";
+import { INK, ofStatus } from "live/colours";
 
 export function download(name, blob) {
   const link = document.createElement("a");
@@ -31,7 +31,7 @@ export function image(title) {
   }
   for (const item of all("#legend li")) {
     const box = item.getBoundingClientRect();
-    pen.fillStyle = getComputedStyle(item, "::before").backgroundColor;
+    pen.fillStyle = item.className === "negative" ? ofStatus(-1) : getComputedStyle(item, "::before").backgroundColor;
     pen.fillRect(box.left, box.top + box.height / 2 - 4, 14, 8);
   }
   pen.fillStyle = INK;

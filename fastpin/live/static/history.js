@@ -2,8 +2,6 @@
 
 import { floats, statuses } from "live/arrays";
 
-export const STEPS_OF_MAP = 400;
-const ROWS = 180;
 export const OPEN = 2, SLIDES = 3; // statuses: open, and closed without friction; 0 sticks, +1 and -1 slip
 
 export class History {
@@ -40,10 +38,11 @@ export class History {
     if (this.case.friction === 0) {
       // without friction there is neither stick nor slip
       found.status = found.status.map((status) => (status === OPEN ? OPEN : SLIDES));
-      found.slip = picture.slip.map(([start, stop]) => [start, stop, SLIDES]);
     }
-    found.hoop = picture.hoop && { degrees: floats(picture.hoop.degrees), stress: floats(picture.hoop.stress) };
-    found.column = column(found);
+    // The zones of the contact: start and stop in degrees, and the status.
+    found.zones = [...picture.stick.map((ends) => [...ends, 0]), ...picture.slip].map(([start, stop, status]) => [start, stop, this.case.friction === 0 ? SLIDES : status]);
+    found.hoop = picture.hoop && unpackedAll(picture.hoop);
+    found.curves = unpackedAll(picture.curves);
     return found;
   }
 
@@ -60,36 +59,12 @@ export class History {
   }
 }
 
-// The nodes of a grid: angles in rad and in degrees from the bottom, and for each row of the map its nearest node.
+function unpackedAll(arrays) {
+  return Object.fromEntries(Object.entries(arrays).map(([name, text]) => [name, floats(text)]));
+}
+
+// The nodes of a grid: their angles in rad, and whether they stand all round.
 function grid(theta) {
-  const degrees = Array.from(theta, (angle) => fromBottom(angle));
-  const order = Array.from(degrees.keys()).sort((a, b) => degrees[a] - degrees[b]);
-  const spacing = (360 / theta.length) * 1.5;
-  const rows = new Int32Array(ROWS);
-  for (let row = 0; row < ROWS; row++) {
-    const angle = 179 - (360 / ROWS) * row;
-    let best = -1, least = Math.max(spacing, 360 / ROWS);
-    for (let k = 0; k < degrees.length; k++) {
-      const away = Math.abs(((angle - degrees[k] + 540) % 360) - 180);
-      if (away < least) { least = away; best = k; }
-    }
-    rows[row] = best;
-  }
   const whole = theta.length > 4 && 2 * Math.PI - (theta.at(-1) - theta[0]) < 1.5 * (theta[1] - theta[0]);
-  return { theta, degrees, order, rows, whole, name: `${theta.length}` };
-}
-
-export function fromBottom(angle) {
-  const turned = (((angle * 180) / Math.PI + 90 + 180) % 360 + 360) % 360 - 180;
-  return Math.abs(turned - 180) < 1e-4 ? -180 : turned;
-}
-
-// The statuses of a picture in the rows of the map, top first.
-function column(picture) {
-  const found = new Int8Array(ROWS);
-  for (let row = 0; row < ROWS; row++) {
-    const node = picture.nodes.rows[row];
-    found[row] = node < 0 ? OPEN : picture.status[node];
-  }
-  return found;
+  return { theta, whole };
 }

@@ -25,6 +25,8 @@ export class LoopChart {
       series: [null, { paths: line, stroke: INK }, { paths: line, stroke: WARNING }, { paths: line, stroke: REFERENCE }],
     }, [null, [[], []], [[], []], [[], []]]);
     this.bent = document.getElementById("loop-bent");
+    this.isChosen = false; // whether the user has chosen the load
+    this.select.addEventListener("change", () => { this.isChosen = true; });
     for (const choice of [this.select, this.bent]) choice.addEventListener("change", () => this.show());
   }
 
@@ -48,13 +50,30 @@ export class LoopChart {
     return null;
   }
 
+  // List the loads. Until the user chooses one, the chart shows the load that moves.
   names(picture) {
-    const names = Object.keys(picture.loops);
+    const names = Object.keys(picture.loops), chosen = this.select.value;
     const listed = Array.from(this.select.options, (option) => option.value);
-    if (names.join() === listed.join()) return;
-    const chosen = names.includes(this.select.value) ? this.select.value : "Q";
-    this.select.replaceChildren(...names.map((name) => new Option(name, name)));
-    this.select.value = chosen;
+    if (names.join() !== listed.join()) this.select.replaceChildren(...names.map((name) => new Option(name, name)));
+    const isKept = this.isChosen && names.includes(chosen);
+    this.select.value = isKept ? chosen : this.moving(names, chosen);
+  }
+
+  // The load that moved most in the latest gesture, in parts of the size of its kind. The present one stays if it moved half
+  // as far: a load that turns round the pin does not change the chart.
+  moving(names, present) {
+    const { pictures, place } = this.history, { gesture, rounding } = pictures[place], before = {}, moved = {};
+    let first = place;
+    while (first > 0 && pictures[first - 1].gesture === gesture) first -= 1;
+    for (let k = Math.max(first - 1, 0); k <= place; k++) {
+      for (const name of names) {
+        const value = pictures[k].loops[name]?.[0] ?? 0, size = rounding[KINDS[name] ?? "traction"] || 1;
+        moved[name] = (moved[name] ?? 0) + Math.abs(value - (before[name] ?? (first ? value : 0))) / size;
+        before[name] = value;
+      }
+    }
+    const most = names.reduce((best, name) => (moved[name] > moved[best] ? name : best), names[0]);
+    return moved[present] >= 0.5 * moved[most] && (moved[most] > 0 || present) ? present : most;
   }
 
   // The least width of the axis of displacements or rotations, in SI units.

@@ -2,6 +2,7 @@
 
 import { RoundCharts } from "live/charts";
 import { Controls } from "live/controls";
+import { partsOf, together } from "live/curves";
 import { Drawing } from "live/drawing";
 import { download, image, loadsText } from "live/files";
 import { History } from "live/history";
@@ -12,7 +13,8 @@ import { MapChart } from "live/map";
 import { showNumbers } from "live/numbers";
 import { Player } from "live/play";
 import { Pointer } from "live/pointer";
-import { withUnit } from "live/units";
+import { fixPrefixes, withUnit } from "live/units";
+import { WHOLE } from "live/window";
 
 const SAME = 1e-9; // relative difference of two loads that count as the same
 const recorded = document.getElementById("recording");
@@ -22,7 +24,8 @@ const history = new History();
 const drawing = new Drawing(at("drawing"), at("scale-note"));
 const charts = new RoundCharts(history);
 const loops = new LoopChart(history);
-const map = new MapChart(history);
+const map = new MapChart(history, charts);
+charts.onZoom = show;
 const times = []; // when pictures were asked for and drawn, ms: for measurements
 let waiting = false, link = null, leader = null, player = null, controls = null;
 
@@ -65,10 +68,11 @@ function showTimeline() {
 function showLesson() {
   const { shown, reference, case: given } = history;
   let words = "";
-  if (shown && reference && shown !== reference && shown.nodes === reference.nodes && shown.serial !== reference.serial) {
+  if (shown && reference && shown !== reference && shown.serial !== reference.serial) {
     const names = given.loads.map((load) => load.name);
     if (names.every((name) => near(shown.load[name], reference.load[name], given.loads.find((load) => load.name === name).size))) {
-      const most = shown.shear.reduce((found, value, k) => Math.max(found, Math.abs(value - reference.shear[k])), 0);
+      const { values } = together([shown, reference].map((one) => partsOf(one.curves)), WHOLE), before = values(1, "shear");
+      const most = values(0, "shear").reduce((found, value, k) => Math.max(found, Math.abs(value - before[k])), 0);
       const unit = given.units.traction, part = most / Math.max(Math.abs(reference.peak_shear), 1e-300);
       words = part > 1e-6
         ? `Same load as the reference, reached in another way: the shear differs by up to ${withUnit(most, unit, 3)}. The contact remembers its way.`
@@ -98,7 +102,11 @@ function say(sentence, kind = "") {
 }
 
 function news(answer) {
-  if (answer.kind === "welcome") return;
+  if (answer.kind === "welcome") {
+    at("share").hidden = !answer.shared;
+    at("shared").textContent = at("shared").href = answer.shared;
+    return;
+  }
   if (answer.kind === "pictures") {
     const isNew = history.take(answer);
     drawing.lost = null;
@@ -106,6 +114,7 @@ function news(answer) {
       at("hoop-body").textContent = history.case.plate === "bushing" ? "bush" : "plate";
       at("title").textContent = history.case.title ? `· ${history.case.title}` : "";
       document.title = `fastpin live${history.case.title ? ` · ${history.case.title}` : ""}`;
+      listUnits();
       controls?.make();
     } else controls?.show();
     if (answer.sentence) say(answer.sentence);
@@ -157,6 +166,11 @@ function listen() {
     show();
   });
   click("replay", replay);
+  at("units").addEventListener("change", () => {
+    listUnits();
+    controls?.make(true);
+    show();
+  });
   if (recorded) return;
   click("undo", ask("undo"));
   click("redo", ask("redo"));
@@ -165,6 +179,11 @@ function listen() {
   for (const [id, name] of [["play-case", "playCase"], ["play-cycle", "playCycle"], ["play-turn", "playTurn"], ["play-two", "playTwo"]]) {
     click(id, () => { before(); player[name](); });
   }
+  click("share", () => {
+    at("code").src = "code.svg";
+    at("sharing").showModal();
+  });
+  click("shared-close", () => at("sharing").close());
   click("stop", () => { player.stop(); link.stop(); });
 }
 
@@ -185,7 +204,7 @@ function replay() {
 
 function keys(event) {
   const letter = event.key.toLowerCase(), control = event.ctrlKey || event.metaKey;
-  if (event.target.matches(control ? "input[type=number]" : "input, select")) return; // the browser's own keys
+  if (event.target.matches(control ? "input.number" : "input, select")) return; // the browser's own keys
   if (control && letter === "z" && !recorded) at(event.shiftKey ? "redo" : "undo").click();
   else if (control && letter === "y" && !recorded) at("redo").click();
   else if (event.key === " " && !event.target.matches("button")) replay();
@@ -195,6 +214,14 @@ function keys(event) {
     show();
   } else return;
   event.preventDefault();
+}
+
+// The choices of units: prefixes by the size of a value, or one for each kind of unit.
+function listUnits() {
+  const { prefixes } = history.case, place = at("units"), names = Object.keys(prefixes);
+  place.hidden = !names.length;
+  if (place.options.length !== names.length + 1) place.replaceChildren(new Option("units by size", ""), ...names.map((name) => new Option(name, name)));
+  fixPrefixes(prefixes[place.value] ?? {});
 }
 
 function legend() {
@@ -224,7 +251,7 @@ if (recorded) {
   link = new Link(news, status);
   leader = new Leader(link);
   player = new Player(history, leader, link, playing);
-  controls = new Controls(history, leader, before);
+  controls = new Controls(history, leader, before, say);
   new Pointer(drawing, history, leader, before);
 }
 listen();

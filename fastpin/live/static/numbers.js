@@ -20,11 +20,8 @@ export function showNumbers(history) {
   body.replaceChildren(...lines);
 }
 
-const NOTHING = 1e-10; // a value that is rounding, in parts of its usual size
-
-function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) {
-  const usual = { displacement: yielded, rotation: dimensionless ? yielded : yielded / radius };
-  const unit = (kind, value) => withUnit(Math.abs(value) < NOTHING * (usual[kind] ?? 0) ? 0 : value, units[kind]);
+function cells(picture, { units, loads, axes }) {
+  const unit = (kind, value) => withUnit(Math.abs(value) <= picture.rounding[kind] ? 0 : value, units[kind]);
   const acting = loads.filter(({ name }) => picture.load[name] || axes.some(({ load }) => load === name));
   const reactions = ["P", "Q"].filter((name) => !loads.some((load) => load.name === name));
   const loadCells = [
@@ -52,7 +49,7 @@ function cells(picture, { units, loads, axes, yielded, radius, dimensionless }) 
 
 function hoopCells({ degrees: angles, stress }, unit) {
   const most = Math.max(...stress);
-  return [["largest hoop stress", unit("traction", most)], ["at", degrees(angles[stress.indexOf(most)])]];
+  return [["largest hoop stress", unit("traction", most)], ["at", most === 0 ? degrees(null) : degrees(angles[stress.indexOf(most)])]];
 }
 
 function total(intervals) {

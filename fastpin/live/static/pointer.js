@@ -11,13 +11,14 @@ export class Pointer {
     Object.assign(this, { drawing, history, leader, before });
     this.gesture = null;
     this.held = null; // the gesture of the arrow keys that are down
+    this.asked = null; // the load of the latest arrow key
     const { canvas } = drawing;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
-    canvas.addEventListener("keydown", (event) => this.key(event));
-    canvas.addEventListener("keyup", (event) => { if (KEYS[event.key]) this.held = null; });
-    canvas.addEventListener("blur", () => { this.held = null; });
+    document.addEventListener("keydown", (event) => this.key(event));
+    document.addEventListener("keyup", (event) => { if (KEYS[event.key]) this.held = null; });
+    window.addEventListener("blur", () => { this.held = null; });
   }
 
   down(event) {
@@ -28,6 +29,7 @@ export class Pointer {
     // The tip stays at the same distance from the mouse, so a click moves nothing.
     const near = Math.hypot(event.offsetX - tip[0], event.offsetY - tip[1]) < 30;
     this.offset = near ? [event.offsetX - tip[0], event.offsetY - tip[1]] : [0, 0];
+    this.drawing.held = true;
     this.drawing.canvas.setPointerCapture(event.pointerId);
     this.drawing.canvas.classList.add("dragging");
     if (!near) this.move(event);
@@ -41,6 +43,8 @@ export class Pointer {
 
   up() {
     this.gesture = null;
+    this.drawing.held = false;
+    this.drawing.draw();
     this.drawing.canvas.classList.remove("dragging");
   }
 
@@ -61,14 +65,22 @@ export class Pointer {
     return { ...none, ...this.history.latest?.load };
   }
 
+  // Whether a part of the drawing is in the window. If not, the arrow keys scroll the page.
+  isSeen() {
+    const box = this.drawing.canvas.getBoundingClientRect();
+    return box.bottom > 0 && box.top < window.innerHeight;
+  }
+
   key(event) {
     const way = KEYS[event.key];
     if (!way || event.ctrlKey || event.metaKey || !this.history.case) return;
+    if (event.target.matches("input, select") || !this.isSeen()) return; // the browser's own keys
     event.preventDefault();
     this.before();
     this.held ??= newGesture();
-    const step = STEP * (event.shiftKey ? 5 : event.altKey ? 0.1 : 1), load = this.present();
+    const step = STEP * (event.shiftKey ? 5 : event.altKey ? 0.1 : 1), load = this.leader.busy && this.asked ? this.asked : this.present();
     const moved = this.history.case.axes.map((axis, k) => [axis.load, load[axis.load] + axis.sign * way[k] * step * axis.size]);
-    this.leader.drag(Object.fromEntries(moved), this.held);
+    this.asked = Object.fromEntries(moved); // a key that comes before the answer goes on from here
+    this.leader.drag(this.asked, this.held);
   }
 }

@@ -4,14 +4,35 @@
 const PREFIXES = { 9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n", "-12": "p" };
 const WITHOUT = new Set(["", "F", "F R", "F/R", "R", "F beta*", "F beta*/R", "R^2/beta*", "F^2 beta*", "1/beta*", "deg"]);
 
-// A factor and a unit in which values up to `largest` read well.
-export function scaled(largest, { name, factor }) {
-  if (WITHOUT.has(name) || !(largest > 0) || !isFinite(largest)) return { factor, exponent: 0, whole: factor, unit: shown(name) };
-  const exponent = Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(factor * largest * (1 + 1e-12)) / 3)));
-  return { factor: factor * 10 ** -exponent, exponent, whole: factor, unit: PREFIXES[exponent] + name };
+let prefixes = {}; // the exponents of the units that have a prefix of their own, by their names
+
+// Give some units a prefix of their own: an exponent for each name.
+export function fixPrefixes(exponents) {
+  prefixes = exponents;
 }
 
-// The value that a text in such a unit means. 1 MPa is 1e6 Pa to the last digit, and 5 kN are 5000 N over the thickness.
+// A factor and a unit in which values up to `largest` read well.
+export function scaled(largest, { name, factor }) {
+  if (WITHOUT.has(name)) return withExponent(name, factor, 0);
+  if (name in prefixes) return withExponent(name, factor, prefixes[name]);
+  if (!(largest > 0) || !isFinite(largest)) return withExponent(name, factor, 0);
+  return withExponent(name, factor, Math.min(9, Math.max(-12, 3 * Math.floor(Math.log10(factor * largest * (1 + 1e-12)) / 3))));
+}
+
+function withExponent(name, factor, exponent) {
+  return { factor: factor * 10 ** -exponent, exponent, whole: factor, unit: PREFIXES[exponent] + shown(name) };
+}
+
+const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+
+// A text as JavaScript reads a number: with a decimal point, and without blanks around it. A single comma is a decimal
+// comma, in every language. The answer is null if the text is no number: "1,000.5" has two kinds of separators.
+export function numberText(text) {
+  const plain = text.trim().replace("−", "-").replace(",", text.includes(".") ? "," : ".");
+  return NUMBER.test(plain) ? plain : null;
+}
+
+// The value that such a text means. 1 MPa is 1e6 Pa to the last digit, and 5 kN are 5000 N over the thickness.
 export function inBaseUnit(text, { exponent, whole }) {
   return (/e/i.test(text) ? Number(text) * 10 ** exponent : Number(`${text}e${exponent}`)) / whole;
 }
