@@ -439,7 +439,7 @@ def test_the_curves_of_a_picture_are_those_of_figures() -> None:
     assert found[0].size < 0.6 * angle.size
     edges = np.degrees([end for ends in state.contact for end in ends]) + 90.0
     assert found[0][[0, -1]] == pytest.approx(edges, abs=1e-4)
-    assert np.array_equal(found[1][[0, -1]], [0.0, 0.0])
+    assert np.allclose(found[1][[0, -1]], 0.0, atol=1e-12 * state.peak_pressure)
 
 
 def test_curves_across_the_top_have_a_part_at_either_end() -> None:
