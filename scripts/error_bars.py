@@ -130,7 +130,7 @@ def count(
         elif error > rounding:
             pairs[group].append((error, unsure, bars[name]))
         found = estimate((8.0, 4.0, 2.0, 1.0), [each[name] for each in sequence[:-1]], rounding)
-        if found.verdict in ("observed", "not observed") and unsure > rounding:
+        if found.verdict in ("observed", "converged", "not converged") and unsure > rounding:
             studies[group].append((unsure, found.bar, float(found.verdict == "observed")))
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Iterable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,9 +17,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.style import Line, line
-from fastpin.figures.words import caption, loads_text, quantity
+from fastpin.figures.words import caption, loads_text
 from fastpin.model.checks import as_toml, instance, whole_number
-from fastpin.model.units import scaled
 from fastpin.report.convergence import ReportedSeries, reported_series
 from fastpin.states.quantities import QUANTITIES
 from fastpin.studies.convergence import Convergence
@@ -28,16 +29,27 @@ MOST_PANELS = 9
 COLUMNS = 3
 """Panels side by side."""
 
+HEIGHT = 1.95
+"""Height of a panel, inches."""
+
+LETTERS = 9.5
+"""Size of the words of a panel, points. They can be read at half size."""
+
+LINE = 0.125
+"""Height of a line of words in a panel, in parts of the panel."""
+
 ORDER_OF_PANELS = (
     "peak_pressure", "peak_shear", "shear_magnitude", "contact_1_start", "contact_1_stop", "stick_1_start",
     "stick_1_stop", "rotation", "dissipation", "dx", "dy", "pressure_integral",
 )  # fmt: skip
 """Quantities that get the first panels. All other quantities follow."""
 
-_GUIDES: dict[int, Line] = {1: {"color": "0.6", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
-           2: {"color": "0.6", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.0}}  # fmt: skip
+_GUIDES: dict[int, Line] = {1: {"color": "0.55", "linestyle": (0, (4.0, 2.0)), "linewidth": 0.8},
+           2: {"color": "0.55", "linestyle": (0, (1.0, 1.5)), "linewidth": 1.1}}  # fmt: skip
 
 _STYLES: dict[str, Line] = {"path": {**line(0), "marker": "o"}, "increment": {**line(1, 1), "marker": "s"}}
+_MARKS = {"path": "\N{BLACK CIRCLE}", "increment": "\N{BLACK SQUARE}"}
+_BAR: Line = {"marker": "_", "markersize": 11.0, "markeredgewidth": 2.0}
 _NAMES = {"path": "path solver, against nodes", "increment": "increment solver, {} nodes, against increments a step"}
 TITLE_WIDTH = 90
 """Characters in a line of the title."""
@@ -56,9 +68,10 @@ def plot_convergence(
     """Draw the convergence at one corner, with up to nine panels, one for each outcome or quantity.
 
     A panel shows the distance of the values to the limit of their sequence, against the number of nodes or of
-    increments. Marks are filled if an order is observed; the panel names it. Else the marks are open, and the distance
-    is measured from the last value. A dash at the last count is the error bar. Guides have the orders 1 and 2.
-    Quantities that are exact to rounding, or can't be compared, have no panel.
+    increments. Distances are relative to the value, and distances of places to the width of the contact. All panels
+    have the same axes. Each panel names the verdict. Marks are filled if an order is observed. Else the marks are open,
+    and the distance is measured from the last value. A dash at the last count is the error bar. Guides have the orders
+    1 and 2. Quantities that are exact to rounding, or can't be compared, have no panel.
 
     Parameters
     ----------
@@ -90,79 +103,113 @@ def plot_convergence(
 
 
 def _draw(convergence: Convergence, corner: int, look: Look) -> Sheet:
-    found: dict[str, dict[str, tuple[tuple[int, ...], ReportedSeries]]] = {}
+    found: dict[str, dict[str, Sequence]] = {}
     for study in convergence.studies:
         for row in reported_series(study, convergence.problem, corner):
-            if row.verdict in ("observed", "not observed"):
-                found.setdefault(row.name, {})[study.method] = study.counts, row
-    chosen = [name for name, rows in found.items() if any(row.is_outcome for _, row in rows.values())]
+            if row.verdict in ("observed", "converged", "not converged"):
+                found.setdefault(row.name, {})[study.method] = Sequence.of(study.counts, row)
+    chosen = [name for name, each in found.items() if any(one.row.is_outcome for one in each.values())]
     names = [name for name in (*chosen, *ORDER_OF_PANELS, *QUANTITIES, *found) if name in found]
     names = list(dict.fromkeys(names))[:MOST_PANELS]
     rows = max(1, math.ceil(len(names) / COLUMNS))
-    sheet = look.sheet([2.0] * rows, columns=COLUMNS)
+    sheet = look.sheet([HEIGHT] * rows, columns=COLUMNS)
     axes = sheet.axes
     sheet.grid()
-    for index, panel in enumerate(axes.flat):
-        panel.set_visible(index < len(names))
-        if index + COLUMNS >= len(names):
-            panel.set_xlabel("nodes; increments a step" if len(convergence.studies) > 1 else "nodes")
     for name, panel in zip(names, axes.flat, strict=False):
         _draw_panel(panel, found[name])
+    _scale_axes(axes.flat[: len(names)], [one for name in names for one in found[name].values()])
+    for index, panel in enumerate(axes.flat):
+        panel.set_visible(index < len(names))
+        panel.tick_params(labelsize=LETTERS, labelleft=index % COLUMNS == 0, labelbottom=index + COLUMNS >= len(names))
+        if index + COLUMNS >= len(names):
+            panel.set_xlabel("nodes; increments a step" if len(convergence.studies) > 1 else "nodes")
     for panel in axes[:, 0]:
-        panel.set_ylabel("| value \N{MINUS SIGN} limit |")
-    methods = list(dict.fromkeys(method for each in found.values() for method in each))
-    guides: list[tuple[str, Line]] = [(f"order {order}", style) for order, style in _GUIDES.items()]
-    open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"}
-    bar: Line = {"color": "0.3", "linestyle": "none", "marker": "_", "markersize": 9.0, "markeredgewidth": 1.6}
-    entries: list[tuple[str, Line]] = [
-        (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 4.0})
-        for study in convergence.studies
-        if study.method in methods
-    ]
-    entries += [("no order observed: to the last value", open_marks), ("error bar of the last value", bar), *guides]
-    sheet.legend([Line2D([], [], label=label, **style) for label, style in entries], 2)
+        panel.set_ylabel("relative distance")
+    _add_legend(sheet, convergence, {method for each in found.values() for method in each})
     heading = f"corner {corner}: {loads_text(convergence.problem, convergence.loads[corner])}"
     sheet.head(*textwrap.wrap(look.title, TITLE_WIDTH), heading, caption=caption(convergence.problem))
     return sheet
 
 
-def _draw_panel(panel: Axes, sequences: dict[str, tuple[tuple[int, ...], ReportedSeries]]) -> None:
-    rows = [row for _, row in sequences.values()]
-    largest = max(float(np.ptp(row.values)) for row in rows)
-    factor, unit = scaled([largest], rows[0].unit)
-    panel.set_title(quantity(rows[0].label, unit), fontsize=8.5, parse_math=False)
+def _add_legend(sheet: Sheet, convergence: Convergence, methods: set[str]) -> None:
+    open_marks: Line = {"color": "0.3", "linestyle": "none", "marker": "o", "markersize": 5.0, "fillstyle": "none"}
+    entries: list[tuple[str, Line]] = [
+        (_NAMES[study.method].format(study.nodes), {**_STYLES[study.method], "markersize": 5.0})
+        for study in convergence.studies
+        if study.method in methods
+    ]
+    entries += [
+        ("filled: distance to the limit", open_marks | {"fillstyle": "full"}),
+        ("open: without an order, distance to the last value", open_marks),
+        ("error bar of the last value", {**_BAR, "color": "0.3", "linestyle": "none"}),
+        *((f"order {order}", style) for order, style in _GUIDES.items()),
+    ]
+    sheet.legend([Line2D([], [], label=label, **style) for label, style in entries], 2)
+
+
+class Sequence(NamedTuple):
+    """A sequence of values as a panel shows it.
+
+    Attributes
+    ----------
+    counts : tuple of int
+        Numbers of nodes or of increments.
+    row : ReportedSeries
+    distances : ndarray, shape (counts,)
+        Distance to the limit, or to the last value without an order; relative to the reference. NaN in place of 0.
+    bar : float
+        Error bar of the last value, relative to the reference.
+    """
+
+    counts: tuple[int, ...]
+    row: ReportedSeries
+    distances: np.ndarray
+    bar: float
+
+    @classmethod
+    def of(cls, counts: tuple[int, ...], row: ReportedSeries) -> Sequence:
+        """Return the sequence of a reported series."""
+        limit = row.limit if row.verdict == "observed" else row.values[-1]
+        distances = np.abs(np.subtract(row.values, limit)) / row.reference
+        distances[distances == 0.0] = np.nan
+        return cls(counts, row, distances, row.bar / row.reference)
+
+
+def _draw_panel(panel: Axes, sequences: dict[str, Sequence]) -> None:
+    panel.set_title(next(iter(sequences.values())).row.label, fontsize=LETTERS, parse_math=False)
     panel.set_xscale("log")
     panel.set_yscale("log")
-    words = []
-    for method, (counts, row) in sequences.items():
+    for place, (method, one) in enumerate(sequences.items()):
         style = _STYLES[method]
-        observed = row.verdict == "observed"
-        distance = factor * np.abs(np.subtract(row.values, row.limit if observed else row.values[-1]))
-        distance[distance == 0.0] = np.nan
-        fillstyle = "full" if observed else "none"
-        panel.plot(counts, distance, markersize=3.6, fillstyle=fillstyle, **style)
-        panel.plot(
-            counts[-1:], [factor * row.bar], marker="_", markersize=9.0, markeredgewidth=1.6, color=style["color"]
-        )
-        words.append((f"order {row.order:.1f}" if observed else "no order", style["color"]))
-        if np.isfinite(distance).any():
-            first = int(np.flatnonzero(np.isfinite(distance))[0])
-            span = np.array([counts[first], counts[-1]], dtype=float)
-            for order, guide in _GUIDES.items():
-                panel.plot(span, distance[first] * (counts[first] / span) ** order, zorder=0, **guide)
-    for place, (word, colour) in enumerate(words):
+        fillstyle = "full" if one.row.verdict == "observed" else "none"
+        panel.plot(one.counts, one.distances, markersize=4.5, fillstyle=fillstyle, **style)
+        panel.plot(one.counts[-1:], [one.bar], **_BAR, color=style["color"])
+        mark = f"{_MARKS[method]} " if len(sequences) > 1 else ""
         panel.text(
-            0.98, 0.98 - 0.11 * place, word, color=colour, fontsize=8.0, ha="right", va="top", transform=panel.transAxes
-        )
-    panel.margins(x=0.12, y=0.08)
-    low, high = panel.get_ylim()
-    low = min(low, high / 30.0)  # a decade at least
-    if high < 100.0 * low:
-        panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
-        panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.yaxis.set_minor_formatter(NullFormatter())
-    panel.set_ylim(low, high * (high / low) ** (0.14 * len(words) + 0.04))  # room for the words
-    left, right = panel.get_xlim()
-    panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if right > 12.0 * left else (1.0, 2.0, 5.0)))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.xaxis.set_minor_formatter(NullFormatter())
+            0.98, 0.98 - LINE * place, mark + one.row.words.replace("-", "\N{MINUS SIGN}"), color=style["color"],
+            fontsize=LETTERS - 0.5, ha="right", va="top", transform=panel.transAxes,
+        )  # fmt: skip
+        known = np.flatnonzero(np.isfinite(one.distances))
+        if known.size:
+            span = np.array([one.counts[known[0]], one.counts[-1]], dtype=float)
+            for order, guide in _GUIDES.items():
+                panel.plot(span, one.distances[known[0]] * (span[0] / span) ** order, zorder=0, **guide)
+
+
+def _scale_axes(panels: Iterable[Axes], sequences: list[Sequence]) -> None:
+    """Give all panels the same axes: with one scale the eye compares the quantities."""
+    drawn = np.concatenate([[*one.distances, one.bar] for one in sequences]) if sequences else np.ones(1)
+    drawn = drawn[np.isfinite(drawn) & (drawn > 0.0)]
+    low, high = (float(drawn.min()), float(drawn.max())) if drawn.size else (1e-6, 1e-3)
+    low = min(low, high / 100.0) / 2.0
+    counts = [count for one in sequences for count in one.counts] or [1, 10]
+    left, right = min(counts), max(counts)
+    margin = (right / left) ** 0.12
+    for panel in panels:
+        panel.set_ylim(low, high * (high / low) ** (2.0 * LINE + 0.06))  # room for the words
+        panel.set_xlim(left / margin, right * margin)
+        panel.yaxis.set_major_locator(LogLocator(numticks=6))
+        panel.yaxis.set_minor_formatter(NullFormatter())
+        panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if right > 12.0 * left else (1.0, 2.0, 5.0)))
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        panel.xaxis.set_minor_formatter(NullFormatter())

@@ -27,17 +27,21 @@ from fastpin.studies.extrapolate import Verdict
 from fastpin.version import __version__
 
 COLUMNS = (
-    "corner", "solver", "nodes", "increments", "quantity", "unit", "value", "verdict", "order", "limit", "bar", "path",
+    "corner", "solver", "nodes", "increments", "quantity", "unit", "value", "verdict", "order", "limit", "bar",
+    "scatter", "path",
 )  # fmt: skip
 """Columns of the CSV file. Each value has a line.
 
-Verdict, order, limit and error bar belong to the whole sequence of values. ``path`` is the value of the path solver on
-the grid of the increment solver.
+Verdict, order, limit, error bar and scatter belong to the whole sequence of values. ``scatter`` is relative. ``path``
+is the value of the path solver on the grid of the increment solver.
 """
 
 
 MOST_DECIMALS = 9
 """Most decimals of a value in the text tables. A value that needs more is written with an exponent."""
+
+LEAST_PLAIN = 1e-3
+"""Least scatter that is written without an exponent."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +60,10 @@ class ReportedSeries:
     values : tuple of float
         One for each grid or number of increments. NaN where a value can't be compared with the last one. Angles are
         next to the last one, so they may lie outside of -180 to 180.
-    verdict, order, limit, bar
+    verdict, order, limit, bar, scatter
         Of the sequence, see :class:`fastpin.studies.extrapolate.Estimate`.
+    reference : float
+        The size to which differences are relative, see :class:`fastpin.studies.convergence.QuantitySeries`.
     path : float
         The value of the path solver on the same grid, for a study of increments; else NaN.
     negligible : float
@@ -75,6 +81,8 @@ class ReportedSeries:
     order: float
     limit: float
     bar: float
+    scatter: float
+    reference: float
     path: float
     negligible: float
     is_outcome: bool
@@ -98,9 +106,25 @@ class ReportedSeries:
 
         return cls(
             series.corner, name, label, unit.name, tuple(map(in_report_units, series.values)), estimate.verdict,
-            estimate.order, in_report_units(estimate.limit), unit.factor * reported_bar(estimate.bar),
-            in_report_units(series.path), unit.factor * reported_bar(ROUNDING * series.size), outcome is not None,
+            estimate.order, in_report_units(estimate.limit), unit.factor * reported_bar(estimate.bar), estimate.scatter,
+            unit.factor * reported_bar(series.reference), in_report_units(series.path),
+            unit.factor * reported_bar(ROUNDING * series.size), outcome is not None,
         )  # fmt: skip
+
+    @property
+    def words(self) -> str:
+        """The verdict in words: "order 1.89", or "converged, scatter 1e-6"."""
+        if self.verdict == "observed":
+            return f"order {self.order:.2f}"
+        if self.verdict == "to rounding":
+            return "converged to rounding"
+        return self.verdict if math.isnan(self.scatter) else f"{self.verdict}, scatter {one_digit(self.scatter)}"
+
+
+def one_digit(value: float) -> str:
+    """Return a number with one digit, such as 0.02 or 1e-6."""
+    head, e, power = f"{value:.0e}".partition("e")
+    return f"{head}e{int(power)}" if e and value < LEAST_PLAIN and value > 0.0 else f"{value:.1g}"
 
 
 def reported_series(study: Study, problem: Problem, corner: int) -> list[ReportedSeries]:
@@ -119,7 +143,8 @@ def text(convergence: Convergence) -> str:
                 _table(study, reported_series(study, convergence.problem, corner)),
                 "",
             ]
-    legend = "bar: error bar of the last value"
+    legend = "bar: error bar of the last value; scatter: range of the last three values, relative to the value"
+    legend += "\n(of places: to the width of the contact)"
     if len(convergence.studies) > 1:
         legend += "; path: the path solver on the same grid, within: whether the bar reaches it"
     parts.append(legend)
@@ -135,9 +160,9 @@ def heading(study: Study, convergence: Convergence) -> str:
 
 
 def series_columns(study: Study, rows: Sequence[ReportedSeries]) -> list[Column]:
-    """Return the columns of the table of a study: values, order, limit and error bar of each quantity."""
+    """Return the columns of the table of a study: values, verdict, limit and error bar of each quantity."""
     cells = [_cells(row, study.method == "increment") for row in rows]
-    names = ["quantity", "unit", *map(str, study.counts), "order", "limit", "bar", "path", "within"]
+    names = ["quantity", "unit", *map(str, study.counts), "verdict", "limit", "bar", "path", "within"]
     return [(name, "", [row[k] for row in cells]) for k, name in enumerate(names[: len(cells[0])])]
 
 
@@ -167,10 +192,9 @@ def _cells(row: ReportedSeries, with_path: bool) -> list[str]:
         digits = decimals + math.floor(math.log10(abs(factor * value)))
         return f"{factor * value:.{min(max(digits, 0), MOST_DECIMALS)}e}"
 
-    order = f"{row.order:.2f}" if row.verdict == "observed" else row.verdict
     bar = "-" if decimals is None or math.isnan(row.bar) else f"{factor * row.bar:.2g}"
     limit = "-" if row.verdict == "to rounding" else number(row.limit)
-    cells = [row.label, unit, *map(number, row.values), order, limit, bar]
+    cells = [row.label, unit, *map(number, row.values), row.words, limit, bar]
     if with_path:
         cells += [number(row.path), _within(row)]
     return cells
@@ -199,7 +223,7 @@ def write_csv(convergence: Convergence, path: Path) -> None:
                 for row in reported_series(study, convergence.problem, corner):
                     for count, value in zip(study.counts, row.values, strict=True):
                         grid = (count, "") if study.method == "path" else (study.nodes, count)
-                        known = [value, row.verdict, row.order, row.limit, row.bar, row.path]
+                        known = [value, row.verdict, row.order, row.limit, row.bar, row.scatter, row.path]
                         head = [corner, study.method, *grid, csv_cell(row.name), csv_cell(row.unit)]
                         writer.writerow([*head, *("" if _missing(each) else each for each in known)])
 
@@ -229,7 +253,7 @@ def document(convergence: Convergence, title: str = "") -> dict[str, Any]:
                         {
                             "corner": row.corner, "quantity": row.name, "unit": row.unit, "values": row.values,
                             "verdict": row.verdict, "order": row.order, "limit": row.limit, "bar": row.bar,
-                            "path": row.path,
+                            "scatter": row.scatter, "path": row.path,
                         }
                         for corner in convergence.loads
                         for row in reported_series(study, convergence.problem, corner)

@@ -208,7 +208,8 @@ class ErrorBars(Mapping[str, float]):
         return bars(self._state, self.coarse)
 
     def __repr__(self) -> str:
-        return f"<ErrorBars: from {self.coarse.grid.size} nodes>"
+        shown = ", ".join(f"{name} {bar:.2g}" for name, bar in self.items() if not math.isnan(bar))
+        return f"<ErrorBars from {self.coarse.grid.size} nodes: {shown}>"
 
     def __getitem__(self, name: str) -> float:
         return self._bars[name]

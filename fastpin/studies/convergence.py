@@ -52,6 +52,9 @@ INCREMENT_NODES = 201
 ROUNDING = 1e-9
 """Largest difference of equal values, in parts of the quantity's size."""
 
+LEAST_REFERENCE = 1e-3
+"""Least reference of relative differences, in parts of the quantity's size. A value near zero says nothing."""
+
 NODES = (101, 201, 401, 801)
 """Default numbers of nodes."""
 
@@ -72,9 +75,12 @@ class QuantitySeries(NamedTuple):
         Values for every grid or every number of increments, SI or in the units of a dimensionless problem, angles in
         rad. NaN stands for a value that can't be compared with the last one.
     estimate : Estimate
-        Observed order, limit and error bar of the last value.
+        Verdict, observed order, limit, error bar of the last value, and scatter of the last values.
     size : float
         The natural size of the quantity, see :func:`fastpin.states.quantities.size`.
+    reference : float
+        The size to which differences are relative. It is the magnitude of the last value, and of a place on the hole
+        the width of the contact. It is at least a thousandth of the natural size.
     path : float
         In a study of increments, the value of the path solver on the same grid. In a study of grids, NaN.
     outcome : Outcome or None
@@ -86,6 +92,7 @@ class QuantitySeries(NamedTuple):
     values: tuple[float, ...]
     estimate: Estimate
     size: float
+    reference: float
     path: float
     outcome: Outcome | None = None
 
@@ -419,9 +426,10 @@ class _Work:
             for name, value in values(last).items():
                 if math.isfinite(value):
                     numbers, natural_size = tuple(row[name] for row in rows), size(name, last)
-                    limit = _estimate(quantity(name).kind, spacings, numbers, natural_size, last)
+                    reference = _reference(quantity(name).kind, value, natural_size)
+                    limit = _estimate(quantity(name).kind, spacings, numbers, natural_size, reference, last)
                     path_value = path_values.get(name, math.nan)
-                    yield QuantitySeries(corner, name, numbers, limit, natural_size, path_value)
+                    yield QuantitySeries(corner, name, numbers, limit, natural_size, reference, path_value)
         if self.lost is None:
             yield from self._outcome_series(spacings, results, path)
 
@@ -438,19 +446,25 @@ class _Work:
                 every = [latest + math.remainder(value - latest, 2.0 * math.pi) for value in every]
             numbers = tuple(every[: len(results)])
             natural_size = sizes(last).get(outcome.kind, max(map(abs, numbers)))
-            limit = _estimate(outcome.kind, spacings, numbers, natural_size, last)
+            reference = _reference(outcome.kind, numbers[-1], natural_size)
+            limit = _estimate(outcome.kind, spacings, numbers, natural_size, reference, last)
             path_value = every[-1] if path else math.nan
-            yield QuantitySeries(self.corners[-1], name, numbers, limit, natural_size, path_value, outcome)
+            yield QuantitySeries(self.corners[-1], name, numbers, limit, natural_size, reference, path_value, outcome)
+
+
+def _reference(kind: str, value: float, natural_size: float) -> float:
+    """Return the size to which differences of a quantity are relative, see :class:`QuantitySeries`."""
+    return natural_size if kind == "angle" else max(abs(value), LEAST_REFERENCE * natural_size)
 
 
 def _estimate(
-    kind: str, spacings: Sequence[float], numbers: Sequence[float], natural_size: float, last: State
+    kind: str, spacings: Sequence[float], numbers: Sequence[float], natural_size: float, reference: float, last: State
 ) -> Estimate:
     """Return the estimate of a sequence of values of some kind. `last` is the state on the finest grid."""
-    limit = estimate(spacings, numbers, ROUNDING * natural_size)
+    limit = estimate(spacings, numbers, ROUNDING * natural_size, reference)
     if kind in ("angle", "width") and limit.bar <= ROUNDING * natural_size:
         # All grids share the nodes at which, or between which, this place was read. Thus equal values show no order.
-        return Estimate("not observed", math.nan, math.nan, PLACE_FLOOR * spacing(last))
+        return Estimate("converged", math.nan, math.nan, PLACE_FLOOR * spacing(last), limit.scatter)
     return limit
 
 

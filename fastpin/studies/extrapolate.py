@@ -38,7 +38,16 @@ MISFIT = 0.1
 TRUSTED_ORDER = 2.0
 """The order of piecewise linear tractions. A larger order is reported, but a fit of this order gives limit and bar."""
 
-Verdict = Literal["observed", "not observed", "to rounding", "not comparable"]
+CONVERGED = 1e-3
+"""Largest scatter of values that have converged without an order: three digits agree."""
+
+ALIKE = 1e-5
+"""Scatter up to which a drift is no sign of divergence: five digits agree.
+
+In 1 of 36 sequences four random values grow in steps that grow. So a drift as small as this is scatter.
+"""
+
+Verdict = Literal["observed", "converged", "not converged", "to rounding", "not comparable"]
 """See :class:`Estimate`."""
 
 
@@ -48,8 +57,9 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     verdict : str
-        "observed": the values show an order. "not observed": the values follow no power of the spacing.
-        "to rounding": all values are equal up to rounding. "not comparable": a value is missing (NaN).
+        "observed": the values show an order. "converged": the values follow no power of the spacing, and the last
+        values scatter by at most :data:`CONVERGED`. "not converged": they scatter by more, or they drift away in steps
+        that grow. "to rounding": all values are equal up to rounding. "not comparable": a value is missing (NaN).
     order : float
         The order p of C h^p. NaN unless observed.
     limit : float
@@ -57,15 +67,20 @@ class Estimate(NamedTuple):
         are not comparable.
     bar : float
         Error bar: in some 95 of 100 cases the limit lies within the last value +- bar. NaN if not comparable.
+    scatter : float
+        Range of the last three values in parts of their reference, see :func:`estimate`. NaN if not comparable.
     """
 
     verdict: Verdict
     order: float
     limit: float
     bar: float
+    scatter: float
 
 
-def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float = 0.0) -> Estimate:
+def estimate(
+    spacings: Sequence[float], values: Sequence[float], rounding: float = 0.0, reference: float | None = None
+) -> Estimate:
     """Estimate the observed order and the limit of a sequence of values, and the error bar of the last value.
 
     Parameters
@@ -75,21 +90,34 @@ def estimate(spacings: Sequence[float], values: Sequence[float], rounding: float
     values : sequence of float, shape (grids,)
     rounding : float
         Largest difference of values that are equal up to rounding, in the unit of the values.
+    reference : float, optional
+        The size to which the scatter is relative, positive; the magnitude of the last value unless given.
     """
     h, f = np.asarray(spacings, dtype=float) / spacings[-1], np.asarray(values, dtype=float)
     last = float(f[-1])
     if not np.all(np.isfinite(f)):
-        return Estimate("not comparable", math.nan, math.nan, math.nan)
+        return Estimate("not comparable", math.nan, math.nan, math.nan, math.nan)
+    scattered = float(np.ptp(f[-LATEST:]))
+    size = abs(last) if reference is None else reference
+    scatter = scattered / size if size > 0.0 else math.inf if scattered else 0.0
     if np.ptp(f) <= rounding:
-        return Estimate("to rounding", math.nan, last, float(np.ptp(f)))
+        return Estimate("to rounding", math.nan, last, float(np.ptp(f)), scatter)
     order, limit, deviation = _fit(h, f)
     if not LEAST_ORDER <= order <= MOST_ORDER or deviation >= MISFIT * np.ptp(f):
-        return Estimate("not observed", math.nan, math.nan, SAFETY_NOISE * float(np.ptp(f[-LATEST:])))
+        settled = scatter <= CONVERGED and not (scatter > ALIKE and _drifts(f))
+        verdict: Verdict = "converged" if settled else "not converged"
+        return Estimate(verdict, math.nan, math.nan, SAFETY_NOISE * scattered, scatter)
     if order > TRUSTED_ORDER:
         limit, deviation = _fit_of_order(h, f, TRUSTED_ORDER)
     safety = SAFETY if len(f) > LATEST else SAFETY_NOISE
     least = pair_bar(last, float(f[-2]), 1.0, float(h[-2]))
-    return Estimate("observed", order, limit, max(safety * abs(last - limit) + deviation, least))
+    return Estimate("observed", order, limit, max(safety * abs(last - limit) + deviation, least), scatter)
+
+
+def _drifts(f: np.ndarray) -> bool:
+    """Whether all steps have one sign, and the last step is the largest step."""
+    steps = np.diff(f)
+    return bool(np.all(steps > 0.0) or np.all(steps < 0.0)) and bool(abs(steps[-1]) >= np.abs(steps).max())
 
 
 def _fit(h: np.ndarray, f: np.ndarray) -> tuple[float, float, float]:

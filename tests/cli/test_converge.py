@@ -40,9 +40,9 @@ def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytes
     out = capsys.readouterr().out
     assert "corner 2: P = 2.42 MN/m, Q = 726 kN/m" in out
     lines = [line.split() for line in out.splitlines()]
-    assert ["quantity", "unit", "51", "101", "151", "order", "limit", "bar"] in lines
-    assert ["quantity", "unit", "4", "8", "16", "order", "limit", "bar", "path", "within"] in lines
-    assert ["P", "MN/m", "2.42", "2.42", "2.42", "to", "rounding", "-", "-"] in lines
+    assert ["quantity", "unit", "51", "101", "151", "verdict", "limit", "bar"] in lines
+    assert ["quantity", "unit", "4", "8", "16", "verdict", "limit", "bar", "path", "within"] in lines
+    assert ["P", "MN/m", "2.42", "2.42", "2.42", "converged", "to", "rounding", "-", "-"] in lines
     with files["csv"].open() as file:
         rows = list(csv.DictReader(file))
     assert tuple(rows[0]) == COLUMNS
@@ -59,6 +59,7 @@ def test_the_command_prints_and_writes(case: Path, tmp_path: Path, capsys: pytes
     document = json.loads(files["json"].read_text())
     assert document["complete"] is True
     assert document["studies"][1]["quantities"][0]["path"] == float(peaks[-1]["path"])
+    assert document["studies"][1]["quantities"][0]["scatter"] == float(peaks[-1]["scatter"]) > 0.0
     assert files["png"].read_bytes().startswith(b"\x89PNG")
 
 

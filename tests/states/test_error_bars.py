@@ -22,7 +22,7 @@ from fastpin.solver import solving
 from fastpin.solver.errors import Interrupted, NoEquilibriumError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.states.error_bars import LEAST_COARSE, bars
+from fastpin.states.error_bars import LEAST_COARSE, ErrorBars, bars
 from fastpin.states.quantities import QUANTITIES, matching_values, quantity, size, values
 from fastpin.storage.store import load, save
 from fastpin.studies.run_end import KEY_FIGURES, key_figures
@@ -173,6 +173,15 @@ def test_a_branch_has_error_bars_if_its_trunk_has(problem: Problem) -> None:
     assert solve(problem, CORNERS[2:], start=trunk)[-1].error_bars is None
     with pytest.raises(InputError, match="error_bars: the result to continue from was solved without them"):
         solve(problem, CORNERS[2:], start=bare, error_bars=True)
+
+
+def test_error_bars_show_their_numbers(problem: Problem) -> None:
+    bars = solve(problem, CORNERS, nodes=101, error_bars=True)[-1].error_bars
+    shown = repr(bars)
+    assert isinstance(bars, ErrorBars)
+    assert shown.startswith(f"<ErrorBars from {bars.coarse.grid.size} nodes: peak_pressure ")
+    for name, bar in bars.items():
+        assert (f" {name} {bar:.2g}" in shown) == (not math.isnan(bar))
 
 
 def test_too_few_nodes_for_error_bars(problem: Problem) -> None:

@@ -60,6 +60,17 @@ def test_what_balance_and_symmetry_make_exact_has_no_order(study: Convergence) -
     assert series(study, "work").estimate.verdict != "to rounding"
 
 
+def test_differences_are_relative_to_the_value_and_for_places_to_the_contact(study: Convergence) -> None:
+    peak, place, motion = (series(study, name) for name in ("peak_pressure", "peak_shear_angle", "contact_1_start"))
+    width = series(study, "contact_width").values[-1]
+    assert peak.reference == abs(peak.values[-1])
+    assert place.reference == motion.reference == pytest.approx(width)
+    for each in (peak, place, motion):
+        assert each.estimate.scatter == pytest.approx(np.ptp(each.values[-3:]) / each.reference)
+    zero = series(study, "dx", 1)  # by symmetry
+    assert zero.reference == convergence.LEAST_REFERENCE * zero.size > abs(zero.values[-1])
+
+
 def test_all_grids_have_one_arc_and_a_node_under_the_first_force(study: Convergence, problem: Problem) -> None:
     assert study.complete
     assert list(study.loads) == [1, 2, 3]

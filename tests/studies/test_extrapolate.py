@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin.states.error_bars import SAFETY, pair_bar
-from fastpin.studies.extrapolate import LATEST, SAFETY_NOISE, estimate
+from fastpin.studies.extrapolate import ALIKE, CONVERGED, LATEST, SAFETY_NOISE, estimate
 
 HALVED = [8.0, 4.0, 2.0, 1.0, 0.5]
 UNEVEN = [1.0, 0.7, 0.45, 0.4, 0.15]
@@ -48,12 +48,44 @@ def test_an_order_above_two_is_told_but_not_used() -> None:
     ],
     ids=str,
 )
-def test_no_order_is_told_where_there_is_none(values: list[float]) -> None:
+def test_no_order_is_found_where_there_is_none(values: list[float]) -> None:
     found = estimate(HALVED, values)
-    assert found.verdict == "not observed"
+    scatter = np.ptp(values[-LATEST:])
+    assert found.verdict == ("converged" if scatter < CONVERGED else "not converged")
     assert math.isnan(found.order)
     assert math.isnan(found.limit)
-    assert found.bar == pytest.approx(SAFETY_NOISE * np.ptp(values[-LATEST:]))
+    assert found.bar == pytest.approx(SAFETY_NOISE * scatter)
+    assert found.scatter == pytest.approx(scatter / abs(values[-1]))
+
+
+SCATTERED = np.array([0.3, -0.4, 0.1, 0.5, -0.2])
+DRIFTING = np.array([0.0, 0.1, 0.22, 0.36, 0.52])
+
+
+@pytest.mark.parametrize(
+    ("shape", "size", "verdict"),
+    [
+        (SCATTERED, 0.5 * CONVERGED, "converged"),
+        (SCATTERED, 1e-6, "converged"),
+        (SCATTERED, 3.0 * CONVERGED, "not converged"),
+        (DRIFTING, 0.5 * CONVERGED, "not converged"),
+        (DRIFTING, 0.5 * ALIKE, "converged"),
+        (DRIFTING[::-1], 0.5 * CONVERGED, "converged"),  # the steps shrink, slower than a square root
+    ],
+)
+@pytest.mark.parametrize("last", [4.0, -4e-6])
+def test_scatter_is_relative_and_tells_the_verdict(shape: np.ndarray, size: float, verdict: str, last: float) -> None:
+    values = last * (1.0 + size * (shape - shape[-1]))
+    found = estimate(HALVED, values.tolist())
+    assert found.verdict == verdict
+    assert found.scatter == pytest.approx(size * np.ptp(shape[-LATEST:]), rel=1e-6)
+    told = estimate(HALVED, values.tolist(), reference=10.0 * abs(last))
+    assert told.scatter == pytest.approx(0.1 * found.scatter)
+
+
+def test_values_around_zero_have_not_converged() -> None:
+    found = estimate(HALVED, [1e-3, -1e-3, 2e-3, -1e-3, 0.0])
+    assert (found.verdict, found.scatter) == ("not converged", math.inf)
 
 
 def test_a_constant_is_no_order() -> None:
