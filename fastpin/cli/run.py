@@ -108,6 +108,8 @@ def show(options: argparse.Namespace) -> int:
 def _note_unfinished(case: Case, path: Path) -> None:
     """Say that a stored run has not come to its end, how far it is, and why or how to continue it."""
     last = storage.load(path, states=slice(-1, None))
+    if storage.lacks_error_bars(path):
+        say(f"note: no error bars: their run on the coarse grid has not ended; continue with: fastpin resume {path}")
     if last.complete:
         return
     reached = f"{last[0].step + 1:,}" if len(last) else "0"
@@ -162,9 +164,6 @@ def _check_combination(case: Case, options: argparse.Namespace) -> None:
     for name in ("save_after", "overwrite"):
         if getattr(options, name) and options.output is None:
             raise InputError(flag(name), "needs --output FILE")
-    for name in ("output", "start"):
-        if options.error_bars and getattr(options, name) is not None:
-            raise InputError("--error-bars", f"are not kept in files: can't be combined with --{name}")
     for name in ("nodes", "arc"):
         if options.start is not None and getattr(options, name) is not None:
             raise InputError(f"--{name}", "is fixed by the result to continue from (--start)")

@@ -252,9 +252,11 @@ def key_figures(page: Shared) -> Section:
     parts.append(Table("All quantities, by load point", columns))
     if states[0].error_bars is None:
         how = (
-            "There are no error bars: result files do not hold them. fastpin report CASE.toml --error-bars solves the "
-            "case with them; in Python, solve(..., error_bars=True) and then result.report(...)."
+            "There are no error bars. fastpin report CASE.toml --error-bars solves the case with them, and "
+            "fastpin run CASE.toml --error-bars -o FILE.h5 keeps them in a file. In Python it is error_bars=True."
         )
+        if page.source.case.options.error_bars:
+            how = "There are no error bars: their run on the coarse grid has not ended. fastpin resume continues it."
         parts.append(Text(how, "missing"))
     else:
         words = "Error bars stand behind ±. The true value lies within the bar in some 95 of 100 cases."

@@ -32,6 +32,7 @@ from fastpin.report.table import (
     with_rows,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
+from fastpin.states.error_bars import ErrorBars
 from fastpin.states.quantities import QUANTITIES, load_point, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
@@ -179,7 +180,8 @@ def _identity(state: State) -> tuple[Hashable, ...]:
     """Return the parts of a state that its row shows. Its number, its sum of energy and its residuals are left out."""
     marks = () if state.marks is None else tuple(part.tobytes() for part in state.marks.arrays(state.grid.size))
     arrays = [part.tobytes() for part in (state.pressure, state.shear, state.status)]
-    return (*arrays, *marks, state.rotation, *state.load.values(), *(state.error_bars or {}).values())
+    coarse = _identity(state.error_bars.coarse) if isinstance(state.error_bars, ErrorBars) else ()
+    return (*arrays, *marks, state.rotation, *state.load.values(), *coarse)
 
 
 def state_table(problem: Problem, states: Sequence[State], rows: TableRows | None = None) -> str:

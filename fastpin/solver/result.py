@@ -300,6 +300,12 @@ class Result(Sequence[State]):
         return iter(self.states)
 
 
+def without_restart(result: Result) -> Result:
+    """A result from which nothing can continue, as it is stored in a sweep."""
+    coarse = None if result.coarse is None else replace(result.coarse, restart=None)
+    return replace(result, restart=None, coarse=coarse)
+
+
 def with_error_bars(result: Result, coarse: Result) -> Result:
     """A result with error bars, from the states of the same history on a coarser grid."""
     states = []

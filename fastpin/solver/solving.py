@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -25,7 +26,7 @@ from fastpin.solver.result import Result, with_error_bars
 from fastpin.solver.run import Progress, Run
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
-from fastpin.states.error_bars import LEAST_COARSE
+from fastpin.states.error_bars import check_nodes
 from fastpin.states.state import SlipFields, State, state_again
 from fastpin.states.yield_doubts import yield_doubts_of
 
@@ -119,7 +120,7 @@ def solve(
         check_start(problem, start)
     task = Task(problem, as_history(history), options, grid, progress)
     if error_bars:
-        _check_halves(task, start)
+        check_halves(task, start)
     warn_of(doubts(problem, task.history, options), USER)
     result = _follow_task(task, start)
     warn_of(pressure_doubts(problem, task.history, (state.pressure for state in result)), USER)
@@ -146,17 +147,14 @@ def _follow_task(task: Task, start: Result | None) -> Result:
         kept.run = None  # run and recorder refer to each other: the memory of the tableau would wait for a collection
 
 
-def _check_halves(task: Task, start: Result | None) -> None:
+def check_halves(task: Task, start: Result | None) -> None:
     """Raise :class:`InputError` if the task can't have error bars."""
-    if start is not None and (start.coarse is None or start.coarse.restart is None):
+    if start is not None and start.coarse is None:
         raise InputError("error_bars", "the result to continue from was solved without them: it has no coarse grid")
+    if start is not None and start.coarse is not None and start.coarse.restart is None:
+        raise InputError("error_bars", "continue from the end of a result only: the coarse grid has no restart before")
     if start is None:
-        size = task.options.nodes if task.grid is None else task.grid.size
-        if (size + 1) // 2 < LEAST_COARSE:
-            least = 2 * LEAST_COARSE - 1
-            raise InputError(
-                "nodes", f"must be at least {least} for error bars, not {size}: a second run takes half of them"
-            )
+        check_nodes(task.options.nodes if task.grid is None else task.grid.size)
 
 
 def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
@@ -164,19 +162,36 @@ def _with_coarse(task: Task, start: Result | None, result: Result) -> Result:
 
     If the history can't be followed there, the error holds the result without error bars.
     """
-    if start is None:
-        grid, begin = halved(result.grid, first_direction(task.problem, task.history.distinct())), None
-    else:
-        assert start.coarse is not None
-        grid, begin = start.coarse.grid, start.coarse
+    begin = None if start is None else start.coarse
+    halves = coarse_task(task, result.grid if begin is None else begin.grid, is_coarse=begin is not None)
     try:
-        coarse = _follow_task(replace(task, options=task.options.changed(arc=None, slip_sums=False), grid=grid), begin)
+        with words_for_coarse(halves):
+            coarse = _follow_task(halves, begin)
     except (SolveError, Interrupted) as ended:
         ended.result = result
-        if isinstance(ended, SolveError):
-            ended.args = (f"{ended} (on the coarse grid of {grid.size} nodes that the error bars take)",)
         raise
     return with_error_bars(result, coarse)
+
+
+def coarse_task(task: Task, grid: Grid, is_coarse: bool = False) -> Task:
+    """Return the task that gives a task its error bars: the same history with half the intervals of `grid`.
+
+    `is_coarse`: the grid is the coarse grid already.
+    """
+    if not is_coarse:
+        grid = halved(grid, first_direction(task.problem, task.history.distinct()))
+    return replace(task, options=task.options.changed(arc=None, error_bars=False), grid=grid)
+
+
+@contextmanager
+def words_for_coarse(halves: Task) -> Iterator[None]:
+    """Say in errors of the block that they come from the coarse grid."""
+    try:
+        yield
+    except SolveError as ended:
+        assert halves.grid is not None
+        ended.args = (f"{ended} (on the coarse grid of {halves.grid.size} nodes that the error bars take)",)
+        raise
 
 
 class MemoryRecorder:

@@ -8,13 +8,14 @@ the only free choices. ``scripts/error_bars.py`` counts how often the bars hold 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 
+from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
-from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, values, width
+from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, sizes, values, width
 from fastpin.states.state import State
 
 ORDER = 1.0
@@ -96,7 +97,7 @@ def bars(state: State, coarse: State) -> dict[str, float]:
         coarse state has no value to compare: the ends of zones whose number differs between the two states.
     """
     mine, theirs = values(state), matching_values(state, coarse)
-    found = {name: _bar(name, value, theirs[name], state) for name, value in mine.items()}
+    found = {name: value_bar(name, value, theirs[name], [state]) for name, value in mine.items()}
     for name, traction in (("peak_pressure", state.pressure), ("peak_shear", np.abs(state.shear))):
         highest = state.theta[_as_high(state, traction, found[name])]
         others = np.abs(angle_between(highest, mine[f"{name}_angle"]))
@@ -107,22 +108,74 @@ def bars(state: State, coarse: State) -> dict[str, float]:
     return found
 
 
-def _bar(name: str, value: float, other: float, state: State) -> float:
+def value_bar(name: str, value: float, other: float, states: Sequence[State]) -> float:
+    """Error bar of one value of a quantity, or of a number that is taken from the quantity at several states.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    value, other : float
+        The number on the grid of the states, and on the coarse grid. Angles are next to each other.
+    states : sequence of State
+        The states that the number was read from. Each has a floor.
+
+    Returns
+    -------
+    float
+        See :func:`bars`.
+    """
+    kind = quantity(name).kind
+    bar = _known_bar(kind, value, other, size(name, states[-1]))
+    return pair_bar(value, other, ORDER) + sum(_floor(name, state) for state in states) if bar is None else bar
+
+
+def number_bar(kind: str, value: float, other: float, state: State) -> float:
+    """Error bar of any number of a history that is no quantity of one state.
+
+    Parameters
+    ----------
+    kind : str
+        A kind of quantity. Numbers of kinds that states do not have get no floor: such a bar is too small where two
+        grids agree by chance. The bar of a class is the difference of the two classes.
+    value, other : float
+        The number on the grid of the state, and on the coarse grid. Angles are next to each other.
+    state : State
+        The last state of the history.
+
+    Returns
+    -------
+    float
+        See :func:`bars`.
+    """
+    if kind == "class":
+        return math.inf if math.isnan(other) else abs(value - other)
+    natural_size, floor = sizes(state).get(kind, 0.0), 0.0
+    if kind in ("angle", "width"):
+        floor = PEAK_PLACE_FLOOR * spacing(state)
+    elif kind in FLOORS:
+        floor = FLOORS[kind] * natural_size / _closed(state) ** 2
+    bar = _known_bar(kind, value, other, natural_size)
+    return pair_bar(value, other, ORDER) + floor if bar is None else bar
+
+
+def _known_bar(kind: str, value: float, other: float, natural_size: float) -> float | None:
+    """The bar of a value that is missing on a grid, or exact; None for all other values."""
     if math.isnan(value):
         return math.nan
     if math.isnan(other):
         return math.inf
     if value == other == 0.0:
         return 0.0
-    rounding = ROUNDING * size(name, state)
-    if abs(value - other) <= rounding and quantity(name).kind in MAY_BE_EXACT:
+    rounding = ROUNDING * natural_size
+    if abs(value - other) <= rounding and kind in MAY_BE_EXACT:
         return rounding
-    return pair_bar(value, other, ORDER) + _floor(name, state)
+    return None
 
 
 def _floor(name: str, state: State) -> float:
     """Floor of the bar of a quantity, added to the grid convergence index: the two values may agree by chance."""
-    closed = max(1, int(np.count_nonzero(state.pressure)))
+    closed = _closed(state)
     kind = quantity(name).kind
     if name in ("peak_pressure", "peak_shear"):
         traction = state.pressure if name == "peak_pressure" else np.abs(state.shear)
@@ -144,7 +197,21 @@ def _floor(name: str, state: State) -> float:
 
 def spacing(state: State) -> float:
     """Mean node distance in the contact, rad."""
-    return width(state.contact) / max(1, int(np.count_nonzero(state.pressure)))
+    return width(state.contact) / _closed(state)
+
+
+def check_nodes(nodes: int) -> None:
+    """Raise :class:`InputError` if a grid has too few nodes for error bars."""
+    if (nodes + 1) // 2 < LEAST_COARSE:
+        least = 2 * LEAST_COARSE - 1
+        raise InputError(
+            "nodes", f"must be at least {least} for error bars, not {nodes}: a second run takes half of them"
+        )
+
+
+def _closed(state: State) -> int:
+    """Number of nodes in contact, at least 1."""
+    return max(1, int(np.count_nonzero(state.pressure)))
 
 
 def _ends(state: State, zone: str) -> int:

@@ -7,6 +7,7 @@ from .origin import largest_residuals as largest_residuals
 from .origin import marked_extremes as marked_extremes
 from .origin import provenance as provenance
 from .origin import stored_yield_extremes as stored_yield_extremes
+from .recording import lacks_error_bars as lacks_error_bars
 from .recording import record as record
 from .recording import resume as resume
 from .recording import stored_case as stored_case

@@ -10,6 +10,7 @@
 ``/cycles``             one array for each quantity, one row for each cycle; empty if the history has no cycles
 ``/extremes``           of a complete run with many states: the places of its extremes, see extremes.py
 ``/restart``            restarts to continue from: ``start``, ``latest`` and the corners of the option ``save_after``
+``/coarse``             with error bars: grid, states, cycles and ``restart/latest`` of the history on the coarse grid
 ======================  ============================================================================================
 
 Every array has its unit as an attribute. Dimensions are named as in netCDF, so xarray reads ``/states`` directly.
@@ -63,7 +64,7 @@ WITH_BODIES = 3
 """Version with other bodies. Programs that know version 2 only would not see the bodies, and must refuse the file."""
 
 # Each dict below maps a stored field to its kind of quantity: a key of fastpin.model.units.units, or "" for a plain
-# number. The other fields of State are written and read one by one. The coarse states behind error bars are not stored.
+# number. The other fields of State are written and read one by one. Error bars come from the states in ``/coarse``.
 # A test checks that every field of State is in one of the three tables.
 NODE_FIELDS = {
     "pressure": "traction",
@@ -179,11 +180,16 @@ def write_head(file: h5py.File, problem: Problem, history: LoadHistory, grid: Gr
         file.attrs[f"version_{name}"] = version
     _write_problem(file.create_group("problem"), problem)
     _write_history(file.create_group("history"), problem, history)
-    file.create_group("grid").attrs["closed"] = grid.closed
     solver = file.create_group("solver")
     solver.attrs.update({name: value for name, value in options.items() if value is not None})
     solver.create_group("statistics")
-    _make_states(file, problem, grid, NODE_FIELDS | BORDER_FIELDS | (SLIP_FIELDS if options.get("slip_sums") else {}))
+    write_grid(file, problem, history, grid, bool(options.get("slip_sums")))
+
+
+def write_grid(file: h5py.Group, problem: Problem, history: LoadHistory, grid: Grid, slip_sums: bool) -> None:
+    """Write a grid, and the arrays of states and cycles on it, without rows, into a file or its group ``/coarse``."""
+    file.create_group("grid").attrs["closed"] = grid.closed
+    _make_states(file, problem, grid, NODE_FIELDS | BORDER_FIELDS | (SLIP_FIELDS if slip_sums else {}))
     cycles, unit = file.create_group("cycles"), units_per_thickness(problem)
     for name, kind in CYCLE_FIELDS.items() if history.longest_cycle else ():
         _growing(cycles, name, (), _dtype(name), unit.get(kind, ""))
@@ -248,8 +254,9 @@ def read_grid(file: h5py.File) -> Grid:
 def option_attributes(options: SolveOptions) -> dict[str, Any]:
     """Return the options of a run as attributes of ``/solver``."""
     attributes = options.keywords()
-    del attributes["between"], attributes["error_bars"]
-    return {**attributes, "fractions": options.fractions, "slip_sums": options.slip_sums or None}
+    del attributes["between"]
+    later = {"slip_sums": options.slip_sums or None, "error_bars": options.error_bars or None}
+    return {**attributes, "fractions": options.fractions, **later}
 
 
 def read_options(file: h5py.File) -> SolveOptions:
@@ -264,7 +271,7 @@ def read_options(file: h5py.File) -> SolveOptions:
         start, stop = stored["arc"].tolist()
         # Earlier versions took an arc longer than 2 pi as a circle.
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
-    options |= {name: stored[name] for name in ("keep", "shortcut", "slip_sums") if name in stored}
+    options |= {name: stored[name] for name in ("keep", "shortcut", "slip_sums", "error_bars") if name in stored}
     return SolveOptions(**options)
 
 

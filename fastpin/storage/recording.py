@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -27,17 +27,19 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.options import OptionValues, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.synonyms import unknown_keyword
-from fastpin.solver.errors import ArcError, ConvergenceError
+from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
+from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
+from fastpin.storage.journal import is_empty
 from fastpin.storage.layout import read_about, read_history, read_options, read_problem
-from fastpin.storage.origin import largest_pressure, stored_yield_extremes
-from fastpin.storage.store import load, open_result
-from fastpin.storage.writer import FileRecorder, closing_file, log, reopen
+from fastpin.storage.origin import largest_pressure, provenance, stored_yield_extremes
+from fastpin.storage.store import is_unfinished, load, open_result, stored_task
+from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
 
 def record(
@@ -75,7 +77,9 @@ def record(
     overwrite : bool
         Replace an existing result. No other file is replaced.
     **options
-        See :class:`fastpin.SolveOptions`. Error bars are refused: a file has no place for them.
+        See :class:`fastpin.SolveOptions`. With `error_bars` the history is followed again on a coarse grid, and these
+        states go into the file too. They stand in a file ``.coarse`` beside it until this run ends. A run with `start`
+        has no error bars in a file.
 
     Raises
     ------
@@ -101,9 +105,13 @@ def record(
     _check_names(options)
     solve_options = SolveOptions(**options)
     check_options(solve_options, grid, start)
-    if solve_options.error_bars:
-        raise InputError("error_bars", "are not kept in files; leave them out, or solve without a file")
+    if solve_options.error_bars and start is not None:
+        raise InputError(
+            "error_bars", "a run that continues another one has none in a file; leave them or the file out"
+        )
     task = Task(problem, as_history(history), solve_options, grid, progress, save_corners)
+    if solve_options.error_bars:
+        check_halves(task, start)
     if max(save_corners, default=0) > len(task.history):
         raise InputError(
             "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
@@ -118,14 +126,52 @@ def record(
             task.branch(writer, start.restart, start.grid)
         else:
             task.follow(writer)
+    if solve_options.error_bars:
+        _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def _record_coarse(path: Path, task: Task) -> None:
+    """Follow the history of a finished file on the coarse grid too, and add these states to the file.
+
+    An earlier run on the coarse grid goes on. It has a file of its own until it ends.
+    """
+    beside, run = coarse_of(path), provenance(path)["run"]
+    halves = replace(coarse_task(task, load(path, states=[]).grid), stops=frozenset())
+    try:
+        with words_for_coarse(halves):
+            if not (beside.is_file() and _title_of(beside) == run):
+                writer = FileRecorder(beside, halves, run)
+                with closing_file(writer):
+                    halves.follow(writer)
+            elif is_unfinished(beside):
+                writer, restart = reopen(beside, task.progress)
+                assert halves.grid is not None
+                with closing_file(writer):
+                    halves.continue_from(writer, restart, halves.grid)
+    except SolveError as error:
+        beside.unlink(missing_ok=True)
+        error.result = load(path, states=slice(-1, None))
+        raise
+    except Interrupted as error:
+        error.result = load(path, states=slice(-1, None))
+        raise
+    add_coarse(path, beside)
+
+
+def _title_of(path: Path) -> str:
+    """Return the title of a stored run; empty if the file is no result."""
+    try:
+        return stored_case(path).title
+    except InputError:
+        return ""
 
 
 def resume(path: str | Path, progress: Progress | None = None) -> None:
     """Continue the run of a file after a kill, an interrupt or an error.
 
-    States and cycles equal those of an uninterrupted run to the last bit. Only `solved`, `met`, the statistics, the
-    run's id and its date may differ.
+    States, cycles and error bars equal those of an uninterrupted run to the last bit. Only `solved`, `met`, the
+    statistics, the run's id and its date may differ.
 
     Parameters
     ----------
@@ -144,6 +190,11 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
     path = file_path("path", path)
     check_callable("progress", progress)
     check_exists(path)
+    if not is_empty(path) and lacks_error_bars(path):
+        with open_result(path) as file:
+            task = replace(stored_task(file), progress=progress)
+        _record_coarse(path, task)
+        return
     writer, restart = reopen(path, progress)
     task = writer.task
     with closing_file(writer):
@@ -155,7 +206,24 @@ def resume(path: str | Path, progress: Progress | None = None) -> None:
             if not writer.chosen_arc:
                 raise
             task.follow(writer, unfit=(task.grid, error))
+    if task.options.error_bars:
+        _record_coarse(path, task)
     warn_of(_pressure_doubts(path, task), 2)
+
+
+def lacks_error_bars(path: str | Path) -> bool:
+    """Whether the run of a file is finished, but the run on the coarse grid that gives its error bars is not.
+
+    :func:`resume` then continues the run on the coarse grid.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`.
+    """
+    with open_result(file_path("path", path)) as file:
+        wanted = read_options(file).error_bars and bool(file.attrs["complete"]) and "run" in file.attrs
+        return wanted and "coarse" not in file
 
 
 def stored_error(path: str | Path) -> str | None:

@@ -30,7 +30,7 @@ from fastpin.model.checks import (
 )
 from fastpin.model.history import MAX_CORNERS, LoadHistory
 from fastpin.model.inputs import note_input
-from fastpin.solver.result import Restart, Result
+from fastpin.solver.result import Restart, Result, with_error_bars
 from fastpin.solver.task import Task
 from fastpin.states.extremes import KeptStates
 from fastpin.states.state import State
@@ -55,6 +55,7 @@ from fastpin.storage.layout import (
     read_states,
     read_statistics,
     rows_of,
+    write_grid,
     write_head,
     write_statistics,
 )
@@ -68,7 +69,7 @@ MOST_IN_MEMORY = 4_000_000
 
 
 def save(result: Result, path: str | Path, error: str | None = None, restart: bool = True) -> None:
-    """Write a result to an HDF5 file, whole or not at all. Error bars are not written.
+    """Write a result to an HDF5 file, whole or not at all. The coarse result behind error bars is written too.
 
     Parameters
     ----------
@@ -107,11 +108,14 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
             write_extremes(file, KeptStates(result.states))
         if restart and result.restart is not None:
             write_restart(file.create_group("restart/latest"), result.restart)
+        if restart and result.coarse is not None and result.coarse.restart is not None:
+            write_restart(file.create_group("coarse/restart/latest"), result.coarse.restart)
 
 
 def _write(file: h5py.File | packed.Group, result: Result, error: str | None) -> None:
     """Write a result into an empty file, all but its restart."""
     options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
+    options["error_bars"] = result.coarse is not None or None
     write_head(file, result.problem, result.history, result.grid, options)
     file.attrs["complete"] = result.complete
     if error is not None:
@@ -119,6 +123,11 @@ def _write(file: h5py.File | packed.Group, result: Result, error: str | None) ->
     write_statistics(file, result.statistics)
     append(file["states"], rows_of(list(result)))
     append(file["cycles"], cycle_rows(result.cycles))
+    if result.coarse is not None:
+        coarse, group = result.coarse, file.create_group("coarse")
+        write_grid(group, coarse.problem, coarse.history, coarse.grid, has_slip_sums(coarse.states))
+        append(group["states"], rows_of(list(coarse)))
+        append(group["cycles"], cycle_rows(coarse.cycles))
 
 
 def pack(result: Result, error: str | None, most: int) -> bytes | None:
@@ -228,7 +237,29 @@ def _read(
         restart=restart,
         cycles=tuple(cycles),
     )
-    return result, task
+    coarse = _read_coarse(file, result, places, found, after)
+    return result if coarse is None else with_error_bars(result, coarse), task
+
+
+def _read_coarse(
+    file: hdf5.Group | packed.Group, fine: Result, places: Sequence[int], found: int, after: int | None
+) -> Result | None:
+    """Read the states of a file that give the states `fine` their error bars, at the same places of the file.
+
+    It is None without error bars, or if their run has not come as far. `found` is the number of fine states. Up to a
+    corner `after` there is no restart on the coarse grid.
+    """
+    group = file.get("coarse")
+    if group is None or count(group["states"]) < found:
+        return None
+    grid, restart = read_grid(group), None
+    if after is None and "restart" in group:
+        restart = read_restart(group["restart/latest"], grid.size)
+    states = read_states(group, fine.problem, grid, list(places), len(fine.history))
+    if any((one.step, one.fraction) != (two.step, two.fraction) for one, two in zip(fine, states, strict=True)):
+        raise ValueError("coarse/states has other load points than states")
+    cycles = tuple(cycle for cycle in read_cycles(group) if after is None or cycle.corner < after)
+    return replace(fine, states=_without_gaps(states, places), grid=grid, restart=restart, cycles=cycles)
 
 
 def _without_gaps(states: list[State], places: Sequence[int]) -> list[State]:

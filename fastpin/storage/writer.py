@@ -38,15 +38,21 @@ from fastpin.storage.layout import (
     cycle_rows,
     option_attributes,
     read_about,
+    read_cycles,
+    read_grid,
+    read_history,
+    read_options,
+    read_problem,
     read_rows,
     read_statistics,
     rows_of,
     state_rows,
+    write_grid,
     write_head,
     write_statistics,
 )
 from fastpin.storage.restarts import read_restart, write_restart
-from fastpin.storage.store import is_unfinished, load, stored_task
+from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 
 log = logging.getLogger(__name__)
 
@@ -72,8 +78,18 @@ def checkpoint_of(path: Path) -> Path:
     return real.with_name(real.name + ".checkpoint")
 
 
+def coarse_of(path: Path) -> Path:
+    """Return the path of the run on the coarse grid. It stands beside the file until it ends."""
+    real = Path(os.path.realpath(path))
+    return real.with_name(real.name + ".coarse")
+
+
 def clear_checkpoints(path: Path) -> None:
-    """Remove the checkpoint of an ended run, and the partly written checkpoints of killed processes."""
+    """Remove the checkpoint of an ended run, and what killed processes have left beside it.
+
+    That is partly written checkpoints, and the run on the coarse grid of an earlier run in this file.
+    """
+    coarse_of(path).unlink(missing_ok=True)
     checkpoint = checkpoint_of(path)
     checkpoint.unlink(missing_ok=True)
     forget_temporaries(checkpoint)
@@ -348,6 +364,36 @@ class FileRecorder:
 
     def _all_seconds(self) -> float:
         return self._seconds + time.monotonic() - self._began
+
+
+def add_coarse(path: Path, beside: Path) -> None:
+    """Add the states of a finished run on the coarse grid to the file whose error bars they give, all or none.
+
+    Then remove the file of this run.
+    """
+    file = JournaledFile(path, new=False)
+    try:
+        h5 = h5py.File(file, "r+")
+        try:
+            with open_result(beside) as stored:
+                group, grid, history = h5.create_group("coarse"), read_grid(stored), read_history(stored)
+                write_grid(group, read_problem(stored), history, grid, read_options(stored).slip_sums)
+                states = stored["states"]
+                for first in range(0, count(states), PIECE):
+                    append(group["states"], read_rows(states, state_rows(states), slice(first, first + PIECE)))
+                append(group["cycles"], cycle_rows(read_cycles(stored)))
+                write_restart(group.create_group("restart/latest"), read_restart(stored["restart/latest"], grid.size))
+            h5.flush()
+            file.commit()
+        except BaseException:
+            file.abandon()
+            raise
+        finally:
+            h5.close()
+        file.commit()
+    finally:
+        file.release()
+    beside.unlink()
 
 
 def _with_first(rows: Rows, values: SlipFields) -> Rows:

@@ -24,6 +24,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.error_bars import LEAST_COARSE, ErrorBars, bars
 from fastpin.states.quantities import QUANTITIES, matching_values, quantity, size, values
+from fastpin.states.state import State
 from fastpin.storage.store import load, save
 from fastpin.studies.run_end import KEY_FIGURES, key_figures
 from fastpin.verification import closed_forms
@@ -222,12 +223,23 @@ def test_a_peak_that_may_be_elsewhere_has_a_wide_angle(problem: Problem) -> None
     assert state.error_bars["peak_pressure_angle"] < 0.1 * apart
 
 
-def test_files_keep_no_error_bars(problem: Problem, tmp_path: Path) -> None:
-    result = solve(problem, CORNERS, nodes=101, error_bars=True)
+def test_saved_results_keep_their_error_bars(problem: Problem, tmp_path: Path) -> None:
+    result = solve(problem, CORNERS, nodes=101, between=1, error_bars=True)
     save(result, tmp_path / "a.h5")
     found = load(tmp_path / "a.h5")
-    assert found[-1].error_bars is None
-    assert found.coarse is None
+    assert [bars_of(state) for state in found] == [bars_of(state) for state in result]
+    assert bars_of(load(tmp_path / "a.h5", states=[2])[0]) == bars_of(result[2])
+    assert found.coarse is not None
+    branches = [solve(problem, [{"Q": 0.1}], start=start, error_bars=True)[-1] for start in (found, result)]
+    assert bars_of(branches[0]) == bars_of(branches[1])
+    save(replace(result, coarse=None), tmp_path / "a.h5")
+    assert load(tmp_path / "a.h5")[-1].error_bars is None
+
+
+def bars_of(state: State) -> str:
+    """The bars of a state as text: NaN equals NaN."""
+    assert state.error_bars is not None
+    return repr(dict(state.error_bars))
 
 
 def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -241,10 +253,20 @@ def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) ->
     assert set(QUANTITIES) - {"P", "Q", "M"} <= set(state)
 
 
-def test_run_refuses_error_bars_in_files(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(case), "--error-bars", "-o", str(case.parent / "a.h5")]) == 2
-    assert "--error-bars: are not kept in files: can't be combined with --output" in capsys.readouterr().err
-    assert main(["run", str(case), "--error-bars", "--nodes", "99"]) == 2
+def test_files_of_runs_show_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(case.parent / "a.h5")
+    assert main(["run", str(case), "--nodes", "101", "--error-bars", "-o", path]) == 0
+    table = capsys.readouterr().out.splitlines()[:-1]
+    assert table[3].count("+-") == 8
+    assert main(["show", path]) == 0
+    assert capsys.readouterr().out.splitlines()[:-1] == table
+    assert main(["run", str(case), "--error-bars", "--nodes", "99", "-o", path, "--overwrite"]) == 2
+    assert "nodes: must be at least 101 for error bars, not 99" in capsys.readouterr().err
+    branch = str(case.parent / "b.h5")
+    assert main(["run", str(case), "--start", path, "--error-bars", "-o", branch]) == 2
+    assert "--error-bars: a run that continues another one has none in a file" in capsys.readouterr().err
+    assert main(["run", str(case), "--start", path, "--error-bars"]) == 0
+    assert "+-" in capsys.readouterr().out
 
 
 def test_a_contact_that_is_gone_has_error_bars(problem: Problem) -> None:
