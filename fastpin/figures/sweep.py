@@ -29,6 +29,10 @@ from fastpin.model.checks import instance
 from fastpin.report.sweep import Axis, Chart
 
 _FAILED: Any = {"facecolor": "0.93", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
+_UNSURE: Any = {
+    "marker": "o", "markersize": 4.5, "markerfacecolor": "white", "markeredgecolor": "black", "markeredgewidth": 0.9,
+    "linestyle": "none",
+}  # fmt: skip
 _OPEN: Any = {"facecolor": "white", "edgecolor": "0.75", "linewidth": 0.5}
 MOST_COLUMNS = 3
 """Most maps side by side."""
@@ -85,7 +89,9 @@ def plot_sweep(
     A map has one cell for each pair of values. The edges of a cell lie halfway to its neighbours, on a logarithmic axis
     at the geometric mean. Contour lines join equal values. Classes have colours, hatches and a legend instead, and
     lines where two classes meet. Hatched cells are failed runs. Crosses at the lower edge of a figure of curves are
-    failed runs, too. Positive values that differ by a factor of 30 or more have a logarithmic
+    failed runs, too. Error bars are drawn at the points of curves. In a map they are dots in the cells whose error bar
+    is larger than the differences to the cells beside them, or whose class is another one on the coarse grid. A line
+    above the maps names the largest bar. Positive values that differ by a factor of 30 or more have a logarithmic
     scale. Of more than :data:`~fastpin.figures.style.MAX_NAMED` curves an even choice is drawn, and the legend says so.
 
     Parameters
@@ -145,9 +151,10 @@ def _draw_maps(chart: Chart, look: Look) -> Sheet:
     known = _known_values(chart)
     scale = (LogNorm if _spans_decades(known) else Normalize)(known.min(), known.max())
     levels, labels = _levels(known), []
-    for panel, (name, numbers, failed) in zip(sheet.axes.flat, chart.parts, strict=False):
+    for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
         mesh = _draw_map(panel, chart, numbers, failed, scale)
         labels.append(_draw_contours(panel, chart, numbers, levels))
+        _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
         panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
     _label_panels(sheet, chart)
@@ -156,7 +163,7 @@ def _draw_maps(chart: Chart, look: Look) -> Sheet:
     bar.outline.set_linewidth(0.5)
     if isinstance(scale, LogNorm):
         _round_numbers(bar.ax.yaxis, known)
-    sheet.head(look.title, caption=_fixed_parameters(chart))
+    sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     _thin_out(sheet, [label for part in labels for label in part])
     return sheet
@@ -166,13 +173,14 @@ def _draw_class_maps(sheet: Sheet, chart: Chart, title: str) -> Sheet:
     """Draw maps of classes. The legend names the classes, and no bar of colours stands beside the maps."""
     assert chart.y is not None
     x, y = cell_edges(chart.x), cell_edges(chart.y)
-    for panel, (name, numbers, failed) in zip(sheet.axes.flat, chart.parts, strict=False):
+    for panel, (name, numbers, failed), unsure in zip(sheet.axes.flat, chart.parts, _unsure(chart), strict=False):
         draw_classes(panel, x, y, numbers, chart.classes)
         _draw_empty_cells(panel, x, y, numbers, failed)
+        _dot_cells(panel, chart, unsure)
         _scale_axes(panel, chart)
         panel.set_title(_shown(name), fontsize=8.0, parse_math=False)
     _label_panels(sheet, chart)
-    sheet.head(title, _shown(chart.label), caption=_fixed_parameters(chart))
+    sheet.head(title, _shown(chart.label), _bar_line(chart), caption=_fixed_parameters(chart))
     _explain(sheet, chart)
     return sheet
 
@@ -205,6 +213,51 @@ def _draw_empty_cells(panel: Axes, x: np.ndarray, y: np.ndarray, numbers: np.nda
         size = x[column + 1] - x[column], y[row + 1] - y[row]
         style = _FAILED if failed[row, column] else _OPEN
         panel.add_patch(Rectangle((x[column], y[row]), *size, **style))
+
+
+def _unsure(chart: Chart) -> list[np.ndarray]:
+    """Return where a map shows less than its error bars, for each map: shape (len(y), len(x)), bool.
+
+    That is a cell whose error bar is larger than the differences to all cells beside it, or not known. A class is
+    unsure if the coarse grid finds another one.
+    """
+    if not chart.bars:
+        return [np.zeros(numbers.shape, dtype=bool) for _, numbers, _ in chart.parts]
+    found = []
+    for (_, numbers, _), bars in zip(chart.parts, chart.bars, strict=True):
+        known = np.isfinite(numbers) & ~np.isnan(bars)
+        if chart.classes:
+            found.append(known & (bars > 0.0))
+            continue
+        round_about = np.pad(numbers, 1, constant_values=np.nan)
+        beside = (round_about[1:-1, :-2], round_about[1:-1, 2:], round_about[:-2, 1:-1], round_about[2:, 1:-1])
+        steps = np.array([np.where(np.isnan(each), -np.inf, np.abs(each - numbers)) for each in beside]).max(axis=0)
+        found.append(known & (bars > steps) & np.isfinite(np.maximum(steps, 0.0)) & (steps > -np.inf))
+    return found
+
+
+def _dot_cells(panel: Axes, chart: Chart, unsure: np.ndarray) -> None:
+    """Mark the cells of a map that are unsure."""
+    assert chart.y is not None
+    rows, columns = np.nonzero(unsure)
+    panel.plot(chart.x.values[columns], chart.y.values[rows], **_UNSURE)
+
+
+def _bar_line(chart: Chart) -> str:
+    """Words on the error bars of a map; empty without any."""
+    bars = np.concatenate([each[~np.isnan(each)] for each in chart.bars]) if chart.bars else np.empty(0)
+    if not bars.size:
+        return ""
+    if chart.classes:
+        return f"another class on the coarse grid: {np.count_nonzero(bars):,} of {bars.size:,} runs"
+    spread_of_values, finite = float(np.ptp(_known_values(chart))), bars[np.isfinite(bars)]
+    if not finite.size:
+        return "error bars: not known"
+    largest = float(finite.max())
+    part = f", {100.0 * largest / spread_of_values:.2g} % of the range" if spread_of_values > 0.0 else ""
+    unknown = f"; not known in {bars.size - finite.size:,} runs" if finite.size < bars.size else ""
+    unit = re.search(r"\(([^()]*)\)$", _shown(chart.label))
+    return f"largest error bar: {largest:.2g}{f' {unit[1]}' if unit else ''}{part}{unknown}"
 
 
 def _levels(known: np.ndarray) -> np.ndarray:
@@ -254,8 +307,11 @@ def _explain(sheet: Sheet, chart: Chart) -> None:
     """Add a legend of classes, and of the cells without a value: of failed runs, and of all others."""
     failed = any(part.any() for _, _, part in chart.parts)
     empty = any((np.isnan(numbers) & ~part).any() for _, numbers, part in chart.parts)
-    handles = class_patches(chart.classes, _known_values(chart)) if chart.classes else []
+    handles: list[Any] = [*class_patches(chart.classes, _known_values(chart))] if chart.classes else []
     handles += [Patch(label="failed run", **_FAILED)] * failed + [Patch(label="no value", **_OPEN)] * empty
+    if any(unsure.any() for unsure in _unsure(chart)):
+        words = "another class on the coarse grid" if chart.classes else "error bar above the differences to all sides"
+        handles.append(Line2D([], [], label=words, **_UNSURE))
     sheet.legend(_by_rows(handles, MOST_ENTRIES), MOST_ENTRIES)
 
 
@@ -272,6 +328,13 @@ def _draw_curves(chart: Chart, look: Look) -> Sheet:
         _, numbers, failed = chart.parts[part]
         style: Line = line(index, index) | {"marker": MARKERS[index], "markersize": 3.5}
         panel.plot(chart.x.values, numbers, **style)
+        if chart.bars and not chart.classes:
+            bars = np.where(np.isfinite(chart.bars[part]), chart.bars[part], 0.0)  # an infinite bar has no ends
+            kept = bars > 0.0
+            panel.errorbar(
+                chart.x.values[kept], numbers[kept], bars[kept], fmt="none", ecolor=style["color"], elinewidth=1.0,
+                capsize=2.5,
+            )  # fmt: skip
         _mark_failed(panel, chart.x.values[failed], index)
         any_failed = any_failed or bool(failed.any())
         if name:
@@ -288,7 +351,7 @@ def _draw_curves(chart: Chart, look: Look) -> Sheet:
     if any_failed:
         handles.append(Line2D([], [], color="0.3", linestyle="none", marker="x", markersize=4.0, label="failed run"))
     some = f"{len(shown)} of {len(chart.parts)} curves" if len(shown) < len(chart.parts) else ""
-    sheet.head(look.title, caption=_fixed_parameters(chart))
+    sheet.head(look.title, _bar_line(chart), caption=_fixed_parameters(chart))
     sheet.legend(_by_rows(handles, across), across, some)
     return sheet
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,7 +24,7 @@ from fastpin.storage.files import check_writable, replacing
 from fastpin.studies.field_words import field_kind, field_words
 from fastpin.studies.index import DONE, FAILED
 from fastpin.studies.plan import Plan
-from fastpin.studies.run_end import KEY_FIGURES
+from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.version import __version__
 
 Row = dict[str, Any]
@@ -67,8 +68,9 @@ def text(plan: Plan, rows: Sequence[Row]) -> str:
 def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     """Return the columns of the table of runs: varied fields, outcomes of the plan, status.
 
-    A plan without outcomes has the most important key figures in their place. `rows` come from
-    :func:`fastpin.studies.sweep.rows`.
+    A plan without outcomes has the most important key figures in their place. Error bars stand behind +-, if the runs
+    have any; a ? stands for an infinite bar. The number of a class that the coarse grid finds different has a ?, too.
+    `rows` come from :func:`fastpin.studies.sweep.rows`.
     """
     rows, unit = printed_rows(plan, rows)
     columns = [("run", "", [row["id"] for row in rows])]
@@ -78,7 +80,8 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     shown = dict(zip(plan.outcomes, plan.outcomes, strict=True)) or _SHOWN
     for name, heading in shown.items():
         values = [_in_words(plan, name, row.get(name)) for row in rows]
-        columns.append(_column(plan.labels.get(name, heading), values, _unit(plan, name, unit)))
+        bars = [row.get(bar_column(name)) for row in rows]
+        columns.append(_column(plan.labels.get(name, heading), values, _unit(plan, name, unit), bars))
     columns.append(("status", "", [row["status"] for row in rows]))
     return columns
 
@@ -87,7 +90,8 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
     Classes are words. Units are SI, with the thickness of each run if all runs have one, or the paper's for
-    dimensionless problems. A function of the user has its own unit.
+    dimensionless problems. A function of the user has its own unit. The error bar of NAME is in the column NAME_bar, if
+    any run has one; an infinite bar is "inf".
 
     Raises
     ------
@@ -98,7 +102,13 @@ def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
     rows, unit = printed_rows(plan, rows)
     named = [(name, unit.get(field_kind(name), "")) for name in plan.fields]
     named += [(name, _unit(plan, name, unit)) for name in (*plan.outcomes, *KEY_FIGURES)]
-    names = ["id", *plan.fields, *plan.outcomes, *KEY_FIGURES, "seconds", "started", "host", "status", "reason"]
+    with_bars = [
+        each
+        for name in (*plan.outcomes, *KEY_FIGURES)
+        for each in (name, bar_column(name))
+        if each == name or any(each in row for row in rows)
+    ]
+    names = ["id", *plan.fields, *with_bars, "seconds", "started", "host", "status", "reason"]
     out = io.StringIO()
     out.write(f"# fastpin {__version__}{f', {plan.title}' if plan.title else ''}\n")
     out.write(f"# units: {', '.join(f'{name} {label}' for name, label in named if label)}, seconds s\n")
@@ -155,6 +165,9 @@ class Chart:
         The fields of the plan with several values.
     classes : dict of int to str
         The words of each value, if the values are numbers of classes; else empty.
+    bars : list of ndarray
+        The error bars of each entry of `parts`, in the label's unit. NaN where there is none, inf where nothing is
+        known. Bars of a class are 0, or larger if the coarse grid finds another class. Empty without error bars.
     """
 
     title: str
@@ -166,6 +179,7 @@ class Chart:
     problem: Problem | None = None
     varied: tuple[str, ...] = ()
     classes: Mapping[int, str] = field(default_factory=dict)
+    bars: list[np.ndarray] = field(default_factory=list)
 
 
 def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[str, str | None, list[str]]:
@@ -240,13 +254,16 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     axes = [_axis(plan, rows, name, unit) for name in (y, x) if name is not None]
     shape = tuple(len(axis.values) for axis, _ in axes)
     parts: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+    bars: dict[str, np.ndarray] = {}
     for row in rows:
         name = "\n".join(others_words[other](row[other]) for other in others if row[other] is not None)
         numbers, failed = parts.setdefault(name, (np.full(shape, np.nan), np.zeros(shape, dtype=bool)))
+        bars.setdefault(name, np.full(shape, np.nan))
         place = tuple(places[row[field]] for (_, places), field in zip(axes, (y, x) if y else (x,), strict=True))
         failed[place] = row["status"] == FAILED
         if row["status"] == DONE and row.get(value) is not None:
             numbers[place] = factor * row[value] if abs(row[value]) > least else 0.0
+            bars[name][place] = factor * row.get(bar_column(value), math.nan)
     return Chart(
         plan.title,
         _label(plan.labels.get(value, value.replace("_", " ")), label),
@@ -257,6 +274,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
         plan.case(plan.points[0]).problem,
         tuple(name for name in plan.fields if len(_different([point.values.get(name) for point in plan.points])) > 1),
         plan.outcomes[value].classes if value in plan.outcomes else {},
+        [*bars.values()] if any(bar_column(value) in row for row in rows) else [],
     )
 
 
@@ -301,18 +319,30 @@ def _rounding(plan: Plan, rows: Sequence[Row], value: str, unit: dict[str, str])
     return max(_ROUNDING.get(_unit(plan, value, unit), 0.0), ROUNDING * max(numbers, default=0.0))
 
 
-def _column(name: str, values: Sequence[Any], unit: str) -> Column:
-    """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan."""
+def _column(name: str, values: Sequence[Any], unit: str, bars: Sequence[float | None] = ()) -> Column:
+    """Return a column of the text table. Numbers get an SI prefix; a column with other values is as in the plan.
+
+    `bars` are the error bars of the values; None where a value has none.
+    """
+    bars = bars or [None] * len(values)
     if not all(value is None or _is_number(value) for value in values):
-        return name, unit, ["-" if value is None else brief(value).strip('"') for value in values]
+        words = ["-" if value is None else brief(value).strip('"') for value in values]
+        return name, unit, [f"{word} ?" if bar else word for word, bar in zip(words, bars, strict=True)]
     least = _ROUNDING.get(unit, 0.0)
     values = [0.0 if value is not None and abs(value) < least else value for value in values]
     factor, label = scaled([value for value in values if value is not None], unit)
-    return name, label, ["-" if value is None else f"{value * factor:.5g}" for value in values]
+    cells = ["-" if value is None else f"{value * factor:.5g}" for value in values]
+    return name, label, [f"{cell}{_bar_words(factor, bar)}" for cell, bar in zip(cells, bars, strict=True)]
+
+
+def _bar_words(factor: float, bar: float | None) -> str:
+    if bar is None:
+        return ""
+    return f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?"
 
 
 def printed_rows(plan: Plan, rows: Sequence[Row]) -> tuple[Sequence[Row], dict[str, str]]:
-    """Return rows with the outcomes and key figures in printed units, and the units by kind.
+    """Return rows with the outcomes, key figures and error bars in printed units, and the units by kind.
 
     Each run counts with its own thickness. There are no units if only some of the runs are dimensionless.
     """
@@ -330,6 +360,7 @@ def printed_rows(plan: Plan, rows: Sequence[Row]) -> tuple[Sequence[Row], dict[s
         unit = of_thickness[thickness]
         factors = {name: unit[kind].factor for name, kind in KEY_FIGURES.items() if kind in unit}
         factors |= {name: outcome.unit_in(unit).factor for name, outcome in plan.outcomes.items()}
+        factors |= {bar_column(name): factor for name, factor in factors.items()}
         known = {name: factor * row[name] for name, factor in factors.items() if row.get(name) is not None}
         found.append({**row, **known})
     return found, names

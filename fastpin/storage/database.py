@@ -23,7 +23,7 @@ from fastpin.storage.files import NO_LINK
 BUSY_SECONDS = 60.0
 """Longest wait for another process that has locked a database."""
 
-TABLES = ("runs", "sweep", "outcomes", "results")
+TABLES = ("runs", "sweep", "outcomes", "bars", "results")
 """The tables that an index may have."""
 
 MOST_ROWS = 1_000_000

@@ -136,7 +136,9 @@ def _digested(history: LoadHistory) -> dict[str, Any]:
 
 def _options(options: SolveOptions) -> dict[str, Any]:
     keywords = options.keywords()
-    del keywords["shortcut"], keywords["error_bars"]  # They change no state.
+    del keywords["shortcut"]  # It changes no state.
+    if not options.error_bars:
+        del keywords["error_bars"]  # Sweeps learned them later; older ids stay.
     if options.method == "path":
         del keywords["increments"]
     if not options.slip_sums:

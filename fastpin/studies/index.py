@@ -8,6 +8,7 @@ not. Other processes can read the index during a sweep.
 from __future__ import annotations
 
 import json
+import math
 import re
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
@@ -39,6 +40,10 @@ _END_COLUMNS = ("status", "reason", *KEY_FIGURES, "seconds", "started", "host", 
 _OUTCOMES_TABLE = (
     "CREATE TABLE IF NOT EXISTS outcomes (run TEXT NOT NULL, name TEXT NOT NULL, definition TEXT NOT NULL, value REAL, "
     "reason TEXT, PRIMARY KEY (run, name))"
+)
+_BARS_TABLE = (
+    "CREATE TABLE IF NOT EXISTS bars (run TEXT NOT NULL, name TEXT NOT NULL, bar REAL NOT NULL, "
+    "PRIMARY KEY (run, name))"
 )
 
 
@@ -98,7 +103,7 @@ class Index:
             raise InputError(str(self.path), "is an SQLite file, but not the index of a sweep")
         if self._one("PRAGMA user_version") != FORMAT_VERSION:
             raise InputError(str(self.path), "is the index of another version of fastpin, which this one can't read")
-        for table in ("runs", "sweep", "outcomes") if self._has_table("outcomes") else ("runs", "sweep"):
+        for table in ("runs", "sweep", *filter(self._has_table, ("outcomes", "bars"))):
             damage = self._one(f"PRAGMA quick_check({table})")  # Every result has a checksum of its own.
             if damage != "ok":
                 raise sqlite3.DatabaseError(damage)
@@ -113,8 +118,7 @@ class Index:
         fields = list(plan.fields)
         with self._as_input_error(), self._transaction():
             self._add_columns(fields)
-            self._database.execute(_OUTCOMES_TABLE)
-            self._database.execute(TABLE)
+            self._make_tables()
             self._database.executemany(
                 "DELETE FROM outcomes WHERE name = ? AND definition <> ?",
                 [(name, outcome.definition) for name, outcome in plan.outcomes.items()],
@@ -155,6 +159,8 @@ class Index:
                 }
                 values = [cells[name] for name in _END_COLUMNS]
                 self._database.execute(f"UPDATE runs SET {assignments} WHERE id = ?", [*values, end.id])
+                self._database.execute("DELETE FROM bars WHERE run = ?", [end.id])
+                self._write_bars(end.id, end.bars)
                 self._write_outcomes(end.id, end.outcomes)
                 self._write_result(end.id, end.content)
 
@@ -208,6 +214,18 @@ class Index:
                 found.setdefault(run, {})[name] = OutcomeValue(definition, checked, _text("reason", reason))
         return found
 
+    def bars(self) -> dict[str, dict[str, float]]:
+        """Read the error bars of key figures and outcomes, by run and name. Only runs with error bars have some.
+
+        A bar is inf where the coarse grid has no value to compare.
+        """
+        found: dict[str, dict[str, float]] = {}
+        if self._has_table("bars"):
+            with self._as_input_error():
+                for run, name, bar in limited(self._database.execute("SELECT run, name, bar FROM bars")):
+                    found.setdefault(run, {})[name] = math.inf if bar == math.inf else number(name, bar, 0.0)
+        return found
+
     def packed(self) -> set[str]:
         """Return the ids of the runs whose results are in the index."""
         if not self._has_table("results"):
@@ -254,11 +272,11 @@ class Index:
             for run in ids:
                 row = other._database.execute(f"SELECT {columns} FROM runs WHERE id = ?", [run]).fetchone()
                 self._database.execute(f"INSERT OR REPLACE INTO runs ({columns}) VALUES ({placeholders})", row)
-            self._database.execute(_OUTCOMES_TABLE)
-            self._database.execute(TABLE)
-            outcomes = other.outcomes()
+            self._make_tables()
+            outcomes, bars = other.outcomes(), other.bars()
             for run in ids:
                 self._write_outcomes(run, outcomes.get(run, {}))
+                self._write_bars(run, bars.get(run, {}))
                 self._write_result(run, other.content(run))
 
     # -- the database --------------------------------------------------------------------------------------------
@@ -272,8 +290,20 @@ class Index:
     def _write_outcomes(self, run: str, values: dict[str, OutcomeValue]) -> None:
         self._database.executemany(
             "INSERT OR REPLACE INTO outcomes VALUES (?, ?, ?, ?, ?)",
-            [(run, name, *value) for name, value in values.items()],
+            [(run, name, value.definition, value.value, value.reason) for name, value in values.items()],
         )
+        self._database.executemany("DELETE FROM bars WHERE run = ? AND name = ?", [(run, name) for name in values])
+        self._write_bars(run, {name: value.bar for name, value in values.items() if value.bar is not None})
+
+    def _write_bars(self, run: str, bars: dict[str, float]) -> None:
+        self._database.executemany(
+            "INSERT OR REPLACE INTO bars VALUES (?, ?, ?)", [(run, name, bar) for name, bar in bars.items()]
+        )
+
+    def _make_tables(self) -> None:
+        """Add the tables that an index of an earlier version lacks."""
+        for table in (_OUTCOMES_TABLE, _BARS_TABLE, TABLE):
+            self._database.execute(table)
 
     def _write_result(self, run: str, content: bytes | None) -> None:
         """Write a packed result. Without one, the result has a file of its own, and an older one is removed."""

@@ -13,7 +13,7 @@ import marshal
 import os
 import pickle
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -29,11 +29,12 @@ from fastpin.studies.outcomes import (
     TAKES,
     FunctionOfFile,
     Outcome,
+    bar_of_taken,
     digest,
     of_last_cycle,
     taken,
 )
-from fastpin.studies.run_end import RUN_COLUMNS
+from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
 
 Outcomes = dict[str, Outcome]
 """Outcomes by the names that the user chose."""
@@ -147,7 +148,20 @@ def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
                 section.report(f"{name}: must be a table such as {_EXAMPLE}, not {as_toml(value)}", name)
         except InputError as error:
             section.report(f"{name}: {error}", name)
+    for name, fault in bar_faults(found).items():
+        section.report(fault, name)
     return found
+
+
+def bar_faults(outcomes: Iterable[str]) -> dict[str, str]:
+    """Return the faults of names of outcomes that the error bar of another number has in tables, by name."""
+    others = {*outcomes, *KEY_FIGURES}
+    stems = {name: name.removesuffix("_bar") for name in outcomes if name.endswith("_bar")}
+    return {
+        name: f"{name}: is the column of the error bar of {stem}; choose another name"
+        for name, stem in stems.items()
+        if stem in others
+    }
 
 
 def _name_fault(name: object) -> str:
@@ -218,7 +232,8 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
     kind = "width" if (kind, take) == ("angle", "range") else kind
     definition = {"quantity": quantity, "take": take, "over": span}
     read = partial(taken, quantity, take, span)
-    return Outcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes))
+    bar = None if kind == "class" else partial(bar_of_taken, quantity, take, span)
+    return Outcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
 
 
 def _of_cycle(name: str, section: Section) -> Outcome | None:

@@ -12,7 +12,7 @@ import math
 import pickle
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType, ModuleType
@@ -27,6 +27,7 @@ from fastpin.model.checks import number
 from fastpin.model.points import Body, owner_of
 from fastpin.model.units import DEGREE, Unit
 from fastpin.states.choice import missing_corners, span_of, states_between
+from fastpin.states.error_bars import number_bar, value_bar
 from fastpin.states.quantities import QUANTITIES, size
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
@@ -134,6 +135,9 @@ class Outcome:
         Gives the number for a result, with angles and widths in rad. NaN or None: the result has no such number.
     classes : dict of int to str
         The words of each value, if the number stands for a class; else empty.
+    bar : callable or None
+        Gives the error bar of the number for a result with error bars. None: the bar comes from the numbers on the two
+        grids alone, see :func:`fastpin.states.error_bars.number_bar`.
     """
 
     kind: str
@@ -141,6 +145,7 @@ class Outcome:
     definition: str
     read: Callable[[Result], Any]
     classes: Mapping[int, str] = field(default_factory=dict)
+    bar: Callable[[Result], float] | None = None
 
     def reported(self, value: float) -> float:
         """A value in the units of reports: angles in degrees from the bottom of the hole, widths in degrees."""
@@ -168,11 +173,14 @@ class OutcomeValue(NamedTuple):
         None: the result has no such number, or it could not be read.
     reason : str or None
         Why the number could not be read.
+    bar : float or None
+        Error bar of the number. None: the result has no error bars, or the number has none.
     """
 
     definition: str
     value: float | None
     reason: str | None = None
+    bar: float | None = None
 
 
 def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
@@ -219,8 +227,36 @@ def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) 
             values[name] = OutcomeValue(definition, None, f"the worker does not find the function: {reason_of(error)}")
             continue
         read = value_of(outcome, result)
-        values[name] = read if read.value is None else read._replace(value=outcome.reported(read.value))
+        if read.value is not None:
+            bar = bar_of(outcome, read.value, result)
+            reported = None if bar is None else outcome.reported_bar(bar)
+            read = read._replace(value=outcome.reported(read.value), bar=reported)
+        values[name] = read
     return values
+
+
+def bar_of(outcome: Outcome, value: float, result: Result) -> float | None:
+    """Error bar of a number, with angles and widths in rad; inf if the coarse grid has no number to compare.
+
+    None: the result has no error bars, or the number has none.
+    """
+    if result.coarse is None:
+        return None
+    try:
+        if outcome.bar is not None:
+            bar = outcome.bar(result)
+        else:
+            other = value_of(outcome, result.coarse).value
+            coarse = math.nan if other is None else _beside(outcome.kind, value, other)
+            bar = number_bar(outcome.kind, value, coarse, result[-1])
+    except FastpinError:
+        return None
+    return None if math.isnan(bar) else bar
+
+
+def _beside(kind: str, value: float, other: float) -> float:
+    """The number `other`, if it is an angle, moved by whole turns next to `value`."""
+    return value + math.remainder(other - value, 2.0 * math.pi) if kind == "angle" and math.isfinite(other) else other
 
 
 # -- readers ---------------------------------------------------------------------------------------------------
@@ -255,7 +291,7 @@ def taken(quantity: str, take: str, span: str, result: Result) -> float:
     kind, of = QUANTITIES[quantity].kind, QUANTITIES[quantity].of
     if take == "last":
         return of(result[-1])
-    values = np.array([of(state) for state in (_states_of_cycle(result) if span == "cycle" else result)])
+    values = np.array([of(state) for state in _states_of(span, result)])
     values = values[np.isfinite(values)]
     if len(values) == 0:
         return math.nan
@@ -264,6 +300,37 @@ def taken(quantity: str, take: str, span: str, result: Result) -> float:
     if take == "largest magnitude":
         values = np.abs(values)
     return float(values.min() if take == "smallest" else values.max())
+
+
+def bar_of_taken(quantity: str, take: str, span: str, result: Result) -> float:
+    """Error bar of the number of :func:`taken`, for a result with error bars.
+
+    It is 1.25 times the difference of the numbers on the two grids, plus the floor of the quantity at the state that
+    the number is taken from. A range has the floors of both its ends.
+
+    Returns
+    -------
+    float
+        See :func:`fastpin.states.error_bars.bars`.
+    """
+    if take == "last":
+        bars = result[-1].error_bars
+        return math.nan if bars is None else bars[quantity]
+    assert result.coarse is not None
+    of = QUANTITIES[quantity].of
+    states = [state for state in _states_of(span, result) if math.isfinite(of(state))]
+    if not states:
+        return math.nan
+    value, other = (taken(quantity, take, span, each) for each in (result, result.coarse))
+    kind = "width" if take == "range" else QUANTITIES[quantity].kind
+    lowest, highest = min(states, key=of), max(states, key=of)
+    ends = {
+        "range": [lowest, highest],
+        "smallest": [lowest],
+        "largest": [highest],
+        "largest magnitude": [max(states, key=lambda state: abs(of(state)))],
+    }
+    return value_bar(quantity, value, _beside(kind, value, other), ends[take])
 
 
 def of_last_cycle(quantity: str, result: Result) -> float:
@@ -338,6 +405,11 @@ def digest(text: str) -> str:
 def _check_cycles(result: Result) -> None:
     if not result.cycles:
         raise FastpinError("the history has no cycle")
+
+
+def _states_of(span: str, result: Result) -> Sequence[State]:
+    """The kept states of a span of :data:`SPANS`."""
+    return _states_of_cycle(result) if span == "cycle" else result
 
 
 def _states_of_cycle(result: Result) -> list[State]:

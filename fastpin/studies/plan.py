@@ -39,7 +39,7 @@ from fastpin.model.doubts import doubts, warn_of
 from fastpin.model.loads import LOADS
 from fastpin.model.synonyms import closest
 from fastpin.studies.identity import canonical, canonical_json, id_of_json, run_id
-from fastpin.studies.outcome_tables import Outcomes, outcomes_from, outcomes_in_text
+from fastpin.studies.outcome_tables import Outcomes, bar_faults, outcomes_from, outcomes_in_text
 from fastpin.studies.run_end import KEY_FIGURES
 from fastpin.studies.variation import LOAD_TABLES, BaseCase, conflict, other_units, reads_files
 
@@ -162,6 +162,8 @@ class Plan:
             if known.get(name.lower(), outcome.definition) != outcome.definition:
                 raise InputError("outcomes", f"{name}: the plan has another outcome of this name; choose another one")
         new = {name: outcome for name, outcome in found.items() if name.lower() not in known}
+        for fault in bar_faults(self.outcomes | new).values():
+            raise InputError("outcomes", fault)
         return replace(self, outcomes=self.outcomes | new)
 
     def case(self, point: Point) -> Case:

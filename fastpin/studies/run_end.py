@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fastpin.model.angles import interval_from_bottom
-from fastpin.states.quantities import QUANTITIES, in_degrees
+from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
 from fastpin.states.zones import Interval
-from fastpin.studies.outcomes import OutcomeValue
+from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it
     from fastpin.solver.result import Result
@@ -88,6 +88,29 @@ def key_figures(result: Result) -> dict[str, Any]:
     return {name: _number(value) for name, value in figures.items()}
 
 
+def bar_column(name: str) -> str:
+    """The name of the error bar of a key figure or an outcome, in rows of a sweep and in CSV files."""
+    return f"{name}_bar"
+
+
+def key_bars(result: Result) -> dict[str, float]:
+    """Return the error bars of the key figures of a complete result with error bars, by name; else none.
+
+    Bars of angles and widths are in degrees. A figure without a value has no bar. The bar is inf if the coarse grid has
+    no value to compare.
+    """
+    if not result.complete or result.coarse is None:
+        return {}
+    bars = result[-1].error_bars or {}
+    widest = max(range(len(ends)), key=lambda k: ends[k][1] - ends[k][0]) if (ends := result[-1].contact) else 0
+    found = {name: bar_in_degrees(name, bars[name]) for name in (*_PEAKS, *_OTHERS)}
+    for end in ("start", "stop"):  # A contact all round has no ends.
+        found[f"contact_{end}"] = math.degrees(bars.get(f"contact_{widest + 1}_{end}", math.nan))
+    found["max_pressure"] = bar_of_taken("peak_pressure", "largest", "history", result)
+    found["max_shear"] = bar_of_taken("peak_shear", "largest magnitude", "history", result)
+    return {name: bar for name, bar in found.items() if not math.isnan(bar)}
+
+
 def _number(value: Any) -> int | float | None:
     """Return a number for SQLite. NaN becomes None: there is no such peak, and it has no angle."""
     if value is None or isinstance(value, int):
@@ -124,6 +147,8 @@ class RunEnd:
         Versions of fastpin, Python and the libraries.
     outcomes : dict of str to OutcomeValue
         Values of the outcomes that the user chose. Empty after a failure.
+    bars : dict of str to float
+        Error bars of key figures, see :func:`key_bars`.
     content : bytes or None
         The packed result, for the index. None if the result has a file of its own, or there is no state.
     """
@@ -136,4 +161,5 @@ class RunEnd:
     host: str | None = None
     versions: dict[str, str] = field(default_factory=dict)
     outcomes: dict[str, OutcomeValue] = field(default_factory=dict)
+    bars: dict[str, float] = field(default_factory=dict)
     content: bytes | None = field(default=None, repr=False)

@@ -38,6 +38,7 @@ from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory
 from fastpin.studies.labelled import dataset
 from fastpin.studies.outcomes import OutcomeValue
 from fastpin.studies.plan import Plan, Point, Progress
+from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.studies.work import Work, pickled_outcomes
 
 if TYPE_CHECKING:
@@ -206,7 +207,8 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
         Keys are "id", "status" ("waiting", "done", "failed"), "reason" (of a failure), "dimensionless" (1 for units of
         the paper, 0 for SI), the key figures (:data:`fastpin.studies.run_end.KEY_FIGURES`), "seconds", "started" (UTC),
         "host", "versions" and "input" (dicts), the varied fields, such as "contact.friction", and the outcomes that are
-        known of the run. None stands for an unknown value.
+        known of the run. None stands for an unknown value. A run with error bars has them too, such as
+        "peak_pressure_bar". A bar is inf if the coarse grid has no value to compare.
 
     Raises
     ------
@@ -214,9 +216,12 @@ def load(directory: str | Path) -> list[dict[str, Any]]:
         If the directory holds no index, or the index can't be used.
     """
     with Index(file_path("directory", directory)) as index:
-        outcomes = index.outcomes()
+        outcomes, bars = index.outcomes(), index.bars()
         return [
-            row | {name: value.value for name, value in outcomes.get(row["id"], {}).items()} for row in index.rows()
+            row
+            | {name: value.value for name, value in outcomes.get(row["id"], {}).items()}
+            | {bar_column(name): bar for name, bar in bars.get(row["id"], {}).items()}
+            for row in index.rows()
         ]
 
 
@@ -224,7 +229,7 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     """Return one row for each point of a plan, in the order of the plan, with the keys of :func:`load`.
 
     The outcomes are those of the plan; None stands for a value that is not known. The row of a point that is not in the
-    index has only its status "waiting", reason, id, fields and outcomes.
+    index has only its status "waiting", reason, id, fields and outcomes. Only values that are known have error bars.
 
     Raises
     ------
@@ -234,16 +239,20 @@ def rows(plan: Plan, directory: str | Path) -> list[dict[str, Any]]:
     instance("plan", plan, Plan, "a Plan")
     known_rows: dict[str, dict[str, Any]] = {}
     outcomes: dict[str, dict[str, OutcomeValue]] = {}
+    bars: dict[str, dict[str, float]] = {}
     if has_index(file_path("directory", directory)):
         with Index(file_path("directory", directory)) as index:
-            known_rows, outcomes = {row["id"]: row for row in index.rows()}, index.outcomes()
+            known_rows = {row["id"]: row for row in index.rows()}
+            outcomes, bars = index.outcomes(), index.bars()
     found = []
     for point in plan.points:
         row = known_rows.get(point.id, {"status": WAITING, "reason": None})
         values = outcomes.get(point.id, {}) if row["status"] == DONE else {}
         chosen = {name: value.value for name, value in values.items() if _is_of(plan, name, value)}
         fields = dict.fromkeys(plan.fields) | point.values
-        found.append({**row, "id": point.id, **fields, **dict.fromkeys(plan.outcomes), **chosen})
+        known_bars = bars.get(point.id, {}) if row["status"] == DONE else {}
+        shown = {bar_column(name): bar for name, bar in known_bars.items() if name in KEY_FIGURES or name in chosen}
+        found.append({**row, "id": point.id, **fields, **dict.fromkeys(plan.outcomes), **chosen, **shown})
     return found
 
 

@@ -16,9 +16,10 @@ from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.material_files import known_materials
 from fastpin.casefile.reader import Shared, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
-from fastpin.errors import CaseFileError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
 from fastpin.model.materials import MATERIALS, Material
+from fastpin.states.error_bars import check_nodes
 
 LOAD_TABLES = (("mean",), ("amplitude",), ("phase",))
 """Keys of a [[load]] block that are tables of loads."""
@@ -66,7 +67,10 @@ class BaseCase:
         with contextlib.suppress(TooManyFaultsError):
             case = case_from(text, self._folder, self._shared)
         if case is not None and case.options.error_bars:
-            text.report("error_bars: are not kept by sweeps; leave them out", "solve", "error_bars")
+            try:
+                check_nodes(case.options.nodes)
+            except InputError as error:
+                text.report(str(error), "solve", error.field)
         return text, case
 
 

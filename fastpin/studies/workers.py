@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -29,12 +29,12 @@ from fastpin.kernels.threads import in_one_thread
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.solver.errors import SolveError
-from fastpin.solver.result import Result
+from fastpin.solver.result import Result, without_restart
 from fastpin.solver.solving import solve
 from fastpin.storage import store
 from fastpin.storage.layout import versions
 from fastpin.studies.outcomes import OutcomeValue, values_in_worker
-from fastpin.studies.run_end import RunEnd, key_figures
+from fastpin.studies.run_end import RunEnd, key_bars, key_figures
 from fastpin.version import __version__
 
 K = TypeVar("K")
@@ -300,6 +300,7 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
     reason: str | None = None
     figures: dict[str, Any] = {}
     values: dict[str, OutcomeValue] = {}
+    bars: dict[str, float] = {}
     content: bytes | None = None
     try:
         try:
@@ -309,17 +310,18 @@ def solve_run(run: str, case: Case, path: str, outcomes: PickledOutcomes, settin
             reason, result = str(error), error.result
         seconds = time.perf_counter() - began
         if result is not None and len(result):
-            figures = key_figures(result)
+            figures, bars = key_figures(result), key_bars(result)
             content = store.pack(result, reason, setting.most)
             if content is None:
                 store.save(result, path, error=reason, restart=False)
             if reason is None:  # Without its restart, the result is the same as the stored one.
-                values = values_in_worker(outcomes, replace(result, restart=None))
+                values = values_in_worker(outcomes, without_restart(result))
     except MemoryError:
         seconds, reason, figures = time.perf_counter() - began, "not enough memory", {}
+        bars = {}
     except Exception as error:  # Any error is the failure of this run only. The other runs continue.
         seconds, reason, figures = time.perf_counter() - began, f"{type(error).__name__}: {error}", {}
-    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values, content)
+    return RunEnd(run, reason, figures, seconds, started, socket.gethostname(), versions(), values, bars, content)
 
 
 def read_run(run: str, path: str, content: bytes | None, outcomes: PickledOutcomes, setting: Setting) -> RunEnd:

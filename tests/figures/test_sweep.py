@@ -240,3 +240,48 @@ def test_labels_of_contour_lines_do_not_overlap() -> None:
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert boxes
     assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
+# -- error bars --------------------------------------------------------------------------------------------------
+
+
+def test_curves_have_error_bars() -> None:
+    numbers, bars = np.array([1.0, 2.0, 4.0, np.nan]), np.array([0.1, np.inf, 0.5, np.nan])
+    part = ("", numbers, np.isnan(numbers))
+    drawn = Chart("", "dx (m)", Axis("x", np.arange(4.0), False), None, [part], 1, bars=[bars])
+    figure = plot_sweep(drawn)
+    (collection,) = figure.axes[0].collections
+    segments = [[round(float(y), 9) for y in segment[:, 1]] for segment in collection.get_segments()]
+    assert segments == [[0.9, 1.1], [3.5, 4.5]]  # an infinite bar has no ends
+    assert "largest error bar: 0.5 m, 17 % of the range; not known in 1 runs" in figure.get_suptitle()
+
+
+def test_a_map_marks_cells_whose_bar_hides_the_differences(smooth: Chart) -> None:
+    numbers = smooth.parts[0][1]
+    bars = np.full(numbers.shape, 1e-6)
+    plain, marked = plot_sweep(replace(smooth, bars=[bars])), bars.copy()
+    steps = [abs(numbers[1, 1] - each) for each in (numbers[0, 1], numbers[2, 1], numbers[1, 0], numbers[1, 2])]
+    marked[1, 1] = 1.01 * max(steps)
+    unsure = plot_sweep(replace(smooth, bars=[marked]))
+    assert dots(plain) == []
+    assert dots(unsure) == [(smooth.x.values[1], smooth.y.values[1])]
+    marked[1, 1] = 0.99 * max(steps)
+    assert dots(plot_sweep(replace(smooth, bars=[marked]))) == []
+    assert [text.get_text() for text in unsure.legends[0].get_texts()][
+        -1
+    ] == "error bar above the differences to all sides"
+    assert "largest error bar" in unsure.get_suptitle()
+    assert "largest error bar" not in (plot_sweep(smooth).get_suptitle() or "")
+
+
+def test_a_map_of_classes_marks_those_that_the_coarse_grid_does_not_find() -> None:
+    drawn = class_chart([[1.0, 1.0], [2.0, 0.0]])
+    figure = plot_sweep(replace(drawn, bars=[np.array([[0.0, 1.0], [0.0, np.nan]])]))
+    assert dots(figure) == [(drawn.x.values[1], drawn.y.values[0])]
+    assert "another class on the coarse grid: 1 of 3 runs" in figure.get_suptitle()
+
+
+def dots(figure: Figure) -> list[tuple[float, float]]:
+    """The places of the dots of a map."""
+    lines = [line for line in figure.axes[0].lines if line.get_markerfacecolor() == "white"]
+    return [place for line in lines for place in zip(line.get_xdata(), line.get_ydata(), strict=True)]

@@ -110,8 +110,8 @@ def test_slip_that_is_rounding_is_no_slip() -> None:
     stuck = fastpin.solve(problem(friction=0.7), fastpin.LoadHistory([{"P": 1e4}]) + pulses, nodes=61)
     noisy = replace(stuck, states=[*stuck[:-1], replace(stuck[-1], slip=stuck[-1].slip + 1e-19)])
     assert 0.0 < noisy.cycle().largest_slip_range < 1e-18
-    assert read("largest_slip_range", noisy)[1:] == (0.0, None)
-    assert read("largest_slip_range_angle", noisy)[1:] == (None, None)
+    assert read("largest_slip_range", noisy)[1:3] == (0.0, None)
+    assert read("largest_slip_range_angle", noisy)[1:3] == (None, None)
 
 
 @pytest.mark.parametrize("name", ["peak_hoop", "kt_bearing", "kt_gross"])
@@ -163,7 +163,7 @@ def test_units_of_the_parameters_follow_the_problem() -> None:
 )
 def test_what_is_missing_is_named(name: str, reason: str) -> None:
     bare = fastpin.solve(problem(None), HISTORY, nodes=61)
-    assert read(name, bare) == (outcome(name).definition, None, reason)
+    assert read(name, bare)[:3] == (outcome(name).definition, None, reason)
     parameter = read("smith_watson_topper", bare).value  # it needs no constants
     assert parameter is not None
     assert parameter > 0.0
@@ -202,7 +202,7 @@ def test_an_infinite_life_is_no_number(result: Result, monkeypatch: pytest.Monke
     monkeypatch.setattr(Result, "fatigue", lambda *_: relieved)
     same = replace(result)
     assert read("smith_watson_topper", same).value == 0.0
-    assert read("smith_watson_topper_life", same)[1:] == (None, None)
+    assert read("smith_watson_topper_life", same)[1:3] == (None, None)
 
 
 # -- studies -----------------------------------------------------------------------------------------------------

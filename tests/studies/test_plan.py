@@ -289,8 +289,9 @@ def test_every_bit_of_the_input_counts(old: str, new: str) -> None:
 
 
 def test_what_is_not_used_does_not_count() -> None:
-    for line in ("shortcut = false", "error_bars = true"):
+    for line in ("shortcut = false", "error_bars = false"):
         assert run_id(canonical(parse_case(f"{EXAMPLE}{line}\n"))) == run_id(canonical(builtin_case()))
+    assert run_id(canonical(parse_case(f"{EXAMPLE}error_bars = true\n"))) != run_id(canonical(builtin_case()))
     with pytest.raises(CaseFileError, match="increments: has no effect"):
         parse_case(EXAMPLE.replace("# increments = 80", "increments = 90"))
     increment = EXAMPLE.replace('method = "path"', 'method = "increment"')

@@ -16,6 +16,8 @@ def test_the_path_solver_drops_the_increments_of_the_base_case():
     assert tables["solve"]["increments"] == 5
 
 
-def test_error_bars_are_refused_in_a_sweep():
-    with pytest.raises(CaseFileError, match="error_bars: are not kept by sweeps; leave them out"):
-        parse_plan('[grid]\n"solve.error_bars" = [true]\n')
+def test_error_bars_of_a_sweep_need_enough_nodes():
+    words = "line 3: solve.nodes: must be at least 101 for error bars, not 99: a second run takes half of them"
+    with pytest.raises(CaseFileError, match=words):
+        parse_plan('[grid]\n"solve.error_bars" = [true]\n"solve.nodes" = [99]\n')
+    assert len(parse_plan('[grid]\n"solve.error_bars" = [true, false]\n"solve.nodes" = [101]\n').runs) == 2
