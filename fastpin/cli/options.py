@@ -482,7 +482,7 @@ def _add_solver_options(run: argparse.ArgumentParser) -> None:
         "--error-bars",
         action=argparse.BooleanOptionalAction,
         default=None,
-        help="solve a second time on a grid with half the intervals, for error bars (not with -o or --start)",
+        help="solve a second time on a grid with half the intervals, for error bars (not with both -o and --start)",
     )
     run.add_argument(
         "--slip-sums",

@@ -182,6 +182,7 @@ def _convergence() -> Schema:
             "order": _UNKNOWN,
             "limit": _UNKNOWN,
             "bar": _UNKNOWN,
+            "scatter": _UNKNOWN,
             "path": _UNKNOWN,
         }
     )
