@@ -141,7 +141,7 @@ def _record_coarse(path: Path, task: Task) -> None:
     try:
         with words_for_coarse(halves):
             if not (beside.is_file() and _title_of(beside) == run):
-                writer = FileRecorder(beside, halves, run)
+                writer = FileRecorder(beside, halves, run, About())
                 with closing_file(writer):
                     halves.follow(writer)
             elif is_unfinished(beside):
