@@ -138,8 +138,8 @@ database = sqlite3.connect(sys.argv[1], isolation_level=None)
 database.execute("PRAGMA cache_size = 1")
 database.execute("PRAGMA cache_spill = 1")
 database.execute("BEGIN IMMEDIATE")
-database.execute("UPDATE runs SET reason = hex(zeroblob(20000))")
 database.execute("UPDATE sweep SET value = 'half done' WHERE name = 'title'")
+database.execute("UPDATE runs SET reason = hex(zeroblob(20000))")
 os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -149,6 +149,7 @@ def test_readers_see_the_last_transaction_after_a_kill_and_write_nothing(plan: P
     ended = subprocess.run([sys.executable, "-c", KILLED, directory / INDEX], timeout=60)
     assert ended.returncode == -signal.SIGKILL
     assert journal_of(directory).stat().st_size > 0
+    assert b"half done" in (directory / INDEX).read_bytes()
     before = contents(directory)
     assert sweep.load(directory) == whole
     with Index(directory) as index:
@@ -170,6 +171,8 @@ HOSTILE = {
     "default": "DROP TABLE sweep; CREATE TABLE sweep (name TEXT PRIMARY KEY, value TEXT DEFAULT (hex(zeroblob(9))))",
     "check": "DROP TABLE sweep; CREATE TABLE sweep (name TEXT PRIMARY KEY, value TEXT CHECK (random() > 0))",
     "index": "CREATE INDEX i ON runs (hex(zeroblob(length(id))))",
+    "index that is said to be a table": "PRAGMA writable_schema = ON; UPDATE sqlite_master SET type = 'table' "
+    "WHERE name = 'sqlite_autoindex_sweep_1'",
 }
 
 

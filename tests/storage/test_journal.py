@@ -367,6 +367,20 @@ def test_records_beyond_the_file_are_not_undone(tmp_path: Path, records: list[tu
     assert path.read_bytes() == before
 
 
+@pytest.mark.parametrize("latest", [b"old2", b"new2", b"neX?"])
+@pytest.mark.parametrize("first", [b"old1", b"new1", b"neX?"])
+def test_bytes_that_are_neither_old_nor_new_belong_to_another_file(tmp_path: Path, first: bytes, latest: bytes) -> None:
+    """A dead process may have written a part of the last record only. All records before it are whole."""
+    path = tmp_path / "a.h5"
+    path.write_bytes(first + latest)
+    content = struct.pack("<QIII", 8, 0, zlib.crc32(b"", 8), 0)
+    for place, old, new in ((0, b"old1", b"new1"), (4, b"old2", b"new2")):
+        content += struct.pack("<QIII", place, 4, zlib.crc32(old, place), zlib.crc32(new)) + old
+    journal_of(path).write_bytes(content)
+    JournaledFile(path, new=False).release()
+    assert path.read_bytes() == (first + latest if first == b"neX?" else b"old1old2")
+
+
 @pytest.mark.parametrize(("limit", "reason"), [("MOST_BYTES", "has .* bytes"), ("MOST_NOTES", "has more than 2 rec")])
 def test_a_journal_larger_than_any_is_refused(torn, monkeypatch: pytest.MonkeyPatch, limit: str, reason: str) -> None:
     path, _, changed, kept = torn

@@ -80,6 +80,13 @@ def test_a_history_that_begins_inside_a_cycle_goes_on_as_it_was(problem, path):
     assert [(block.count, block.cycle, block.size) for block in stored] == [(1, False, 0), (1, True, 3), (3, True, 0)]
 
 
+def test_a_period_after_another_of_the_same_length_has_its_own_states(problem, path):
+    history = P + q(0.2, -0.2).repeated(5) + q(0.1, -0.1).repeated(5)
+    follow(problem, history, path, nodes=41, arc=(-3.0, -0.1))
+    expected = solve(problem, history, nodes=41, arc=(-3.0, -0.1), shortcut=False)
+    assert_same(store.load(path), expected)
+
+
 def test_many_states_are_copied_piece_by_piece(problem, path, monkeypatch):
     monkeypatch.setattr(writer, "PIECE", 7)
     history = PROGRAMS["spectrum"]
@@ -491,6 +498,16 @@ def test_corners_to_branch_from_are_not_skipped(problem, path):
         assert np.array_equal(branch[-1].shear, expected[-1].shear)
 
 
+def test_the_way_to_a_corner_is_not_solved_again_where_it_repeats(problem, path):
+    history = P + q(0.2, -0.2).repeated(8)
+    follow(problem, history, path, nodes=41, arc=(-3.0, -0.1), shortcut=False)
+    trunk = store.load(path, after=16)
+    assert trunk.statistics["repeated"] == 0
+    assert trunk.restart.statistics["repeated"] > 0
+    branch = solve(problem, history[16:], start=trunk)
+    assert np.array_equal(branch[-1].shear, store.load(path)[-1].shear)
+
+
 def test_a_branch_of_a_branch_that_was_interrupted(problem, path, tmp_path):
     follow(problem, RANDOM[:10], path, nodes=61, arc=(-3.0, -0.1))
     second, third = tmp_path / "b.h5", tmp_path / "c.h5"
@@ -538,6 +555,14 @@ def test_what_a_run_was_asked_for_is_in_its_file(problem, path):
         (len(b.given), b.count, b.cycle) for b in PROGRAMS["two levels"].blocks
     ]
     assert case.history.longest_cycle == 16
+
+
+def test_the_arc_of_a_run_is_in_its_file(problem, path):
+    follow(problem, P, path, nodes=21, arc=(-3.0, -0.1))
+    assert stored_case(path).options.arc == (-3.0, -0.1)
+    with h5py.File(path, "r+") as file:
+        file["solver"].attrs["arc"] = (-3.0, 5.0)  # an earlier version took it as a circle
+    assert stored_case(path).options.arc == (-3.0, -3.0 + 2.0 * np.pi)
 
 
 def test_graded_grids_and_increments_go_on_as_well(problem, path):
