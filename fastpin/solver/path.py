@@ -261,7 +261,7 @@ class PathStep:
         if table is None:
             return False
         columns = HeldColumns(self.system, table, self._contact, self.rate, self._memory)
-        self._columns, self._all_at_once = columns, 2 * status.size  # one by one takes less time than a new tableau
+        self._columns, self._all_at_once = columns, status.size  # one by one takes less time than a new tableau
         slipping = np.flatnonzero(np.abs(status) == 1)
         if not columns.turned:
             self._first_status = status.copy()
@@ -323,7 +323,7 @@ class PathStep:
             # After the change all at once nothing holds the pin: change one by one instead.
             changed = slice(0, queue.counts[exchange.QUEUED])
             self.now.status[queue.node[changed]] = queue.status[changed]
-            self._all_at_once = 2 * self.now.status.size
+            self._all_at_once = self.now.status.size
             queue.counts[exchange.NEXT] = queue.counts[exchange.QUEUED] = 0
             unknowns = self._memory.unknowns.solvable(self.system, self.now.status)
         if unknowns is None:
