@@ -33,6 +33,10 @@ from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns
 BOTTOM = -0.5 * np.pi
 
 
+CODES = "REACHED", "STALE", "REBUILD", "ALL_AT_ONCE", "NO_SUPPORT", "CYCLING", "ARC_END", "ENDLESS"
+SLOTS = "UPDATES", "QUEUED", "NEXT", "ROUND", "EVENTS", "EXCHANGES", "NEEDED_COLUMN", "SETTLED"
+
+
 @pytest.fixture(params=["compiled", "python"])
 def kernel(request, monkeypatch):
     """Kernels by name, compiled or as plain Python with all that they call."""
@@ -398,3 +402,8 @@ def test_a_full_tableau_is_built_anew(titanium_in_aluminium, monkeypatch):
         assert np.array_equal(one.status, two.status)
         assert np.abs(one.pressure - two.pressure).max() < 1e-12
         assert np.abs(one.shear - two.shear).max() < 1e-11
+
+
+@pytest.mark.parametrize("names", [CODES, SLOTS], ids=["codes", "slots"])
+def test_codes_and_slots_are_told_apart(names):
+    assert sorted(getattr(exchange, name) for name in names) == list(range(len(names)))

@@ -9,7 +9,7 @@ import pytest
 
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
-from fastpin.model.loads import REMOTE
+from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.problem import Problem
 from fastpin.solver import arc
 from fastpin.solver.errors import ArcError, ResolutionError
@@ -54,6 +54,12 @@ def test_the_quick_run_leaves_the_others_to_the_careful_ones(corner: dict[str, f
     assert estimated is not None
     wide = estimated if "sxx" in corner else (estimated[0] - 1.0, estimated[1] + 1.0)
     assert arc._quick_arc(problem, history, wide, reference_force(problem, values), None) is None
+
+
+def test_the_estimate_of_a_close_fit_tends_to_the_one_of_a_neat_fit() -> None:
+    load, close = np.eye(len(LOADS))[:1], Problem.from_load_parameter(LIKE, 1e-6, 0.3)
+    neat = Problem(LIKE, 1.0, 0.0, 0.3)
+    assert arc._estimated_arc(close, load) == pytest.approx(arc._estimated_arc(neat, load))
 
 
 @pytest.mark.parametrize("start", [-6.0, -1.5, 0.0, 3.0, 6.0])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -154,6 +157,31 @@ def test_both_ends_of_an_arc_leave_a_young_contact_the_same_room(titanium_in_alu
     assert np.count_nonzero(one.slip[one.closed]) > 1
     assert one.slip == pytest.approx(-other.slip[::-1], abs=1e-10 * np.abs(one.slip).max())
     assert one.shear == pytest.approx(-other.shear[::-1], abs=1e-12 * one.pressure.max())
+
+
+def young_patch(pair, before, after):
+    """The system of an arc with nodes before and after the bottom, and three nodes that stick there."""
+    case = Problem.from_load_parameter(pair, 0.1, 0.4, "centre", "fixed")
+    system = System.build(case, Grid(BOTTOM + 0.02 * np.arange(-before, after + 1.0)), 1.0)
+    patch = unloaded_configuration(system)
+    patch.status[before - 1 : before + 2], patch.pressure[before] = STICK, 1.0
+    return system, patch
+
+
+@pytest.mark.parametrize(("before", "after"), [(10, 50), (30, 30), (50, 10)])
+def test_a_young_contact_is_followed_on_few_nodes(titanium_in_aluminium, before, after):
+    system, patch = young_patch(titanium_in_aluminium, before, after)
+    around = np.arange(before - first_contact.GROWN_NODES, before + first_contact.GROWN_NODES + 1)
+    assert np.array_equal(first_contact._young_nodes(system, patch), around[(around >= 0) & (around <= before + after)])
+
+
+@pytest.mark.parametrize(("before", "after"), [(5, 40), (40, 5)])
+def test_nodes_beyond_an_arc_tell_no_slip(monkeypatch, titanium_in_aluminium, before, after):
+    """Even where a contact has grown to one side only."""
+    system, patch = young_patch(titanium_in_aluminium, before, after)
+    grown = replace(patch, status=np.full(system.grid.size, STICK))
+    monkeypatch.setattr(first_contact, "PathStep", lambda *_: SimpleNamespace(follow=lambda _: grown))
+    assert first_contact._grown_slip(system, patch, patch.load) is None
 
 
 @pytest.mark.parametrize("load", [{P: 1.0}, {P: 0.6, Q: -0.8}], ids=["down", "inclined"])

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fastpin.kernels.status import STICK
 from fastpin.model.problem import Problem
+from fastpin.solver.configuration import Solution
+from fastpin.solver.increment import _hold_one
 from fastpin.solver.solving import solve
 
 ARC = (-0.5 * np.pi - 1.25, -0.5 * np.pi + 1.25)
@@ -56,3 +59,13 @@ def test_a_first_corner_on_few_nodes(similar):
     result = solve(problem, [{"P": 0.01}, {"P": 1.0}], nodes=41, method="increment", increments=40)
     exact = solve(problem, [{"P": 1.0}], nodes=41)[-1]
     assert result[1].peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-2)
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_of_the_nodes_that_let_go_the_nearest_to_sticking_holds(count):
+    nothing, friction, pressure = np.zeros(4), 0.5, np.array([2.0, 2.0, 2.0, 1.0])
+    shear = np.array([1.3, -1.1, 1.2, -0.5])
+    status, wanted = np.full(4, STICK), np.array([-1, 1, -1, 1])
+    status[count:] = wanted[count:]
+    _hold_one(wanted, status, Solution(pressure, shear, nothing, nothing, nothing), friction, nothing)
+    assert wanted.tolist() == [-1, STICK, -1, 1]

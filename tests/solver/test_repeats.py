@@ -154,6 +154,15 @@ def test_states_that_are_seldom_kept_do_not_cost_the_shortcut(held):
         assert state.dissipation == whole[state.step].dissipation
 
 
+def test_a_period_goes_on_after_a_kept_corner(held):
+    """However long it lasts, the same corners at its beginning are solved."""
+    solved = []
+    for count in (16, 30):
+        history = P + q(0.2, -0.2, 0.1).repeated(count)
+        solved.append(len(history) - solve(held, history, nodes=41, keep="every 7").statistics["repeated"])
+    assert solved[0] == solved[1]
+
+
 @pytest.mark.parametrize(
     "cycles",
     [

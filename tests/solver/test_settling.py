@@ -16,7 +16,7 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver import path, settling
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.configuration import solve_statuses, worst_residual
+from fastpin.solver.configuration import Solution, solve_statuses, worst_residual
 from fastpin.solver.errors import ConvergenceError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.increment import implicit_step
@@ -182,6 +182,26 @@ def test_without_rates_lemke_finds_none(titanium_in_aluminium):
 def test_the_cap_of_variables(monkeypatch):
     monkeypatch.setattr(settling, "MOST_VARIABLES", 1)
     assert settling.lemke(np.eye(2), -np.ones(2)) is None
+
+
+def test_only_gaps_may_miss_their_bounds_by_the_rounding_of_displacements(titanium_in_aluminium):
+    """At a stop where gaps have opened this instant, the largest gap is itself rounding."""
+    case = Problem.from_load_parameter(titanium_in_aluminium, 0.1, 0.4, "body")
+    settled = unloaded_configuration(System.build(case, Grid.circle(6), 1.0))
+    settled.pressure[:3], settled.shear[:3], settled.status[:3] = [1.0, 2.0, 1.0], [0.1, 0.0, -0.1], STICK
+    settled.gap[:], settled.slip[:] = 0.0, 1.0
+    names = ("pressure", "shear", "gap", "slip", "motion")
+    for name, node, error, is_rounding in [
+        ("gap", 4, -0.9 * path.ROUNDING, True),
+        ("gap", 4, -1.1 * path.ROUNDING, False),
+        ("pressure", 1, 1.9 * path.MOST_DRIFT, True),
+        ("pressure", 1, 2.1 * path.MOST_DRIFT, False),
+        ("shear", 0, -1.9 * path.MOST_DRIFT, True),
+        ("shear", 0, -2.1 * path.MOST_DRIFT, False),
+    ]:
+        solution = Solution(*(getattr(settled, one).copy() for one in names))
+        getattr(solution, name)[node] += error
+        assert path._is_rounding(settled, solution) == is_rounding
 
 
 def test_too_many_events_are_told_from_a_snap(monkeypatch, titanium_in_aluminium):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,9 +19,10 @@ from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.solver import arc, window
+from fastpin.solver import survey as surveys
 from fastpin.solver.arc import narrow_grids
 from fastpin.solver.assembly import unloaded_configuration
-from fastpin.solver.errors import ResolutionError
+from fastpin.solver.errors import NoEquilibriumError, ResolutionError
 from fastpin.solver.first_contact import first_contact
 from fastpin.solver.solving import solve
 from fastpin.solver.survey import survey
@@ -101,6 +103,20 @@ def test_the_survey_finds_the_contacts_of_the_exact_run():
         ((start, stop),) = state.contact
         middle, width = 0.5 * (start + stop), stop - start
         assert any(abs(angle - middle) < 0.3 * width and abs(found - width) < 0.3 * width for angle, found in places)
+
+
+def test_a_survey_ends_where_the_pin_snaps_and_snaps(monkeypatch):
+    tried = []
+
+    def lost():
+        tried.append("again")
+        raise NoEquilibriumError("lost")
+
+    run = SimpleNamespace(follow=lost, statistics={"jumps": 1.0})
+    monkeypatch.setattr(surveys, "Run", lambda *_, **__: run)
+    monkeypatch.setattr(surveys, "MOST_JUMPS", 2)
+    assert survey(problem(), LoadHistory(SMALL_FIRST).values(), 1.0) is None
+    assert len(tried) == 3
 
 
 @pytest.mark.parametrize("corners", [SMALL_FIRST, TRAVELLING], ids=["small first", "travelling"])
