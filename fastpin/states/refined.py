@@ -399,20 +399,23 @@ def _pressure_cusp(law: Law, coupling: float, theta: np.ndarray, nodes: np.ndarr
 
 
 def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:
-    """Slip zones of a patch, with one sign of T each: start, stop and the sign."""
+    """Slip zones of a patch: start, stop and the sign of T. Zones in which T changes its sign are left out."""
     if not patch.stick:
-        signs = np.sign(patch.shear)
-        if np.all(signs == signs[0]):
-            yield *patch.edges, int(signs[0])
-        return
-    first, last = patch.stick[0], patch.stick[-1]
-    if is_all_round(first.ends[1] - first.ends[0]):
-        return
-    yield patch.edges[0], first.ends[0], first.signs[0]
-    for before, after in pairwise(patch.stick):
-        if before.signs[1] == after.signs[0]:
-            yield before.ends[1], after.ends[0], before.signs[1]
-    yield last.ends[1], patch.edges[1], last.signs[1]
+        zones = [(*patch.edges, int(np.sign(patch.shear[0])))]
+    elif is_all_round(patch.stick[0].ends[1] - patch.stick[0].ends[0]):
+        zones = []
+    else:
+        first, last = patch.stick[0], patch.stick[-1]
+        pairs = [pair for pair in pairwise(patch.stick) if pair[0].signs[1] == pair[1].signs[0]]
+        zones = [
+            (patch.edges[0], first.ends[0], first.signs[0]),
+            *((before.ends[1], after.ends[0], before.signs[1]) for before, after in pairs),
+            (last.ends[1], patch.edges[1], last.signs[1]),
+        ]
+    for start, stop, sign in zones:
+        inside = (patch.theta >= start) & (patch.theta <= stop)
+        if np.all(np.sign(patch.shear[inside]) == sign):
+            yield start, stop, sign
 
 
 def _patches(state: State) -> Iterator[Patch]:
@@ -430,19 +433,17 @@ def _patches(state: State) -> Iterator[Patch]:
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
             theta, state.pressure[run], state.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(state, run, theta), state.problem.friction, state.problem.surfaces.dundurs()[1], state.tilt,
+            _zones(state, run), state.problem.friction, state.problem.surfaces.dundurs()[1], state.tilt,
         )  # fmt: skip
 
 
-def _zones(state: State, run: np.ndarray, theta: np.ndarray) -> tuple[Zone, ...]:
-    """The stick zones in the contact of the nodes `run`, which are at the angles `theta`."""
+def _zones(state: State, run: np.ndarray) -> tuple[Zone, ...]:
+    """The stick zones in the contact of the nodes `run`, in their order there. They may cross the first node."""
     places = np.full(state.grid.size, -1)
     places[run] = np.arange(run.size)
     zones = []
     for nodes, ends in state.stick_runs:
         if places[nodes[0]] >= 0:
-            turn = 2.0 * math.pi * round((theta[places[nodes[0]]] - ends[0]) / (2.0 * math.pi))
-            moved = ends[0] + turn, ends[1] + turn
             signs, exponents = signs_beside(state.shear, nodes), stick_exponents(state.shear, state.tilt, nodes)
-            zones.append(Zone(moved, places[nodes], signs, exponents, state.nodes.old_borders(nodes)))
-    return tuple(zones)
+            zones.append(Zone(ends, places[nodes], signs, exponents, state.nodes.old_borders(nodes)))
+    return tuple(sorted(zones, key=lambda zone: int(zone.nodes[0])))

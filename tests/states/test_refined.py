@@ -205,6 +205,24 @@ def test_a_contact_all_round_and_a_contact_across_the_first_node():
     assert one.angle == pytest.approx(two.angle, abs=1e-9)
 
 
+@pytest.mark.parametrize("pair", [LIKE, UNLIKE], ids=["like", "unlike"])
+def test_several_stick_zones_of_a_contact_across_the_first_node(pair):
+    """The nodes are the same ones. Only the first one is another: at the bottom or at the top."""
+    around, history = np.linspace(-3.0, 0.0, 61), [{"P": 1.0, "Q": 0.1}, {"sxx": 0.3}, {"P": 0.8}]
+    across, plain = (solve(problem(pair), history, grid=Grid.circle(120, start))[-1] for start in (BOTTOM, -BOTTOM))
+    assert len(plain.stick_runs) > 1
+    assert across.hoop_stress("plate", around) == pytest.approx(plain.hoop_stress("plate", around), abs=1e-10)
+
+
+@pytest.mark.parametrize("start", [0.1, 0.8])
+def test_the_slip_of_a_zone_may_change_its_sign(start):
+    """A pulled plate slips on an interference fit both ways from the axis, with or without a sticking node there."""
+    fit = Problem.from_load_parameter(LIKE, -0.1, 0.3, "centre", "fixed")
+    state = solve(fit, [{"sxx": 0.3}], grid=Grid.circle(120, start))[-1]
+    assert len(state.stick_runs) == (4 if start == 0.1 else 2)
+    assert state.peak_hoop_stress().value == pytest.approx(0.7659, rel=1e-3)  # of 480 nodes
+
+
 def test_a_contact_that_sticks_all_round_is_not_refined():
     """It has no edge and no border. The last state has an even pressure and hardly any shear."""
     fit = Problem.from_load_parameter(UNLIKE, -0.1, 0.3)
