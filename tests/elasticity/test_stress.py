@@ -217,3 +217,15 @@ def test_mirror_image(body, pin_load):
         here = stresses(body, pin_load, tractions, theta, depth)
         there = stresses(body, pin_load, mirrored, -math.pi - theta, depth, REMOTE * [1.0, 1.0, -1.0])
         assert there == pytest.approx(here * np.array([[1.0], [1.0], [-1.0]]), abs=4e-14)
+
+
+def test_the_blocks_of_the_tree_hold_their_own_nodes_tightly():
+    """A block that reached over its nodes would be summed piece by piece at more points than it must."""
+    tree = some_tractions(nodes=40).tree
+    places = np.exp(1j * tree.nodes[:, 0])
+    for (first, last, child, _), centre, radius in zip(tree.blocks, tree.centres, tree.radii, strict=True):
+        away = np.abs(places[first : last + 1] - centre)
+        assert away.max() <= radius + 1e-15
+        if child < 0:
+            assert centre == pytest.approx(0.5 * (places[first] + places[last]), abs=1e-15)
+            assert radius == pytest.approx(away.max(), abs=1e-15)

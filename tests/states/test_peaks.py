@@ -105,6 +105,22 @@ def test_beside_an_edge_the_shear_is_that_of_the_only_slipping_node() -> None:
         assert integral / unit == pytest.approx([float(pressure[1] * GRID.weights[1])], rel=1e-12)
 
 
+def test_the_sign_beside_a_stick_zone_is_the_one_of_the_next_node() -> None:
+    shear, run = np.zeros(81), np.arange(10, 20)
+    shear[[8, 9, 20, 21]] = -1.0, 1.0, -1.0, 1.0
+    no_marks, no_places = np.zeros(81, dtype=np.int8), np.full(81, np.nan)
+    contact = ShearNodes(GRID, np.ones(81), shear, np.isin(np.arange(81), run), no_marks, no_places, 1.0, 0.0, 0.0)
+    assert (contact._end_sign(run, 1), contact._end_sign(run, -1)) == (1, -1)
+
+
+@pytest.mark.parametrize("node", [1, 2, 3, 40])
+def test_peaks_at_both_ends_of_an_arc_are_mirrored(node: int) -> None:
+    pressure = np.zeros(81)
+    pressure[node - 1 : node + 4] = 0.0, 1.0, 0.8, 0.1, 0.0
+    (one, left), (other, right) = (peaks.pressure_peak(GRID, values) for values in (pressure, pressure[::-1]))
+    assert (one, left) == pytest.approx((other, -right), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("nodes", "parameter", "friction", "corners"),
     [

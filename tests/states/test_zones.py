@@ -77,6 +77,17 @@ def test_slip_zones_are_what_is_left_of_the_contact():
     assert [zone[2] for zone in zones.complement(grid, [(-0.8, 0.8)], [], status)] == [1, -1]
 
 
+@pytest.mark.parametrize("turn", [-2.0 * math.pi, 0.0, 2.0 * math.pi, 4.0 * math.pi])
+def test_slip_zones_of_a_contact_whole_turns_away(turn):
+    grid = Grid.circle(100, start=0.0)
+    status = np.full(100, OPEN, dtype=np.int8)
+    status[(grid.theta > 1.0) & (grid.theta < 2.0)] = 1
+    status[(grid.theta > 2.0) & (grid.theta < 3.0)] = -1
+    left = zones.complement(grid, [(1.0 + turn, 3.0 + turn)], [], status)
+    assert [zone[2] for zone in left] == [1, -1]
+    assert np.allclose([zone[:2] for zone in left], [(1.0 + turn, 2.0 + turn), (2.0 + turn, 3.0 + turn)], atol=0.04)
+
+
 def test_stick_zones_of_a_contact_all_round():
     grid = Grid.circle(100, start=0.0)
     status = np.ones(100, dtype=np.int8)
