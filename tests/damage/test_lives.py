@@ -50,6 +50,15 @@ def test_miner():
 BAD = {
     "parameter: must be at least 0, not -1": lambda: damage.smith_watson_topper_life(-1.0, *SWT),
     "fatigue_strength: must be positive, not -1": lambda: damage.smith_watson_topper_life(1.0, 1.0, -1.0, -1, 1, -1),
+    "fatigue_strength: must give a coefficient that is a positive number, not 0": (
+        lambda: damage.smith_watson_topper_life(1.0, 1.0, 1e-200, -1, 1, -1)
+    ),
+    "fatigue_ductility: must give a coefficient that is a positive number, not inf": (
+        lambda: damage.smith_watson_topper_life(1.0, 1e200, 1e200, -1, 1e200, -1)
+    ),
+    "shear_fatigue_strength: must give a coefficient that is a positive number, not 0": (
+        lambda: damage.fatemi_socie_life(1.0, 1e200, 1e-200, -1, 1, -1)
+    ),
     "ductility_exponent: must be negative, not 0.5": lambda: damage.smith_watson_topper_life(1.0, 1, 1, -1, 1, 0.5),
     "shear_strength_exponent: must be negative, not 0": lambda: damage.fatemi_socie_life(1.0, 1, 1, 0, 1, -1),
     "counts: must be at least 0, not -1": lambda: damage.miner([-1], [10.0]),

@@ -378,6 +378,17 @@ def test_the_coupling_of_a_drive_is_the_column_of_the_force(tube, ring):
     assert problem.drive_compliances[1] == pytest.approx(body_terms(forced).force_factor, rel=1e-13, abs=0.0)
 
 
+@pytest.mark.parametrize("drive", ["ux", "uy", "both"])
+def test_a_load_with_the_reactions_of_a_drive_moves_nothing_more(drive):
+    """The reactions are unknowns. They stand in the load of a state, too, where they are no loads."""
+    system = System.build(unlike(drive=drive), GRIDS["circle"], 1.0)
+    load, reactions = np.zeros(len(LOADS)), np.array([0.3, 0.7, 0.0])
+    complete = system.drive.with_reactions(reactions, load)
+    assert np.count_nonzero(complete) == (2 if drive == "both" else 1)
+    assert not system.load_displacement(complete).any()
+    assert not system.held_displacement(complete).any()
+
+
 def test_remote_stress_turns_no_hole():
     """The mean slip of its columns is 0."""
     for name in ALL:
