@@ -64,6 +64,19 @@ def test_an_edge_without_a_shape_is_where_the_outermost_nodes_point():
         assert fits.edge(theta[: values.size], values, 0.5, 0.69, 60) == pytest.approx(0.695)  # halfway
 
 
+def test_an_edge_agrees_with_the_nearest_nodes():
+    """The limit stands in docs/accuracy-tables.md. Beyond the eighth node the values point to another edge."""
+    x = np.arange(80.0)
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        powered = x + 0.3 + np.where(x < 8.0, rng.uniform(-0.03, 0.03, 80), rng.uniform(-0.3, 0.3))
+        zeros = np.roots(np.polyfit(x[2:8], powered[2:8], 2))
+        nearest = zeros[np.argmin(np.abs(zeros))].real
+        line = fits.by_two_nodes(*np.sqrt(powered[:2]), 0.5, -1.0)
+        found = fits.edge(0.01 * x, np.sqrt(powered), 0.5, -0.01, 80) / 0.01
+        assert abs(found - nearest) < 0.12 or found == pytest.approx(line, abs=1e-9)
+
+
 def test_beyond_the_next_border_nothing_is_used():
     theta, values = from_an_edge(0.6937, 0.5, 80)
     values[12:] *= 1.0 + 0.2 * np.sqrt(np.arange(68.0))  # a kink at the thirteenth node
