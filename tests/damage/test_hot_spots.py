@@ -132,8 +132,7 @@ def test_damage_sum_is_that_of_its_cycles(fretting):
     theta, total = damage.damage_sum(fretting, cycles, "smith-watson-topper", repeats=100)
     points = fastpin.Points.at_depth(0.0, theta)
     lives = [
-        damage.fatigue(damage.cycle_states(fretting, one), "smith-watson-topper", points=points).life
-        for one in cycles
+        damage.fatigue(damage.cycle_states(fretting, one), "smith-watson-topper", points=points).life for one in cycles
     ]
     np.testing.assert_allclose(total, sum(100.0 / life for life in lives), rtol=1e-14)
     once = damage.damage_sum(fretting, cycles, "smith-watson-topper")[1]

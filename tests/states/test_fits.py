@@ -127,6 +127,21 @@ def test_the_bound_beside_a_border(exponent):
     assert fits.border_peak(x[36:45], smooth[36:45], exponent) is None
 
 
+def test_the_richest_bound_beside_a_border_is_found_from_twelve_nodes():
+    """A quartic and three terms of the cusp. The two nodes nearest to the border on either side are left out."""
+
+    def bound(x):
+        beyond = np.maximum(x, 0.0)
+        return np.polyval([2e-6, 2e-5, -1e-4, -0.01, 1.0], x) + np.sqrt(beyond) * np.polyval(
+            [3e-4, -0.012, 0.05], beyond
+        )
+
+    x = np.arange(-8.0, 9.0) + 0.3
+    found = fits.border_peak(x, bound(x) + np.where(np.abs(x) < 2.0, 0.02 * (-1.0) ** np.arange(17), 0.0), 0.5)
+    assert found is not None
+    assert found.value == pytest.approx(bound(np.linspace(0.0, 8.0, 200_001)).max(), abs=1e-8)
+
+
 def test_a_corner_between_two_branches():
     x = np.arange(-40.0, 41.0)
     values = 3.0 - 0.02 * np.abs(x) - 1e-4 * x**2

@@ -2,13 +2,14 @@
 
 import math
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, solve
 from fastpin.kernels.status import OPEN
-from fastpin.states import fits
+from fastpin.states import fits, refined
 from fastpin.states.half_line import End, half_line
 from tests.support.half_line import columns, powers
 
@@ -203,6 +204,21 @@ def test_a_contact_all_round_and_a_contact_across_the_first_node():
     )
     assert one.value == pytest.approx(two.value, rel=1e-9)
     assert one.angle == pytest.approx(two.angle, abs=1e-9)
+
+
+@pytest.mark.parametrize(("edge", "nodes"), [(8.7, 3), (9.0, 4)])
+def test_the_pressure_beside_a_border_of_unlike_bodies_needs_four_nodes_on_either_side(edge, nodes):
+    """A cubic and the cusp of (T26) are found from nodes that are not the nearest ones."""
+    x, near = np.arange(-12.0, 12.0) + 0.3, 2.5
+    law = SimpleNamespace(inwards=1, place=0.0, spacing=0.01, exponent=0.45 + 0.0j, coefficients=np.array([0.2 + 0.0j]))
+    height = -0.1 * 0.2 * math.sin(math.pi * 0.45)
+    exact = np.polyval([1e-4, 1e-3, -0.02, 1.0], x) + height * np.maximum(-x, 0.0) ** 0.45
+    noisy = exact + np.where(np.abs(x) < near, 0.01, 0.0)
+    ends = (-0.01 * edge, 0.01 * edge)
+    patch = refined.Patch(0.01 * x, noisy, 0.0 * x, ends, ends, (0.5 + 0j, 0.5 + 0j), (), 0.5, 0.1, 0.0)
+    assert np.count_nonzero((x > near) & (x < edge - near)) == nodes
+    found = refined._pressure_at_borders(patch, refined.Laws((), [(law, 1)], [], []))
+    assert found == pytest.approx(exact if nodes == 4 else noisy, abs=1e-12)
 
 
 @pytest.mark.parametrize("pair", [LIKE, UNLIKE], ids=["like", "unlike"])
