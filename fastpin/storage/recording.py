@@ -95,8 +95,7 @@ def record(
     path = file_path("path", path)
     check_writable(path, result=True)
     string("title", title)
-    if about is not None:
-        instance("about", about, About, "an About")
+    about = About() if about is None else instance("about", about, About, "an About")
     true_or_false("overwrite", overwrite)
     if start is not None:
         check_start(problem, start)
@@ -117,7 +116,7 @@ def record(
             "save_after", f"must be corners from 1 to {len(task.history)}, not {as_toml(max(save_corners))}"
         )
     warn_of(doubts(problem, task.history, solve_options), 2)
-    writer = FileRecorder(path, task, title, about or About())
+    writer = FileRecorder(path, task, title, about)
     writer.overwrite = overwrite
     writer.check_overwriting()
     writer.chosen_arc &= start is None
