@@ -271,7 +271,7 @@ BY_NAME: dict[str, Any] = {
     "body": "plate", "corners": [[1.0] * 9], "count": 3, "counts": [1.0, 2.0], "criterion": "smith-watson-topper",
     "depth": 0.01, "directory": "sweep", "ductility_exponent": -0.6, "factor": 2.0, "fatigue_ductility": 0.5,
     "fatigue_strength": 1e9, "first": 1, "force": 1.0, "friction": 0.4, "half_angle": 1.0, "half_width": 1.0,
-    "history": HISTORY, "index": 1, "k": 0.3, "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3,
+    "history": HISTORY, "host": "127.0.0.1", "index": 1, "k": 0.3, "knee_amplitude": 1e8, "knee_cycles": 1e6, "last": 3,
     "limit_range": 2e8, "lives": [1e5, 1e6], "load_parameter": 0.1, "load_ratio": 0.5, "mu_over_beta": 2.0,
     "name": "sxx", "nodes": NODES, "nu": 0.3, "nu_pin": 0.3, "parameter": [1e6], "path": "result.h5",
     "paths": [[[0.0, 1.0], [1.0, 0.0]]], "peak_pressure": 2.0, "phi": [0.0, 0.5],

@@ -7,6 +7,7 @@ import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 from file_keys import table, words_of_docstring
@@ -75,13 +76,17 @@ def file_layout() -> str:
     return "\n".join(parts)
 
 
+OPTIONS: dict[str, Any] = {"slip_sums": True, "error_bars": True, "save_after": [1]}
+"""Options that add parts to a file."""
+
+
 def _write(path: Path) -> None:
-    """Write a file with everything that a file may hold: cycles, sums of slip, restarts, extremes."""
+    """Write a file with everything that a file may hold: cycles, sums of slip, error bars, restarts, extremes."""
     pair = fastpin.MaterialPair(fastpin.MATERIALS["Ti-6Al-4V"], fastpin.MATERIALS["aluminium"])
     problem = fastpin.Problem(pair, hole_radius=10e-3, clearance=20e-6, friction=0.4, thickness=5e-3)
     cycles = fastpin.LoadHistory([{"Q": 6e5}, {"Q": -6e5}]).repeated(LEAST_STORED // 2)
     history = fastpin.LoadHistory([{"P": 2.4e6}]) + cycles
-    fastpin.record(problem, history, path, title="sample", about=ABOUT, nodes=61, slip_sums=True, save_after=[1])
+    fastpin.record(problem, history, path, title="sample", about=ABOUT, nodes=101, **OPTIONS)
 
 
 def _members(group: h5py.Group, where: str) -> Iterator[tuple[str, ...]]:

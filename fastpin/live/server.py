@@ -42,7 +42,7 @@ from fastpin.live.protocol import (
     read_message,
     refusal,
 )
-from fastpin.model.checks import as_toml
+from fastpin.model.checks import any_text, as_toml
 from fastpin.version import __version__
 
 ADDRESS = "127.0.0.1"
@@ -505,7 +505,7 @@ def address_of_machine(host: str) -> str:
         If it is no single address.
     """
     try:
-        found = ipaddress.ip_address(host)
+        found = ipaddress.ip_address(any_text("host", host))
     except ValueError:
         found = None
     if found is None or found.is_unspecified or found.is_multicast or "%" in host:

@@ -253,7 +253,6 @@ def test_run_takes_solver_options(case: Path, solved: list[dict[str, Any]]) -> N
         (["--between", "x"], "--between: must be"),
         (["--arc", "1"], "--arc: must be a list of two angles in rad"),
         (["--arc", "-90,90"], "--arc: must run from a smaller to a larger angle"),
-        (["--error-bars", "-o", "a.h5"], "--error-bars: are not kept in files"),
         (["--keep", "some"], '--keep: must be "all", "corners", "cycles" or "every N"'),
         (["--keep", "every", "x"], '--keep: must be "all", "corners", "cycles" or "every N"'),
         (["--after", "3"], "--after: needs --start"),
