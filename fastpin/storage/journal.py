@@ -296,15 +296,12 @@ def _open_journal(path: Path, flags: int) -> int:
 
 
 def check_beside(path: Path) -> None:
-    """Raise :class:`InputError` if a file that a run keeps beside its result exists, and is a link or a special file.
-
-    A directory fails when it is opened.
-    """
+    """Raise :class:`InputError` if a file that a run keeps beside its result exists, and is no ordinary file."""
     try:
         mode = path.lstat().st_mode
     except FileNotFoundError:
         return
-    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+    if not stat.S_ISREG(mode):
         raise InputError(str(path), "must be an ordinary file; please remove it")
 
 

@@ -35,7 +35,7 @@ from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
-from fastpin.storage.journal import is_empty
+from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import read_about, read_history, read_options, read_problem
 from fastpin.storage.origin import largest_pressure, provenance, stored_yield_extremes
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
@@ -136,6 +136,7 @@ def _record_coarse(path: Path, task: Task) -> None:
     An earlier run on the coarse grid goes on. It has a file of its own until it ends.
     """
     beside, run = coarse_of(path), provenance(path)["run"]
+    check_beside(beside)
     halves = replace(coarse_task(task, load(path, states=[]).grid), stops=frozenset())
     try:
         with words_for_coarse(halves):

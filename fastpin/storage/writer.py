@@ -191,6 +191,7 @@ class FileRecorder:
             self.check_overwriting()  # Check again: the choice of the arc may have taken long.
         self.abort()
         check_beside(checkpoint_of(self.path))
+        check_beside(coarse_of(self.path))
         self._name = uuid.uuid4().hex
         self._file = JournaledFile(self.path, new=True)
         self._h5 = h5py.File(self._file, "w")
@@ -410,6 +411,7 @@ def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart
         If the file is no result of a run, holds a finished run, or another process is writing to it.
     """
     check_beside(checkpoint_of(path))
+    check_beside(coarse_of(path))
     file = JournaledFile(path, new=False)
     try:
         if path.stat().st_size == 0:

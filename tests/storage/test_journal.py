@@ -280,7 +280,7 @@ def test_a_journal_that_can_not_be_written(tmp_path: Path) -> None:
     written(path, 2)
     journal_of(path).mkdir()
     for _ in range(2):  # and the lock is given back
-        with pytest.raises(InputError, match=r"a\.h5\.journal: can't be written"):
+        with pytest.raises(InputError, match=r"a\.h5\.journal: must be an ordinary file; please remove it"):
             JournaledFile(path, new=False)
     journal_of(path).rmdir()
     JournaledFile(path, new=False).release()

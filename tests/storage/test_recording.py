@@ -29,7 +29,7 @@ from fastpin.storage import journal, store, writer
 from fastpin.storage.journal import journal_of
 from fastpin.storage.recording import record as follow
 from fastpin.storage.recording import resume, stored_case
-from fastpin.storage.writer import checkpoint_of
+from fastpin.storage.writer import checkpoint_of, coarse_of
 from tests.support.interrupts import StopAt
 from tests.support.marks import first_quick
 from tests.support.programs import PROGRAMS, P, assert_same, known, q
@@ -597,6 +597,16 @@ def test_a_checkpoint_that_is_a_link_is_neither_read_nor_written(left, path, aga
     with pytest.raises(InputError, match="must be an ordinary file; please remove it"):
         resume(path) if again == "resume" else follow(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
     assert precious.read_text() == "keep"
+
+
+@pytest.mark.parametrize("beside", [checkpoint_of, coarse_of])
+@pytest.mark.parametrize("again", ["resume", "replace"])
+def test_a_directory_beside_a_result_is_refused_before_the_work(left, path, beside, again, problem):
+    beside(path).unlink(missing_ok=True)
+    beside(path).mkdir()
+    with pytest.raises(InputError, match="must be an ordinary file; please remove it"):
+        resume(path) if again == "resume" else follow(problem, [{"P": 1.0}], path, nodes=31, overwrite=True)
+    assert beside(path).is_dir()
 
 
 def test_a_file_keeps_who_made_its_case_also_after_an_interruption(problem, path):
