@@ -28,11 +28,31 @@ def traction_patches(state: State) -> list[np.ndarray]:
     """
     patches = []
     for patch in state.refined.tractions.patches:
-        points = _smoothed(np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]]))
+        points = np.column_stack([np.degrees(patch[:, 0]) + 90.0, patch[:, 1:]])
+        points = points[np.append(np.diff(points[:, 0]) > 0.0, True)]  # rounding may join neighbours
+        points = _smoothed(points)
         most = state.problem.friction * points[:, 1]  # fits and cubics may pass the bound by some 0.5 % of the peak
         points[:, 2] = np.clip(points[:, 2], -most, most)
         patches.append(points)
     return patches
+
+
+def tractions_at(patches: list[np.ndarray], angle: np.ndarray) -> np.ndarray:
+    """Pressure and shear traction of the curves at some angles, shape (2, m); 0 beside the curves.
+
+    Parameters
+    ----------
+    patches : list of ndarray
+        The curves of :func:`traction_patches`.
+    angle : ndarray, shape (m,)
+        Degrees from the bottom.
+    """
+    values = np.zeros((2, angle.size))
+    for points in patches:
+        turned = points[0, 0] + np.mod(angle - points[0, 0], 360.0)
+        for row, column in zip(values, points.T[1:], strict=True):
+            row += np.interp(turned, points[:, 0], column, right=0.0)
+    return values
 
 
 def _smoothed(points: np.ndarray) -> np.ndarray:
