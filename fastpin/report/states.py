@@ -32,7 +32,6 @@ from fastpin.report.table import (
     with_rows,
 )
 from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
-from fastpin.states.error_bars import ErrorBars
 from fastpin.states.quantities import QUANTITIES, load_point, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
@@ -180,7 +179,7 @@ def _identity(state: State) -> tuple[Hashable, ...]:
     """Return the parts of a state that its row shows. Its number, its sum of energy and its residuals are left out."""
     marks = () if state.marks is None else tuple(part.tobytes() for part in state.marks.arrays(state.grid.size))
     arrays = [part.tobytes() for part in (state.pressure, state.shear, state.status)]
-    coarse = _identity(state.error_bars.coarse) if isinstance(state.error_bars, ErrorBars) else ()
+    coarse = _identity(state.error_bars.coarse) if state.error_bars is not None else ()
     return (*arrays, *marks, state.rotation, *state.load.values(), *coarse)
 
 
@@ -399,7 +398,8 @@ def _angle(angle: float | None) -> str:
 
 def _bar(state: State, factor: float, *names: str) -> str:
     """Return " +- BAR" with the largest bar of several quantities; " +-?" if it is infinite, "" if there is none."""
-    bars = [(state.error_bars or {}).get(name, math.nan) for name in names]
+    known: Mapping[str, float] = state.error_bars or {}
+    bars = [known.get(name, math.nan) for name in names]
     if any(math.isnan(bar) for bar in bars):
         return ""
     return f" +-{factor * max(bars):.2g}" if math.isfinite(max(bars)) else " +-?"

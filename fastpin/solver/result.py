@@ -20,10 +20,9 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, Repeats
 from fastpin.states.choice import StateChoice, span_of, states_between
 from fastpin.states.cycles import Cycle
-from fastpin.states.error_bars import ErrorBars
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
-from fastpin.states.state import State
+from fastpin.states.state import ErrorBars, State
 
 if TYPE_CHECKING:
     import pandas

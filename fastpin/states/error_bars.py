@@ -8,8 +8,8 @@ the only free choices. ``scripts/error_bars.py`` counts how often the bars hold 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 
@@ -154,7 +154,7 @@ def number_bar(kind: str, value: float, other: float, state: State) -> float:
     if kind in ("angle", "width"):
         floor = PEAK_PLACE_FLOOR * spacing(state)
     elif kind in FLOORS:
-        floor = FLOORS[kind] * natural_size / _closed(state) ** 2
+        floor = size_floor(kind, natural_size, state)
     bar = _known_bar(kind, value, other, natural_size)
     return pair_bar(value, other, ORDER) + floor if bar is None else bar
 
@@ -192,7 +192,12 @@ def _floor(name: str, state: State) -> float:
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))
         floor = PEAK_PLACE_FLOOR if name in QUANTITIES and kind == "angle" else PLACE_FLOOR
         return floor * ends * spacing(state)
-    return FLOORS.get(name, FLOORS[kind]) * size(name, state) / closed**2
+    return size_floor(name if name in FLOORS else kind, size(name, state), state)
+
+
+def size_floor(kind: str, natural_size: float, state: State) -> float:
+    """Floor of a name or kind of :data:`FLOORS`, in the unit of its natural size."""
+    return FLOORS[kind] * natural_size / _closed(state) ** 2
 
 
 def spacing(state: State) -> float:
@@ -235,14 +240,17 @@ SAFETY = 1.25
 """Safety factor of Roache's grid convergence index."""
 
 
-def pair_bar(fine: float, coarse: float, order: float, ratio: float = 2.0) -> float:
+Values = TypeVar("Values", float, np.ndarray)
+
+
+def pair_bar(fine: Values, coarse: Values, order: float, ratio: float = 2.0) -> Values:
     """Roache's grid convergence index of two grids: the error bar of the fine value for an assumed order.
 
     The bar is 1.25 |fine - coarse| / (ratio^order - 1), in the unit of the values.
 
     Parameters
     ----------
-    fine, coarse : float
+    fine, coarse : float or ndarray
         Values of one quantity on the two grids.
     order : float
         Assumed order of convergence, positive.
@@ -250,39 +258,3 @@ def pair_bar(fine: float, coarse: float, order: float, ratio: float = 2.0) -> fl
         Node distance of the coarse grid over the node distance of the fine one, above 1.
     """
     return SAFETY * abs(fine - coarse) / (ratio**order - 1.0)
-
-
-class ErrorBars(Mapping[str, float]):
-    """The error bars of one state by name, computed when first read; see :func:`bars`.
-
-    Parameters
-    ----------
-    state, coarse : State
-        States at the same load; the grid of `coarse` has half the intervals.
-
-    Attributes
-    ----------
-    coarse : State
-        The state on the coarse grid.
-    """
-
-    def __init__(self, state: State, coarse: State) -> None:
-        self._state = state
-        self.coarse = coarse
-
-    @cached_property
-    def _bars(self) -> dict[str, float]:
-        return bars(self._state, self.coarse)
-
-    def __repr__(self) -> str:
-        shown = ", ".join(f"{name} {bar:.2g}" for name, bar in self.items() if not math.isnan(bar))
-        return f"<ErrorBars from {self.coarse.grid.size} nodes: {shown}>"
-
-    def __getitem__(self, name: str) -> float:
-        return self._bars[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._bars)
-
-    def __len__(self) -> int:
-        return len(self._bars)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -97,9 +97,9 @@ class State(ReadOnly):
         The nodes.
     marks : Marks or None
         Old borders, see :mod:`fastpin.states.marks`. None in a result from a file of an earlier version.
-    error_bars : Mapping of str to float, or None
-        Largest likely error of each quantity and of each end of a zone, by name, see
-        :func:`fastpin.states.error_bars.bars`. None unless ``solve(..., error_bars=True)``.
+    error_bars : ErrorBars or None
+        Largest likely error of each quantity and of each end of a zone, by name, and of the tractions at each node, see
+        :class:`fastpin.states.state.ErrorBars`. None unless ``solve(..., error_bars=True)``.
     slip_distance, friction_energy : ndarray, shape (n,), or None
         Distance int |ds| of the slip, m, and friction energy int -T ds, J/m^2, at each node while it was closed. They
         count since the state before in the result, and since the beginning of the history for the first state. None
@@ -129,7 +129,7 @@ class State(ReadOnly):
     problem: Problem
     grid: Grid
     marks: Marks | None = None
-    error_bars: Mapping[str, float] | None = None
+    error_bars: ErrorBars | None = None
     slip_distance: np.ndarray | None = None
     friction_energy: np.ndarray | None = None
     slip_lowest: np.ndarray | None = None
@@ -462,6 +462,73 @@ class State(ReadOnly):
             If a circle lies outside its body, or the body has no such circle.
         """
         return states.joint.joint_displacement(self, hub_radius, gauge_radius)
+
+
+class ErrorBars(Mapping[str, float]):
+    """The error bars of one state: a mapping from names to bars, and bars of the tractions. Computed when first read.
+
+    The names and units are those of :func:`fastpin.states.error_bars.bars`.
+
+    Parameters
+    ----------
+    state, coarse : State
+        States at the same load; the grid of `coarse` has half the intervals.
+
+    Attributes
+    ----------
+    coarse : State
+        The state on the coarse grid.
+    """
+
+    def __init__(self, state: State, coarse: State) -> None:
+        self._state = state
+        self.coarse = coarse
+
+    @cached_property
+    def _bars(self) -> dict[str, float]:
+        return states.error_bars.bars(self._state, self.coarse)
+
+    @cached_property
+    def _of_tractions(self) -> tuple[np.ndarray, np.ndarray]:
+        return states.traction_bars.node_bars(self._state, self)
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.traction_bars`."""
+        return self._of_tractions[0]
+
+    @property
+    def shear(self) -> np.ndarray:
+        """Error bars >= 0 of the shear traction at the nodes, Pa, shape (n,)."""
+        return self._of_tractions[1]
+
+    def of_curves(self, theta: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """Error bars >= 0 of pressure and shear traction on the curves that figures draw, Pa.
+
+        Parameters
+        ----------
+        theta : array_like
+            Angles, rad, of any shape. The bars have the same shape.
+
+        Raises
+        ------
+        InputError
+            If an angle is no finite number.
+        """
+        return states.traction_bars.curve_bars(self._state, self, theta)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name} {bar:.2g}" for name, bar in self.items() if not math.isnan(bar))
+        return f"<ErrorBars from {self.coarse.grid.size} nodes: {shown}>"
+
+    def __getitem__(self, name: str) -> float:
+        return self._bars[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bars)
+
+    def __len__(self) -> int:
+        return len(self._bars)
 
 
 _FIELDS = tuple(field.name for field in fields(State))

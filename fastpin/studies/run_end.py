@@ -101,7 +101,8 @@ def key_bars(result: Result) -> dict[str, float]:
     """
     if not result.complete or result.coarse is None:
         return {}
-    bars = result[-1].error_bars or {}
+    bars = result[-1].error_bars
+    assert bars is not None
     widest = max(range(len(ends)), key=lambda k: ends[k][1] - ends[k][0]) if (ends := result[-1].contact) else 0
     found = {name: bar_in_degrees(name, bars[name]) for name in (*_PEAKS, *_OTHERS)}
     for end in ("start", "stop"):  # A contact all round has no ends.

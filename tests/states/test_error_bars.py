@@ -22,9 +22,9 @@ from fastpin.solver import solving
 from fastpin.solver.errors import Interrupted, NoEquilibriumError
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.states.error_bars import LEAST_COARSE, ErrorBars, bars
+from fastpin.states.error_bars import LEAST_COARSE, bars
 from fastpin.states.quantities import QUANTITIES, matching_values, quantity, size, values
-from fastpin.states.state import State
+from fastpin.states.state import ErrorBars, State
 from fastpin.storage.store import load, save
 from fastpin.studies.run_end import KEY_FIGURES, key_figures
 from fastpin.verification import closed_forms
