@@ -35,7 +35,7 @@ SCHEMAS = ("run", "converge", "verify", "benchmarks", "compliance")
 """Commands whose JSON has a schema of its own. The JSON of resume and show is that of run."""
 
 PLOT_OPTIONS: dict[str, tuple[str, ...]] = {
-    "tractions": ("states", "csv", "sketch"),
+    "tractions": ("states", "csv", "sketch", "bars"),
     "polar": ("states", "csv"),
     "stick-slip": ("states", "csv"),
     "sketch": ("states",),
@@ -232,6 +232,9 @@ def add_plot(commands: Any) -> None:
         help="loops: prescribed (default where a displacement is prescribed) or pin (its displacement)",
     )
     plot.add_argument("--sketch", action="store_const", const=True, help="tractions: add a small sketch of the joint")
+    plot.add_argument(
+        "--bars", action="store_const", const=True, help="tractions: draw the error bars as bands (run --error-bars)"
+    )
     plot.add_argument("--rate", metavar="N", type=literal, help="animation: states a second (default 4)")
     plot.add_argument("--body", help="plate, pin, seat (the plate round a bush), or (hoop and map) both")
     plot.add_argument("--component", help="map: von_mises (default), largest, hoop, radial, shear, sxx, ...")

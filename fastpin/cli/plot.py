@@ -108,9 +108,9 @@ def _drawn(
 
 def _tractions(options: argparse.Namespace, title: str) -> Made:
     states = _states(options)
-    curves = figures.tractions.traction_curves(states)
-    sketch = options.sketch is not None
-    return _drawn(lambda look: figures.tractions.draw_tractions(states, look, sketch), title), _curves(curves)
+    sketch, bars = options.sketch is not None, options.bars is not None
+    curves = figures.tractions.traction_curves(states, bars)
+    return _drawn(lambda look: figures.tractions.draw_tractions(states, look, sketch, bars), title), _curves(curves)
 
 
 def _polar(options: argparse.Namespace, title: str) -> Made:

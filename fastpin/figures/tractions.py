@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.sketch import draw_sketch, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states, name_states, state_lines
@@ -32,6 +34,9 @@ ARROWS = {SLIP_POSITIVE: "→", SLIP_NEGATIVE: "←"}
 """The direction in which the pin slips over the plate."""
 
 _SHADE = "0.9"
+
+_BAND = 0.3
+"""Opacity of the bands of error bars. They are darker than the shade of slip, also in grey."""
 
 _PANEL, _ROW, _LEAST = 1.9, 0.23, 0.75
 """Heights of a panel of curves and of a row of zones, inches, and of the words beside the rows."""
@@ -54,6 +59,7 @@ def plot_tractions(
     *,
     states: StateChoice = None,
     sketch: bool = False,
+    bars: bool = False,
     ax: Axes | None = None,
 ) -> Figure:
     """Draw pressure and shear traction round the hole.
@@ -84,6 +90,8 @@ def plot_tractions(
         one.
     sketch : bool
         Whether a small sketch of the joint with its loads stands beside the pressure.
+    bars : bool
+        Whether a light band shows the error bars of each curve; see :mod:`fastpin.states.traction_bars`.
     ax : matplotlib axes, optional
         Axes to draw in, instead of a new figure. Several panels divide them.
 
@@ -95,16 +103,18 @@ def plot_tractions(
     Raises
     ------
     InputError
-        If there is no such state, an argument is out of range, the figure's format is unknown, or the file can't be
-        written.
+        If there is no such state, an argument is out of range, `bars` are asked for but the states have none, the
+        figure's format is unknown, or the file can't be written.
     """
     look = Look(path, title, width, dpi, ax)
     drawn, beside = drawn_states(result, states), true_or_false("sketch", sketch)
-    return look.drawn(lambda: draw_tractions(drawn, look, beside))
+    banded = true_or_false("bars", bars)
+    return look.drawn(lambda: draw_tractions(drawn, look, beside, banded))
 
 
-def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> Sheet:
-    """Draw the tractions of these states on a new sheet, with or without a sketch beside the pressure."""
+def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False, bars: bool = False) -> Sheet:
+    """Draw the tractions of these states on a new sheet, with or without a sketch beside the pressure, and bands."""
+    curves = traction_curves(states, bars)
     frictionless = states[0].problem.frictionless
     lines = state_lines(states)
     zones = not frictionless and len(states) > 1
@@ -112,7 +122,7 @@ def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> She
     strip = max(_ROW * len(states) + 0.15, _LEAST)
     sheet = look.sheet([*panels, strip] if zones else panels, extra=1.6, sharex=True)
     axes, frame = sheet.axes[:, 0], Frame(states)
-    _draw_curves(list(axes), states, lines, frame)
+    _draw_curves(list(axes), states, curves, lines)
     if len(states) == 1:
         _shade_slip(list(axes), states[0], frame)
     if zones:
@@ -126,16 +136,19 @@ def draw_tractions(states: DrawnStates, look: Look, sketch: bool = False) -> She
     if sketch:
         ranges = load_ranges(states)
         draw_sketch(states[0].problem, ranges, Look(ax=axes[0].inset_axes(_BESIDE)), words=False)
-    name_states(sheet, states, [look.title], _styles(states))
+    name_states(sheet, states, [look.title], _styles(states, bars))
     return sheet
 
 
-def _draw_curves(axes: Sequence[Axes], states: DrawnStates, lines: Sequence[Line], frame: Frame) -> None:
-    """Draw the pressure and, with friction, the shear traction of all states."""
+def _draw_curves(axes: Sequence[Axes], states: DrawnStates, curves: Sequence[Curve], lines: Sequence[Line]) -> None:
+    """Draw the pressure and, with friction, the shear traction of all states, with the bands of their bars if any."""
     problem = states[0].problem
     factor, unit = units(problem)["traction"].scale([float(state.pressure.max()) for state in states])
-    for state, style in zip(states, lines, strict=True):
-        angle, pressure, shear = frame.curves(state)
+    for curve, style in zip(curves, lines, strict=True):
+        angle, pressure, shear, *bars = curve.columns.values()
+        for panel, traction, bar in zip(axes, (pressure, shear), bars, strict=False):
+            band = factor * (traction - bar), factor * (traction + bar)
+            panel.fill_between(angle, *band, color=style["color"], alpha=_BAND, linewidth=0.0, zorder=1)
         axes[0].plot(angle, factor * pressure, **style)
         if not problem.frictionless:
             for sign in (1.0, -1.0):
@@ -149,22 +162,44 @@ def _draw_curves(axes: Sequence[Axes], states: DrawnStates, lines: Sequence[Line
         axes[1].axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
 
 
-def traction_curves(states: DrawnStates) -> list[Curve]:
+def traction_curves(states: DrawnStates, bars: bool = False) -> list[Curve]:
     """The drawn curves of these states, with NaN between contact zones.
 
-    Columns: the angle in degrees from the bottom, increasing, pressure and shear traction in Pa or F/R. The values
-    follow the fits at edges and borders; the nodal values are in the result.
+    Columns: the angle in degrees from the bottom, increasing, pressure and shear traction in Pa or F/R, and with `bars`
+    the error bars of both. The values follow the fits at edges and borders; the nodal values are in the result.
+
+    Raises
+    ------
+    InputError
+        If `bars` are asked for, and a state has none.
     """
     unit, frame, curves = units(states[0].problem)["traction"].name, Frame(states), []
     for state in states:
-        columns = zip(("angle [deg]", f"pressure [{unit}]", f"shear [{unit}]"), frame.curves(state), strict=True)
-        curves.append(Curve({"load point": load_point(state)}, dict(columns)))
+        angle, pressure, shear = frame.curves(state)
+        columns = {"angle [deg]": angle, f"pressure [{unit}]": pressure, f"shear [{unit}]": shear}
+        if bars:
+            of_pressure, of_shear = _bars_of_curves(state, angle)
+            columns |= {f"pressure bar [{unit}]": of_pressure, f"shear bar [{unit}]": of_shear}
+        curves.append(Curve({"load point": load_point(state)}, columns))
     return curves
 
 
-def _styles(states: DrawnStates) -> list[Artist]:
+def _bars_of_curves(state: State, angle: np.ndarray) -> np.ndarray:
+    """The error bars of both curves of a state, shape (2, m). NaN where the angle is NaN."""
+    if state.error_bars is None:
+        raise InputError(
+            "bars", "needs states with error bars: fastpin run CASE --error-bars, or solve(..., error_bars=True)"
+        )
+    found, known = np.full((2, angle.size), np.nan), np.isfinite(angle)
+    found[:, known] = state.error_bars.of_curves(np.radians(angle[known] - 90.0))
+    return found
+
+
+def _styles(states: DrawnStates, bars: bool) -> list[Artist]:
     """Return the entries of the legend that hold for all states."""
     styles: list[Artist] = []
+    if bars:
+        styles.append(Patch(color="0.35", alpha=_BAND, linewidth=0, label="band: error bars of the curves"))
     if not states[0].problem.frictionless:
         styles.append(Line2D([], [], color="0.5", linewidth=0.5, label="thin: bounds ±μN of T"))
         if len(states) == 1:

@@ -2,9 +2,10 @@
 
 import csv
 
+import numpy as np
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, record
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record
 from fastpin.cli.main import main
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.plot import KINDS
@@ -44,6 +45,20 @@ def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
     assert (tmp_path / "a.png").read_bytes() != (tmp_path / "b.png").read_bytes()
     assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "2,5"]) == 0
     assert f"{tmp_path / 'a.png'} shows 2 of 10 states: load points 2, 5\n" in capsys.readouterr().out
+
+
+def test_bars_are_drawn_and_written(tmp_path, capsys):
+    problem = Problem(MaterialPair(MATERIALS["steel"], MATERIALS["2024-T3"]), 2.4e-3, 10e-6, 0.4)
+    stored, numbers = tmp_path / "joint.h5", tmp_path / "bars.csv"
+    record(problem, LoadHistory([{"P": 6e5}, {"Q": 1e5}]), stored, nodes=101, error_bars=True)
+    arguments = ["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
+    assert main([*arguments, "--states", "2", "--bars"]) == 0
+    rows = read_rows(numbers)
+    angle, bar = (np.array([float(row[name]) for row in rows]) for name in ("angle [deg]", "shear bar [Pa]"))
+    assert np.allclose(bar, load(stored)[1].error_bars.of_curves(np.radians(angle - 90.0))[1], rtol=1e-3)
+    assert "pressure bar [Pa]" in rows[0]
+    assert main([*arguments, "--states", "2"]) == 0
+    assert not [name for name in read_rows(numbers)[0] if "bar" in name]
 
 
 def test_more_states_than_a_figure_holds_get_a_remedy(stored, tmp_path, capsys):
@@ -119,6 +134,11 @@ def test_states_are_chosen_by_load_points(stored, tmp_path):
         (["animation", "--states", "last"], "--states: an animation needs two states or more"),
         (["animation", "-o", "a.png"], "--output: the animation's name must end in .gif or .mp4, not 'a.png'"),
         (["hoop", "--states", "9"], "--states: there is no state at load point 9; the last is 5"),
+        (["hoop", "--bars"], "--bars: has no effect on hoop; it is for tractions"),
+        (
+            ["tractions", "--bars"],
+            "--bars: needs states with error bars: fastpin run CASE --error-bars, or solve(..., ",
+        ),
         (["hoop", "--sketch"], "--sketch: has no effect on hoop; it is for tractions"),
         (
             ["hoop", "--states", "now"],

@@ -20,6 +20,7 @@ from fastpin.figures.style import COLOURS, DASHES, MAX_NAMED, Drawing, spread
 from fastpin.figures.tractions import plot_tractions, traction_curves
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
 from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result, with_values
 
@@ -378,3 +379,44 @@ def test_a_remote_stress_has_one_name_in_title_and_legend() -> None:
     figure = plot_tractions(sample_result([{"P": 1e6, "sxx": 2e7, "syy": 1e7}, {"sxx": 3e7}]))
     assert figure.get_suptitle() == "P = 1 MN/m,  syy = +10 MPa"
     assert labels(figure)[:2] == ["1:  sxx = +20 MPa", "2:  sxx = +30 MPa"]
+
+
+def bands(panel: mpl.axes.Axes) -> list[np.ndarray]:
+    """The corners of the bands in a panel, of all contact zones of a state together."""
+    return [np.concatenate([path.vertices for path in band.get_paths()]) for band in panel.collections]
+
+
+def test_bands_show_the_error_bars_and_stand_in_the_numbers() -> None:
+    result = solve(Problem(PAIR, 0.01, 2e-5, 0.4), [{"P": 2e6}, {"Q": 2e5}], nodes=101, error_bars=True)
+    plain, figure = plot_tractions(result), plot_tractions(result, bars=True)
+    assert "band: error bars of the curves" in labels(figure)
+    assert "band: error bars of the curves" not in labels(plain)
+    assert not plain.axes[0].collections
+    found = traction_curves(drawn_states(result), bars=True)
+    for row, name in enumerate(("pressure", "shear")):
+        for state, curve, band in zip(result, found, bands(figure.axes[row]), strict=True):
+            assert state.error_bars is not None
+            bar = state.error_bars.of_curves(np.radians(curve["angle [deg]"] - 90.0))[row]
+            assert np.allclose(curve[f"{name} bar [Pa]"], bar, rtol=1e-9)
+            ends = np.r_[curve[f"{name} [Pa]"] - bar, curve[f"{name} [Pa]"] + bar] / 1e6
+            assert (band[:, 1].min(), band[:, 1].max()) == pytest.approx((ends.min(), ends.max()))
+    assert list(traction_curves(drawn_states(result))[0].columns) == ["angle [deg]", "pressure [Pa]", "shear [Pa]"]
+
+
+def test_bands_of_several_zones_leave_gaps_and_frictionless_states_have_no_shear() -> None:
+    problem = Problem(PAIR, 0.01, -2e-5, 0.0)
+    result = solve(problem, [{"sxx": 2e8}, {"sxx": 4e8}], nodes=240, error_bars=True)
+    assert len(result[-1].contact) == 2
+    curve = traction_curves(drawn_states(result), bars=True)[-1]
+    gaps = np.isnan(curve["angle [deg]"])
+    assert gaps.any()
+    assert np.array_equal(np.isnan(curve["pressure bar [Pa]"]), gaps)
+    assert np.nanmax(curve["shear bar [Pa]"]) == 0.0
+    assert len(plot_tractions(result, bars=True).axes) == 1
+
+
+def test_bands_need_error_bars() -> None:
+    with pytest.raises(InputError, match=r"^bars: needs states with error bars: fastpin run CASE --error-bars, or "):
+        plot_tractions(sample_result(), bars=True)
+    with pytest.raises(InputError, match=r"^bars: must be true or false"):
+        plot_tractions(sample_result(), bars=1)  # type: ignore[arg-type]

@@ -86,6 +86,7 @@ MANY_PARAMETERS: dict[str, str] = {
     "solver/solving.py solve": "the options are spelt out for help and completion",
     "studies/convergence.py converge": "the choices of a study are spelt out for help and completion",
     "storage/recording.py record": "the arguments of solve, and three of the file",
+    "figures/tractions.py plot_tractions": "the arguments of all figures, and two of its own",
     "figures/stress.py plot_stress_profile": "the arguments of all figures, and three of its own",
     "verification/integral_equations.py residuals": "the quantities of the equations (46), (47)",
 }
