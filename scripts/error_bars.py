@@ -1,10 +1,12 @@
 """How often error bars hold: random cases against a reference on eight times as many intervals.
 
-``python scripts/error_bars.py [--cases 40] [--first 0]`` prints two tables as Markdown, for docs/convergence.md. It
-takes some five minutes. The first table is about the bars of two grids. The second one is about the bars of studies
-of four grids, 101 to 801 nodes. The reference is on the same arc. Its uncertainty is the difference to a grid with half
-its intervals. *Surely held*: the bar covers the error plus this uncertainty. *Surely broken*: the bar does not cover
-the error minus this uncertainty.
+``python -m scripts.error_bars [--cases 40] [--first 0] [--nodes 201]`` prints three tables as Markdown, for
+docs/convergence.md. It takes some five minutes. The first table is about the bars of two grids. The second one is about
+the bars of studies of four grids, 101 to 801 nodes. The third one is about the bars of the tractions, at the nodes and
+on the curves, four points an interval. With ``--classes general,narrow`` there are so many cases of each class of
+``scripts/histories.py``, and rows by class. The reference is on the same arc. Its uncertainty is the difference to a
+grid with half its intervals. *Surely held*: the bar covers the error plus this uncertainty. *Surely broken*: the bar
+does not cover the error minus this uncertainty.
 """
 
 from __future__ import annotations
@@ -16,18 +18,26 @@ import math
 import numpy as np
 from tqdm import tqdm
 
+from fastpin.errors import FastpinError
+from fastpin.model.angles import angle_between
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve
-from fastpin.states.quantities import QUANTITIES, matching_values, size, values
+from fastpin.states.curves import traction_patches, tractions_at
+from fastpin.states.quantities import QUANTITIES, intervals, matching_values, size, values
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import estimate
+from scripts.histories import RandomCase, generate
+from scripts.random_histories import classes
 
 NODES = 201
 TIMES = (2, 4, 8)
 """Refinements of the finer grids, in intervals. The last one is the reference."""
+
+BESIDE = 2.0
+"""Points within so many node distances of an edge, border or old border are counted apart."""
 
 EXACT = 1e-9
 """Errors below this part of the quantity's size are rounding, and not counted."""
@@ -75,21 +85,31 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--cases", type=int, default=40)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--nodes", type=int, default=NODES)
+    parser.add_argument("--classes", type=classes, default=[""])
     options = parser.parse_args()
     pairs: Found = collections.defaultdict(list)
     studies: Found = collections.defaultdict(list)
+    points: dict[str, list[np.ndarray]] = collections.defaultdict(list)
     without: collections.Counter[str] = collections.Counter()
-    states = 0
-    for seed in tqdm(range(options.first, options.first + options.cases), disable=None, delay=2.0):
-        problem, history = random_case(seed)
-        result = solve(problem, history, nodes=NODES, error_bars=True)
-        finer = [solve(problem, history, grid=refined(result.grid, times)) for times in TIMES]
+    states = failed = 0
+    seeds = range(options.first, options.first + options.cases)
+    for kind, seed in tqdm([(kind, seed) for kind in options.classes for seed in seeds], disable=None, delay=2.0):
+        case = generate(kind, seed) if kind else RandomCase(*random_case(seed))
+        try:
+            result = solve(case.problem, case.history, nodes=options.nodes, error_bars=True)
+            finer = [solve(case.problem, case.history, grid=refined(result.grid, times)) for times in TIMES]
+        except FastpinError:
+            failed += 1
+            continue
         for state, *better in zip(result, *finer, strict=True):
             states += 1
             assert state.error_bars is not None
             grids = (state.error_bars.coarse, state, *better)
             count(state, [matching_values(state, other) for other in grids], pairs, studies, without)
-    print(f"{options.cases} cases, {states} states, {NODES} nodes\n")
+            count_points(state, better, points, kind)
+    cases = len(seeds) * len(options.classes) - failed
+    print(f"{cases} cases, {states} states, {options.nodes} nodes; {failed} cases without equilibrium\n")
     print("| quantity | values | held, % | surely held, % | surely broken, % | bar / error, median | no bar |")
     print("|---|--:|--:|--:|--:|--:|--:|")
     for group, rows in pairs.items():
@@ -106,6 +126,56 @@ def main() -> None:
         other = f"{100.0 * np.mean(held[~observed]):.1f}" if not observed.all() else "-"
         share, tight = 100.0 * np.mean(observed), np.median(bar / error)
         print(f"| {group} | {error.size} | {share:.0f} | {known} | {other} | {tight:.1f} |")
+    print("\n| tractions | points | held, % | surely held, % | surely broken, % | bar / error, median |", end="")
+    print(" bar / peak N, median | 95 % of bars below |\n|---|--:|--:|--:|--:|--:|--:|--:|")
+    for group, found in points.items():
+        error, unsure, bar = np.concatenate(found, axis=1)
+        parts = [np.mean(error <= bar), np.mean(error + unsure <= bar), np.mean(error - unsure > bar)]
+        shown = " | ".join(f"{100.0 * part:.1f}" for part in parts)
+        most = np.quantile(bar, 0.95)
+        print(
+            f"| {group} | {error.size} | {shown} | {np.median(bar / error):.1f} | {np.median(bar):.5f} | {most:.4f} |"
+        )
+
+
+def count_points(state: State, better: list[State], points: dict[str, list[np.ndarray]], kind: str) -> None:
+    """Add error, uncertainty and bar of the tractions to `points`, in parts of the peak pressure, by place and class.
+
+    The last two of the states in `better` are the reference and the grid with half its intervals.
+    """
+    if not state.in_contact:
+        return
+    bars, grid = state.error_bars, state.grid
+    assert bars is not None
+    nodal = [np.array([each.pressure, each.shear]) for each in (state, *better[-2:])]
+    nodal = [each[:, ::times] for each, times in zip(nodal, (1, *TIMES[-2:]), strict=True)]
+    spacing = float(np.median(grid.weights))
+    theta = np.concatenate([grid.theta + 0.25 * part * spacing for part in range(4)])
+    curves = [tractions_at(traction_patches(each), np.degrees(theta) + 90.0) for each in (state, *better[-2:])]
+    for what, angles, (mine, half, true), known in (
+        ("at nodes", grid.theta, nodal, (bars.pressure, bars.shear)),
+        ("of curves", theta, curves, bars.of_curves(theta)),
+    ):
+        error, unsure = np.abs(mine - true), np.abs(half - true)
+        place = places(state, angles, spacing)
+        for row, name in enumerate(("N", "T")):
+            touched = (error[row] > EXACT * state.peak_pressure) & (mine[0] + true[0] > 0.0)
+            numbers = np.array([error[row], unsure[row], known[row]]) / state.peak_pressure
+            for group in np.unique(place[touched]):
+                points[f"{name} {what}, {group}"].append(numbers[:, touched & (place == group)])
+            if kind:
+                points[f"{name} {what}, class {kind}"].append(numbers[:, touched])
+
+
+def places(state: State, theta: np.ndarray, spacing: float) -> np.ndarray:
+    """Words on the place of each angle."""
+    words = np.full(theta.size, "elsewhere", dtype=object)
+    old = state.theta[state.old_borders != 0] if state.old_borders is not None else []
+    borders, edges = (np.ravel(intervals(state, zone)) for zone in ("stick", "contact"))
+    for name, angles in (("old borders", old), ("borders", borders), ("edges", edges)):
+        for angle in angles:
+            words[np.abs(angle_between(theta, angle)) < BESIDE * spacing] = f"beside {name}"
+    return words
 
 
 def count(
