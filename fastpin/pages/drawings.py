@@ -65,12 +65,17 @@ def tractions(album: Album, states: Sequence[State]) -> Picture:
     return album.picture(lambda path: figures.plot_tractions(states, path), *words)
 
 
-def stick_slip(album: Album, states: Sequence[State]) -> Picture:
-    """Draw the map of stick and slip."""
+def stick_slip(album: Album, states: Sequence[State], total: int) -> Picture:
+    """Draw the map of stick and slip. The caption says that the states are a part of the `total` number of states."""
     first, last = load_point(states[0]), load_point(states[-1])
+    part = (
+        f"Only {len(states):,} of {total:,} states, load points {first:.5g} to {last:.5g}: stick"
+        if len(states) < total
+        else "Stick"
+    )
     words = Words(
-        f"Map of the zones that stick and slip, over angle and load point, from load point {first:.4g} to {last:.4g}.",
-        "Stick and slip over the angle round the hole and the load point. White is open.",
+        f"Map of the zones that stick and slip, over angle and load point, from load point {first:.5g} to {last:.5g}.",
+        f"{part} and slip over the angle round the hole and the load point. White is open.",
     )
     return album.picture(lambda path: figures.plot_stick_slip(states, path), *words)
 

@@ -16,7 +16,7 @@ from fastpin.errors import InputError, OutputError
 from fastpin.model import Bushing, Material, MaterialPair
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
-from fastpin.pages import album, write_report
+from fastpin.pages import album, drawings, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
 from fastpin.pages.sections import SECTIONS, Shared, case, overview
@@ -154,6 +154,13 @@ def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
     states = [dataclasses.replace(result[0], step=step) for step in range(9)]
     write_report(dataclasses.replace(result, states=states), tmp_path / "a.html")
     assert "… 2 to 9: repeat load point 1, 8 times …" in (tmp_path / "a.html").read_text()
+
+
+@pytest.mark.parametrize(("corners", "words"), [(70, "Only 60 of 70 states, load points 1 to 60: stick"), (3, "Stick")])
+def test_a_map_of_a_part_of_the_states_says_so(corners: int, words: str, undrawn: None) -> None:
+    source = Source.of_result(sample_result([{"P": 1e6 + 100.0 * k} for k in range(corners)], nodes=21))
+    picture = drawings.stick_slip(Album(), source.mapped, source.points.size)
+    assert picture.caption.startswith(f"{words} and slip over the angle")
 
 
 def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
