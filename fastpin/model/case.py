@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 
 from fastpin.errors import InputError
 from fastpin.model.checks import instance, string
@@ -38,8 +38,8 @@ class About:
     date: str = ""
 
     def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
-            string(name, value)
+        for one in fields(self):
+            string(one.name, getattr(self, one.name))
 
     def given(self) -> dict[str, str]:
         """The fields that are not empty, by name."""

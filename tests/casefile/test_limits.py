@@ -10,7 +10,7 @@ import pytest
 
 from fastpin import casefile
 from fastpin.casefile.toml_text import MOST_BYTES, MOST_BYTES_OF_PLAN, MOST_FAULTS, MOST_PARTS, CaseText
-from fastpin.errors import CaseFileError
+from fastpin.errors import CaseFileError, InputError
 from fastpin.model import About
 from fastpin.studies import read_outcomes, read_plan
 
@@ -105,3 +105,10 @@ def test_a_title_has_printable_characters_only(title: str) -> None:
     words = "".join(f"\\u{ord(letter):04x}" for letter in title)
     with pytest.raises(CaseFileError, match="title: must be one line of printable characters, without"):
         casefile.parse_case(casefile.EXAMPLE.replace('title = "', f'title = "{words}', 1))
+
+
+@pytest.mark.parametrize("value", [3, None, (part for part in "ab"), ["Hinge"]])
+def test_about_takes_texts_only(value: object) -> None:
+    """Also values that can't be copied."""
+    with pytest.raises(InputError, match="revision: must be text in quotes"):
+        About("Hinge", revision=value)  # type: ignore[arg-type]
