@@ -170,8 +170,8 @@ def _title_of(path: Path) -> str:
 def resume(path: str | Path, progress: Progress | None = None) -> None:
     """Continue the run of a file after a kill, an interrupt or an error.
 
-    States, cycles and error bars equal those of an uninterrupted run to the last bit. Only `solved`, `met`, the
-    statistics, the run's id and its date may differ.
+    States and cycles equal those of an uninterrupted run to the last bit, and error bars to rounding. Only `solved`,
+    `met`, the statistics, the run's id and its date may differ.
 
     Parameters
     ----------

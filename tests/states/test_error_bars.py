@@ -227,19 +227,24 @@ def test_saved_results_keep_their_error_bars(problem: Problem, tmp_path: Path) -
     result = solve(problem, CORNERS, nodes=101, between=1, error_bars=True)
     save(result, tmp_path / "a.h5")
     found = load(tmp_path / "a.h5")
-    assert [bars_of(state) for state in found] == [bars_of(state) for state in result]
-    assert bars_of(load(tmp_path / "a.h5", states=[2])[0]) == bars_of(result[2])
+    for state, expected in zip(found, result, strict=True):
+        assert bars_of(state) == to_rounding(expected)
+    assert bars_of(load(tmp_path / "a.h5", states=[2])[0]) == to_rounding(result[2])
     assert found.coarse is not None
     branches = [solve(problem, [{"Q": 0.1}], start=start, error_bars=True)[-1] for start in (found, result)]
-    assert bars_of(branches[0]) == bars_of(branches[1])
+    assert bars_of(branches[0]) == to_rounding(branches[1])
     save(replace(result, coarse=None), tmp_path / "a.h5")
     assert load(tmp_path / "a.h5")[-1].error_bars is None
 
 
-def bars_of(state: State) -> str:
-    """The bars of a state as text: NaN equals NaN."""
+def bars_of(state: State) -> dict[str, float]:
     assert state.error_bars is not None
-    return repr(dict(state.error_bars))
+    return dict(state.error_bars)
+
+
+def to_rounding(state: State) -> Any:
+    """The bars of a state, to rounding: the sums of some BLAS kernels depend on the place of an array in memory."""
+    return pytest.approx(bars_of(state), rel=1e-9, abs=1e-12, nan_ok=True)
 
 
 def test_run_shows_error_bars(case: Path, capsys: pytest.CaptureFixture[str]) -> None:

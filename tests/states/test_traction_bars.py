@@ -117,7 +117,8 @@ def test_files_keep_the_bars(held: Problem, tmp_path: Path) -> None:
     result = solve(held, CORNERS, nodes=101, error_bars=True)
     save(result, tmp_path / "a.h5")
     for state, again in zip(result, load(tmp_path / "a.h5"), strict=True):
-        assert np.array_equal(bars_of(state).shear, bars_of(again).shear)
+        # The sums of some BLAS kernels depend on the place of an array in memory.
+        assert bars_of(again).shear == pytest.approx(bars_of(state).shear, rel=1e-9, abs=1e-12)
 
 
 def test_a_state_without_contact_has_bars_of_zero(similar: MaterialPair) -> None:
