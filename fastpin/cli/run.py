@@ -36,7 +36,7 @@ from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, 
 from fastpin.states.choice import check_choice
 from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, marked_extremes, marked_places
-from fastpin.states.yield_doubts import yield_doubts, yield_doubts_of
+from fastpin.states.yield_doubts import yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
@@ -312,12 +312,7 @@ def _yield_doubts(case: Case, options: argparse.Namespace, result: solver.Result
     """Return the warnings about the largest von Mises stresses of all states."""
     if result is None or options.output is None:
         return yield_doubts_of(case.problem, case.history, () if result is None else result.states)
-    return yield_doubts(
-        case.problem,
-        case.history,
-        lambda: storage.stored_yield_extremes(options.output),
-        lambda places: storage.load(options.output, list(places)).states,
-    )
+    return storage.stored_yield_doubts(options.output, case.problem, case.history)
 
 
 def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:

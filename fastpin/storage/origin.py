@@ -7,12 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.errors import InputWarning
 from fastpin.model.checks import file_path
+from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
 from fastpin.states.extremes import Found, yield_extremes
+from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.extremes import read_extremes
 from fastpin.storage.layout import RESIDUALS
-from fastpin.storage.store import open_result
+from fastpin.storage.store import load, open_result
 
 SOURCES = ("created", "host", "platform", "run")
 """Attributes of a file that tell when and where its run began."""
@@ -78,16 +82,14 @@ def marked_extremes(path: str | Path) -> Found:
         return read_extremes(file)
 
 
-def stored_yield_extremes(path: str | Path) -> Found:
-    """Return extremes of all states of a file, among them those of :func:`fastpin.states.extremes.yield_extremes`.
+def stored_yield_doubts(path: Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
+    """Return the warnings of :func:`fastpin.states.yield_doubts.yield_doubts` for all states of the file of a run."""
 
-    Raises
-    ------
-    InputError
-        See :func:`fastpin.load`.
-    """
-    with open_result(file_path("path", path)) as file:
-        return read_extremes(file, yield_extremes)
+    def extremes() -> Found:
+        with open_result(path) as file:
+            return read_extremes(file, yield_extremes)
+
+    return yield_doubts(problem, history, extremes, lambda places: load(path, list(places)).states)
 
 
 def _largest_pressures(file: Any) -> np.ndarray:

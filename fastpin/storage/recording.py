@@ -32,12 +32,11 @@ from fastpin.solver.result import Result
 from fastpin.solver.run import Progress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
-from fastpin.states.yield_doubts import yield_doubts
 from fastpin.storage.damage import text_of
 from fastpin.storage.files import check_exists, check_writable
 from fastpin.storage.journal import check_beside, is_empty
 from fastpin.storage.layout import read_about, read_history, read_options, read_problem
-from fastpin.storage.origin import largest_pressure, provenance, stored_yield_extremes
+from fastpin.storage.origin import largest_pressure, provenance, stored_yield_doubts
 from fastpin.storage.store import is_unfinished, load, open_result, stored_task
 from fastpin.storage.writer import FileRecorder, add_coarse, closing_file, coarse_of, log, reopen
 
@@ -255,12 +254,7 @@ def stored_case(path: str | Path) -> Case:
 def _pressure_doubts(path: Path, task: Task) -> list[InputWarning]:
     """The doubts about the largest pressure and the largest stresses of the run that has been written to a file."""
     found = pressure_doubts(task.problem, task.history, [np.array([largest_pressure(path)])])
-    return found + yield_doubts(
-        task.problem,
-        task.history,
-        lambda: stored_yield_extremes(path),
-        lambda places: load(path, list(places)).states,
-    )
+    return found + stored_yield_doubts(path, task.problem, task.history)
 
 
 def _check_names(options: Mapping[str, Any]) -> None:
