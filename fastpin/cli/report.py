@@ -27,7 +27,7 @@ KINDS = {"result": "a stored result", "case": "a case file", "sweep": "the direc
 """Words for the kinds of sources."""
 
 
-ABOUT = ("project", "author", "revision", "date")
+ABOUT = tuple(field.name for field in dataclasses.fields(About))
 """Options that are fields of :class:`fastpin.model.About`."""
 
 
