@@ -16,8 +16,7 @@ from fastpin.damage import fatigue as fatigue_of
 from fastpin.damage.hot_spots import Criterion
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
-from fastpin.model.bodies import Bushing
-from fastpin.model.points import elastic_bodies, owner_of
+from fastpin.model.points import bodies_of, elastic_bodies, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 from fastpin.report.case import edge_body
@@ -87,7 +86,7 @@ def static_margins(problem: Problem, found: Found, read: Callable[[Sequence[int]
         else:
             place = place_words(problem, von_mises_peak(read([extreme.place])[0], owner))
             rows.append(Margin(subject, "traction", extreme.value, strength, extreme.load_point, place))
-    return rows + (_of_bush(problem, found, read) if isinstance(problem.plate_body, Bushing) else [])
+    return rows + (_of_bush(problem, found, read) if "seat" in bodies_of(problem) else [])
 
 
 def _of_bush(problem: Problem, found: Found, read: Callable[[Sequence[int]], list[State]]) -> list[Margin]:
