@@ -21,6 +21,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
+from fastpin.states.stress import Stress
 
 if TYPE_CHECKING:  # this module imports compiled code
     from fastpin.states.state import State
@@ -142,8 +143,7 @@ class Places(NamedTuple):
         radial, hoop, shear = stress
         strain = problem.surfaces.plane == "strain"
         axial = (material_of(problem, self.body).nu if strain else 0.0) * (radial + hoop)
-        squares = radial**2 + hoop**2 - radial * hoop + axial**2 - axial * (radial + hoop) + 3.0 * shear**2
-        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+        return Stress(self.theta, radial, hoop, shear, axial).von_mises
 
 
 class MisesPeak(NamedTuple):
