@@ -364,6 +364,17 @@ def test_an_error_of_a_handler_is_logged(monkeypatch: pytest.MonkeyPatch, caplog
     assert "a request failed" in caplog.text
 
 
+def slow_down(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
+    """Let each step of all contacts take so much longer."""
+    step = LiveContact._step
+
+    def slow(self: LiveContact, *arguments: Any) -> None:
+        time.sleep(seconds)
+        step(self, *arguments)
+
+    monkeypatch.setattr(LiveContact, "_step", slow)
+
+
 def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) -> None:
     async def work(client: aiohttp.ClientSession) -> None:
         talk = await connect(client, running)
@@ -371,13 +382,7 @@ def test_a_long_history_is_stopped_by_its_page(monkeypatch: pytest.MonkeyPatch) 
         await talk.hello()
         for k in range(30):
             await talk.tell("load", loads={"Q": 1e4 * k}, gesture=1, drag=False)
-        step = LiveContact._step
-
-        def slow(self: LiveContact, *arguments: Any) -> None:
-            time.sleep(0.05)
-            step(self, *arguments)
-
-        monkeypatch.setattr(LiveContact, "_step", slow)
+        slow_down(monkeypatch, 0.05)
         began = time.monotonic()
         number = await talk.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
         await asyncio.sleep(0.1)
@@ -588,19 +593,13 @@ def test_too_many_visitors_are_refused_and_the_others_go_on() -> None:
 
 
 def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    step = LiveContact._step
-
-    def slow(self: LiveContact, *arguments: Any) -> None:
-        time.sleep(0.03)
-        step(self, *arguments)
-
     async def work(client: aiohttp.ClientSession) -> None:
         one, other = await connect(client, running), await connect(client, running)
         name, _ = await one.hello()
         await other.hello()
         for k in range(60):
             await one.tell("load", loads={"Q": 1e3 * k}, gesture=1, drag=False)
-        monkeypatch.setattr(LiveContact, "_step", slow)
+        slow_down(monkeypatch, 0.03)
         number = await one.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
         await asyncio.sleep(0.1)
         for k in range(5):  # each of them waits for a turn, not for the history of two seconds
@@ -619,18 +618,12 @@ def test_a_long_history_of_one_visitor_lets_the_others_pass(monkeypatch: pytest.
 
 
 def test_a_page_that_goes_in_a_long_history_finds_its_contact_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    step = LiveContact._step
-
-    def slow(self: LiveContact, *arguments: Any) -> None:
-        time.sleep(0.05)
-        step(self, *arguments)
-
     async def work(client: aiohttp.ClientSession) -> None:
         talk = await connect(client, running)
         name, _ = await talk.hello()
         for k in range(40):
             await talk.tell("load", loads={"Q": 1e3 * k}, gesture=1, drag=False)
-        monkeypatch.setattr(LiveContact, "_step", slow)
+        slow_down(monkeypatch, 0.05)
         await talk.send("change", changes={"friction": 0.3}, follow="history", gesture=2)
         await asyncio.sleep(0.2)
         await talk.page.close()
