@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputWarning
-from fastpin.model.checks import file_path
+from fastpin.model.checks import file_path, instance
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.states.extremes import Found, yield_extremes
@@ -82,8 +82,17 @@ def marked_extremes(path: str | Path) -> Found:
         return read_extremes(file)
 
 
-def stored_yield_doubts(path: Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
-    """Return the warnings of :func:`fastpin.states.yield_doubts.yield_doubts` for all states of the file of a run."""
+def stored_yield_doubts(path: str | Path, problem: Problem, history: LoadHistory) -> list[InputWarning]:
+    """Return the warnings of :func:`fastpin.states.yield_doubts.yield_doubts` for all states of the file of a run.
+
+    Raises
+    ------
+    InputError
+        See :func:`fastpin.load`, and for objects of another kind.
+    """
+    path = file_path("path", path)
+    instance("problem", problem, Problem, "a Problem")
+    instance("history", history, LoadHistory, "a LoadHistory")
 
     def extremes() -> Found:
         with open_result(path) as file:
