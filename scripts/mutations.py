@@ -33,7 +33,8 @@ import warnings
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -435,50 +436,30 @@ def change_hostile(
     operators[seen.operator](rng, path, seen.outside)
 
 
-def examine_case(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change a case file, or the CSV file that it names."""
-    number = int(rng.integers(len(CASES)))
-    path = folder / f"case{number}.toml"
-    _change_text_file(rng, path)
-    _try_case(path, seen)
+def change_case(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
+    """Change a case file."""
+    return _change_text_file(rng, folder / f"case{int(rng.integers(len(CASES)))}.toml")
 
 
-def examine_csv(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
+def change_csv(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
     """Change a load history in a CSV file."""
-    path = folder / "loads.csv"
-    _change_text_file(rng, path)
-    seen.python("from_csv", lambda: fastpin.LoadHistory.from_csv(path))
-    _try_case(folder / "case2.toml", seen)
+    return _change_text_file(rng, folder / "loads.csv")
 
 
-def examine_lug(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
+def change_lug(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
     """Change a lug file."""
-    path = folder / "lug.toml"
-    _change_text_file(rng, path)
-    seen.python("read_lug", lambda: read_lug(path))
+    return _change_text_file(rng, folder / "lug.toml")
 
 
-def _change_text_file(rng: np.random.Generator, path: Path) -> None:
+def _change_text_file(rng: np.random.Generator, path: Path) -> Path:
     if rng.random() < 0.3:
         path.write_bytes(change_bytes(rng, path.read_bytes()))
     else:
         path.write_text(change_text(rng, path.read_text()), encoding="utf-8", errors="surrogatepass")
+    return path
 
 
-def _try_case(path: Path, seen: Examination) -> None:
-    case = seen.python("read_case", lambda: fastpin.read_case(path))
-    seen.command("check", path)
-    plan = path.with_name("of-case.toml")
-    text = f'case = "{path.name}"\n[grid]\n"contact.friction" = [0.1, 0.2]\n'
-    seen.python("parse_plan", lambda: plans.parse_plan(text, folder=plan.parent))
-    options = case.options if case is not None else None
-    if case is None or (len(case.history) * len(options.fractions) <= LARGEST_RUN and (options.increments or 0) < 50):
-        smaller = () if options is None or options.arc is not None else ("--nodes", "21")
-        outputs = ("--json", path.with_name("out.json"))
-        seen.command("run", path, *smaller, *outputs, may_change=("^out.json$",))
-
-
-def examine_result(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
+def change_finished(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
     """Change a finished result, or put something beside it."""
     path = folder / str(rng.choice(["result.h5", "saved.h5"]))
     if rng.random() < HOSTILE:
@@ -487,11 +468,11 @@ def examine_result(rng: np.random.Generator, folder: Path, seen: Examination) ->
         path.write_bytes(change_bytes(rng, path.read_bytes()))
     else:
         change_result(rng, path)
-    _try_result(rng, path, seen)
+    return path
 
 
-def examine_unfinished(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change an unfinished result, its journal or both. Only ``resume`` may repair it."""
+def change_unfinished(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
+    """Change an unfinished result, its journal or both."""
     path, journal = folder / "unfinished.h5", folder / "unfinished.h5.journal"
     way = rng.integers(4)
     if rng.random() < HOSTILE:
@@ -508,7 +489,64 @@ def examine_unfinished(rng: np.random.Generator, folder: Path, seen: Examination
         change_result(rng, path)
     else:
         journal.write_bytes(change_bytes(rng, journal.read_bytes()))
-    _try_result(rng, path, seen)
+    return path
+
+
+def change_sweep(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
+    """Change the index of a sweep, or put something beside it."""
+    path = folder / "sweep" / "index.sqlite"
+    if rng.random() < HOSTILE:
+        change_hostile(rng, hostile.INDEX, path, seen)
+    elif rng.random() < 0.3:
+        path.write_bytes(change_bytes(rng, path.read_bytes()))
+    else:
+        change_index(rng, path)
+    return path
+
+
+def change_plan(rng: np.random.Generator, folder: Path, seen: Examination) -> Path:
+    """Change a plan, or name a function in it."""
+    path = folder / "plan.toml"
+    if rng.random() < HOSTILE:
+        change_hostile(rng, hostile.PLAN, path, seen)
+    else:
+        _change_text_file(rng, path)
+    if rng.random() < 0.5:
+        shutil.copy(path, folder / "sweep" / "plan.toml")
+    return path
+
+
+# -- attempts ------------------------------------------------------------------------------------------------
+
+
+def try_case(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read, check and run a case."""
+    case = seen.python("read_case", lambda: fastpin.read_case(path))
+    seen.command("check", path)
+    plan = path.with_name("of-case.toml")
+    text = f'case = "{path.name}"\n[grid]\n"contact.friction" = [0.1, 0.2]\n'
+    seen.python("parse_plan", lambda: plans.parse_plan(text, folder=plan.parent))
+    options = case.options if case is not None else None
+    if case is None or (len(case.history) * len(options.fractions) <= LARGEST_RUN and (options.increments or 0) < 50):
+        smaller = () if options is None or options.arc is not None else ("--nodes", "21")
+        outputs = ("--json", path.with_name("out.json"))
+        seen.command("run", path, *smaller, *outputs, may_change=("^out.json$",))
+
+
+def try_csv(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read a history in a CSV file, and the case that names it."""
+    seen.python("from_csv", lambda: fastpin.LoadHistory.from_csv(path))
+    try_case(rng, path.with_name("case2.toml"), seen)
+
+
+def try_lug(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read a lug file."""
+    seen.python("read_lug", lambda: read_lug(path))
+
+
+def try_unfinished(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read an unfinished result. Only ``resume`` may repair it."""
+    try_result(rng, path, seen)
     seen.python("resume", lambda: recording.resume(path), (_of_run(path),))
 
 
@@ -517,7 +555,8 @@ def _of_run(path: Path) -> str:
     return rf"^{re.escape(path.name)}(\.journal|\.checkpoint)?$"
 
 
-def _try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+def try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read a result, solve from its end, and continue it."""
     result = seen.python("load", lambda: store.load(path))
     seen.python("load some", lambda: store.load(path, states=[0, -1]))
     seen.python("load after", lambda: store.load(path, after=2))
@@ -539,16 +578,10 @@ def _try_result(rng: np.random.Generator, path: Path, seen: Examination) -> None
     seen.command("resume", path, may_change=(_of_run(path),))
 
 
-def examine_index(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change the index of a sweep, or put something beside it."""
-    directory = folder / "sweep"
-    path = directory / "index.sqlite"
-    if rng.random() < HOSTILE:
-        change_hostile(rng, hostile.INDEX, path, seen)
-    elif rng.random() < 0.3:
-        path.write_bytes(change_bytes(rng, path.read_bytes()))
-    else:
-        change_index(rng, path)
+def try_sweep(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read, merge, report and continue the sweep of an index."""
+    directory = path.parent
+    folder = directory.parent
     plan = plans.parse_plan(PLAN)
     seen.python("load", lambda: sweep.load(directory))
     seen.python("status", lambda: sweep.status(plan, directory))
@@ -568,15 +601,9 @@ def examine_index(rng: np.random.Generator, folder: Path, seen: Examination) -> 
     seen.python("run", lambda: sweep.run(plan, directory, executor=Inline(), retry=True), ran)
 
 
-def examine_plan(rng: np.random.Generator, folder: Path, seen: Examination) -> None:
-    """Change a plan, or name a function in it. Reading runs no function."""
-    path = folder / "plan.toml"
-    if rng.random() < HOSTILE:
-        change_hostile(rng, hostile.PLAN, path, seen)
-    else:
-        _change_text_file(rng, path)
-    if rng.random() < 0.5:
-        shutil.copy(path, folder / "sweep" / "plan.toml")
+def try_plan(rng: np.random.Generator, path: Path, seen: Examination) -> None:
+    """Read and run a plan. Reading runs no function."""
+    folder = path.parent
     seen.python("read_plan", lambda: plans.read_plan(path))
     seen.python("read_outcomes", lambda: read_outcomes(path))
     seen.command("sweep", path, "-o", folder / "sweep", "--status")
@@ -586,14 +613,29 @@ def examine_plan(rng: np.random.Generator, folder: Path, seen: Examination) -> N
         seen.command("sweep", path, "-o", folder / "new", may_change=("^new(/|$)", "^ran$", "__pycache__"))
 
 
-KINDS: dict[str, Callable[[np.random.Generator, Path, Examination], None]] = {
-    "case": examine_case,
-    "csv": examine_csv,
-    "result": examine_result,
-    "unfinished": examine_unfinished,
-    "index": examine_index,
-    "lug": examine_lug,
-    "plan": examine_plan,
+class Kind(NamedTuple):
+    """A kind of file.
+
+    Attributes
+    ----------
+    change : callable
+        ``change(rng, folder, seen)`` changes a file of a folder, and returns its path.
+    attempt : callable
+        ``attempt(rng, path, seen)`` makes all attempts with this file.
+    """
+
+    change: Callable[[np.random.Generator, Path, Examination], Path]
+    attempt: Callable[[np.random.Generator, Path, Examination], None]
+
+
+KINDS = {
+    "case": Kind(change_case, try_case),
+    "csv": Kind(change_csv, try_csv),
+    "result": Kind(change_finished, try_result),
+    "unfinished": Kind(change_unfinished, try_unfinished),
+    "index": Kind(change_sweep, try_sweep),
+    "lug": Kind(change_lug, try_lug),
+    "plan": Kind(change_plan, try_plan),
 }
 """The kinds of files."""
 
@@ -623,6 +665,30 @@ def examine(kind: str, seed: int, before: Path, operators: Counter[str] | None =
         return [f"{kind} {seed}: {said['operator']}: {finding}" for finding in said["findings"]]
 
 
+def warm(before: Path) -> None:
+    """Make all attempts with unchanged files in this process: so no child has to import and compile everything again.
+
+    Raises
+    ------
+    RuntimeError
+        If an unchanged file leads to a finding.
+    """
+    here = mock.patch.object(workers, "through_processes", _through_this_process)
+    changed = {"case": "case0.toml", "csv": "loads.csv", "result": "result.h5", "unfinished": "unfinished.h5"}
+    changed |= {"index": "sweep/index.sqlite", "lug": "lug.toml", "plan": "plan.toml"}
+    for kind in KINDS:
+        with tempfile.TemporaryDirectory() as name, here, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            folder = Path(name) / "files"
+            shutil.copytree(before, folder)
+            seen = Examination(folder)
+            with contextlib.chdir(folder):
+                KINDS[kind].attempt(np.random.default_rng(0), folder / changed[kind], seen)
+                seen.command("show", folder / "saved.h5", "--plot", folder / "one.png", may_change=("^one.png$",))
+            if seen.findings:
+                raise RuntimeError(f"unchanged files: {seen.findings}")
+
+
 def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
     """Examine one file in this process, which ends here."""
     code = 1
@@ -637,7 +703,9 @@ def _work(kind: str, seed: int, folder: Path, report: Path) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (used + MOST_MEMORY, used + MOST_MEMORY))
         seen = Examination(folder)
         os.chdir(folder)
-        KINDS[kind](np.random.default_rng([seed, list(KINDS).index(kind)]), folder, seen)
+        rng = np.random.default_rng([seed, list(KINDS).index(kind)])
+        path = KINDS[kind].change(rng, folder, seen)
+        KINDS[kind].attempt(rng, path, seen)
         report.write_text(json.dumps({"operator": seen.operator, "findings": seen.findings}))
         code = 0
     except BaseException:
@@ -683,6 +751,7 @@ def main() -> None:
     found, in_library = 0, 0
     with tempfile.TemporaryDirectory() as name:
         prepare(Path(name))
+        warm(Path(name))
         for kind in options.kinds or KINDS:
             began = time.monotonic()
             operators: Counter[str] = Counter()

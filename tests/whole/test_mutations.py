@@ -25,6 +25,7 @@ def mutations() -> ModuleType:
 def files(mutations: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("files")
     mutations.prepare(folder)
+    mutations.warm(folder)
     return folder
 
 
