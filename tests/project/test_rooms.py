@@ -1,0 +1,117 @@
+"""A change of the package stays cheap: scripts/rooms.py counts in how many files a noun stands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scripts.rooms import NUMBERS, Package, entered
+
+ROOT = Path(__file__).resolve().parents[2]
+
+MOST = {
+    "files naming gauge_radius": 12,
+    "files naming slip_sums": 15,
+    "files naming Ring": 24,
+    "isinstance of bodies outside bodies/": 125,
+    "drive is None, or not": 30,
+    "classes defined twice": 21,
+    "small private functions used once": 162,
+    "constants of modules": 1_398,
+    "hidden imports": 4,
+    "lines of code": 34_651,
+}
+"""The most that each number may be. A smaller number takes its place here."""
+
+CALLS = {
+    "files of a warm solve": 45,
+    "depth of a warm solve": 32,
+    "files of a warm fastpin run": 85,
+    "depth of a warm fastpin run": 36,
+}
+"""The most for the calls."""
+
+FILES = {
+    "model/shape.py": """
+from dataclasses import dataclass
+
+LEAST = MOST = 1.0
+_FEW: int = 3
+
+class Ring: ...
+
+Line = dict[str, int]
+
+def checked(body, drive):
+    '''A docstring
+    of two lines.'''
+    # a comment
+    if isinstance(body, (Ring, Disk)) or drive is not None:
+        return _small()
+    return _used() + _used()
+
+def _small():
+    return 1
+
+def _used():
+    return 2
+""",
+    "states/state.py": """
+import importlib
+from fastpin import states
+
+class Ring: ...
+
+def read(state, gauge_radius):
+    importlib.import_module("fastpin.states.peaks")
+    importlib.import_module(f"fastpin.{state}").peak()
+    return _long(state)
+
+def _long(state):
+    state = state + 1
+    state = state + 2
+    state = state + 3
+    state = state + 4
+    return state
+""",
+    "bodies/ring.py": "def fits(body):\n    return isinstance(body, Ring)\n",
+}
+
+
+@pytest.fixture(scope="module")
+def package() -> Package:
+    return Package(ROOT)
+
+
+@pytest.mark.parametrize("name", MOST)
+def test_no_number_grows(package, name):
+    assert len(NUMBERS[name](package)) <= MOST[name]
+
+
+def test_each_number_has_its_most():
+    assert MOST.keys() == NUMBERS.keys()
+
+
+def test_the_numbers_of_a_small_package(tmp_path):
+    for name, text in FILES.items():
+        path = tmp_path / "fastpin" / name
+        path.parent.mkdir(parents=True)
+        path.write_text(text, encoding="utf-8")
+    package = Package(tmp_path)
+    assert {name: places(package) for name, places in NUMBERS.items() if name != "lines of code"} == {
+        "files naming gauge_radius": ["states/state.py"],
+        "files naming slip_sums": [],
+        "files naming Ring": ["bodies/ring.py", "model/shape.py", "states/state.py"],
+        "isinstance of bodies outside bodies/": ["model/shape.py:15"],
+        "drive is None, or not": ["model/shape.py:15"],
+        "classes defined twice": ["Ring: model/shape.py, states/state.py"],
+        "small private functions used once": ["model/shape.py:19 _small"],
+        "constants of modules": ["model/shape.py: LEAST", "model/shape.py: MOST", "model/shape.py: _FEW"],
+        "hidden imports": ["states/state.py:3", "states/state.py:8"],
+    }
+    assert len(NUMBERS["lines of code"](package)) == 13 + 13 + 2
+
+
+def test_few_files_are_entered():
+    assert {name: number for name, number in entered(ROOT).items() if number > CALLS[name]} == {}
