@@ -11,9 +11,9 @@ from typing import Any
 import fastpin
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
 from fastpin.model import Bushing, Compliance, FatigueConstants, Plate, Ring, Tube
-from fastpin.model.loads import LOAD_KIND
+from fastpin.model.loads import LOAD
+from fastpin.model.options import OPTIONS
 from fastpin.model.units import units_per_thickness
-from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS
 from fastpin.states import QUANTITIES
 from fastpin.studies.outcomes import CYCLE_QUANTITIES, TAKES
 from fastpin.studies.run_end import KEY_FIGURES
@@ -103,8 +103,8 @@ def _rows(section: str, keys: Iterable[str], example: Mapping[tuple[str, str], s
     known: dict[str, str] = {}
     for owner in reversed(CLASSES.get(section, ())):
         known |= words_of_docstring(owner)
-    known |= {name: f"{words}, {unit(LOAD_KIND[name])}" for name, words in LOAD_WORDS.items() if section == "load"}
-    known |= OPTION_WORDS if section == "solve" else {}
+    known |= {name: f"{load.words}, {unit(load.kind)}" for name, load in LOAD.items() if section == "load"}
+    known |= {name: option["words"] for name, option in OPTIONS.items() if section == "solve"}
     sources: tuple[Mapping[Any, str], ...] = (known, OTHER_WORDS)
     for key in keys:
         twin = ("pin", key) if section == "plate" else ("plate", key)
@@ -144,10 +144,7 @@ def plan_outcomes() -> str:
 
 def quantities() -> str:
     """The reported quantities with their units."""
-    rows = [
-        (f"`{name}`", QUANTITY_WORDS.get(name, quantity.label), unit(quantity.kind))
-        for name, quantity in QUANTITIES.items()
-    ]
+    rows = [(f"`{name}`", quantity.words, unit(quantity.kind)) for name, quantity in QUANTITIES.items()]
     return table(("name", "quantity", "unit"), rows)
 
 

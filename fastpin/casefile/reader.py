@@ -23,6 +23,7 @@ from fastpin.errors import InputError
 from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import About, Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
+from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
@@ -37,20 +38,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "pin": MATERIAL_KEYS,
     "plate": MATERIAL_KEYS,
     "dundurs": DUNDURS_KEYS,
-    "contact": (
-        "plane",
-        "hole_radius",
-        "clearance",
-        "load_parameter",
-        "friction",
-        "pin_load",
-        "rotation",
-        "hub_radius",
-        "hub_stiffness",
-        "drive",
-        "gauge_radius",
-        "thickness",
-    ),
+    "contact": tuple(dict.fromkeys(("plane", "hole_radius", "clearance", "load_parameter", *FIELDS))),
     **{section: keys_of(kinds) for section, kinds in BODY_KINDS.items()},
     "load": (*LOADS, *HARMONIC, "csv", "repeat"),
     "history": ("csv", "repeat"),
@@ -290,11 +278,9 @@ def _problem(
     for key in needed:
         contact.require(key, " (or give load_parameter)" if key in ("hole_radius", "clearance") else "")
     values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed}}
-    pin_load = contact.choice("pin_load", ("centre", "body"))
-    rotation = contact.choice("rotation", ("free", "fixed", "spring"))
-    drive = contact.choice("drive", ("force", "ux", "uy", "both"))
+    chosen = {name: contact.choice(name, field.choices) for name, field in FIELDS.items() if field.choices}
     hub, thickness = _hub_and_thickness(contact)
-    if rotation == "spring" and "hub_stiffness" not in contact:
+    if chosen["rotation"] == "spring" and "hub_stiffness" not in contact:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
@@ -302,28 +288,27 @@ def _problem(
     values |= read_bodies(source, folder, radius, given, materials)
     radius = radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
-    held = None not in (pin_load, rotation, drive)
-    if held:
-        values |= {"pin_load": pin_load, "rotation": rotation, "drive": drive, **hub, **thickness}
+    is_complete = None not in chosen.values()
+    if is_complete:
+        values |= {**chosen, **hub, **thickness}
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,
         "load_parameter": 0.0,
         "friction": 0.0,
-        "hub_radius": None,
-        "hub_stiffness": unit if rotation == "spring" else None,
-        "gauge_radius": None,
+        **dict.fromkeys(hub),
+        "hub_stiffness": unit if chosen["rotation"] == "spring" else None,
         "plate_body": Plate(),
     }
     if isinstance(values["pin_body"], Tube):
         harmless["pin_load"] = "centre"
     problem = contact.build(make, values, harmless, {"plate_body": (source.section("plate_body"), "file")})
-    return problem if held else None
+    return problem if is_complete else None
 
 
 def _hub_and_thickness(contact: Section) -> tuple[dict[str, float | None], dict[str, float]]:
     """The sizes of hub and gauge, and the thickness if it is given. The stiffness of a spring is per thickness then."""
-    hub = {key: contact.number(key) for key in ("hub_radius", "hub_stiffness", "gauge_radius")}
+    hub = {name: contact.number(name) for name, each in FIELDS.items() if each.is_optional and name != "thickness"}
     thickness = None if "thickness" not in contact else contact.checked("thickness", checked_thickness)
     if thickness is None:
         return hub, {}

@@ -20,6 +20,7 @@ from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
 from fastpin.model.compliance import Compliance
+from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, Material
@@ -78,13 +79,10 @@ def _contact(problem: Problem) -> Iterator[str]:
     else:
         yield f"hole_radius = {problem.hole_radius!r}"
         yield f"clearance = {problem.clearance!r}"
-    yield f"friction = {problem.friction!r}"
-    for name in ("pin_load", "rotation", "drive"):
-        yield f"{name} = {_value(getattr(problem, name))}"
-    for name in ("hub_radius", "hub_stiffness", "gauge_radius", "thickness"):
+    for name in FIELDS:
         value = getattr(problem, name)
-        if value is not None:
-            yield f"{name} = {value if name != 'hub_stiffness' else _whole(value, problem.thickness)!r}"
+        if value is not None and name not in ("hole_radius", "clearance"):
+            yield f"{name} = {_value(value if name != 'hub_stiffness' else _whole(value, problem.thickness))}"
 
 
 def _bodies(problem: Problem) -> Iterator[list[str]]:

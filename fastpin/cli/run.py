@@ -30,6 +30,7 @@ from fastpin.cli.terminal import (
 from fastpin.errors import InputError, InputWarning
 from fastpin.model.case import Case, check_keep
 from fastpin.model.doubts import pressure_doubts, warn_of
+from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.report.notes import note_lines, solver_line, way_on
 from fastpin.report.states import TableRows, bush_line, cycle_lines, hoop_line, state_table, stored_rows, table_rows
@@ -40,9 +41,6 @@ from fastpin.states.yield_doubts import yield_doubts_of
 
 if TYPE_CHECKING:  # it imports compiled code
     from fastpin.states.load_cycle import LoadCycle
-
-SOLVE_OPTIONS = ("nodes", "method", "increments", "arc", "between", "keep", "shortcut", "error_bars", "slip_sums")
-"""Options of the solver that the command line can set."""
 
 LISTS = ("arc", "between")
 """Options that take a number or a list of numbers, written with commas."""
@@ -130,9 +128,7 @@ def _ending(work: Callable[[], object]) -> solver.SolveError | solver.Interrupte
 
 def _with_options(case: Case, options: argparse.Namespace) -> Case:
     """Return the case with the solver's options of the command line in place of its own."""
-    given = {
-        name: _value(text, name in LISTS) for name in SOLVE_OPTIONS if (text := getattr(options, name)) is not None
-    }
+    given = {name: _value(text, name in LISTS) for name in OPTIONS if (text := getattr(options, name)) is not None}
     with _as_options(options):
         changed = case.options.changed(**given)
         check_keep(case.history, changed)
@@ -154,7 +150,7 @@ def _as_options(options: argparse.Namespace) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if error.field in (*SOLVE_OPTIONS, "start") and getattr(options, error.field) is not None:
+        if error.field in (*OPTIONS, "start") and getattr(options, error.field) is not None:
             raise InputError(flag(error.field), error.reason) from None
         raise
 

@@ -249,7 +249,7 @@ def _cycle_axis(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
         panels[0].set_xlim(0.93, 1.07 * last)
         return
     panels[0].set_xlim(-0.02 * last, 1.02 * last)
-    panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    panels[-1].xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
 
 
 def _counts(cycles: Sequence[Cycle]) -> str:

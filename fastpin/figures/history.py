@@ -143,6 +143,6 @@ def _shade(panel: Axes, repeated: list[tuple[int, int, int]], named: bool) -> No
 
 def _number_corners(panel: Axes, numbers: list[int]) -> None:
     """Label the axis with the numbers of the corners."""
-    locator = MaxNLocator(nbins=9, integer=True)
+    locator = MaxNLocator(nbins=9, integer=True, min_n_ticks=1)
     ticks = [int(tick) for tick in locator.tick_values(0, len(numbers) - 1) if 0 <= tick < len(numbers)]
     panel.set_xticks(ticks, [f"{numbers[tick]:,}" for tick in ticks])

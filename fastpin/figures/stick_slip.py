@@ -221,7 +221,7 @@ def _add_words(sheet: Sheet, states: DrawnStates, frame: Frame, title: str, note
     frame.scale(panel, upright=True)
     panel.set_ylabel("angle from the bottom,\ncounter-clockwise (deg)")
     panel.set_xlabel(LOAD_POINT)
-    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True))
+    panel.xaxis.set_major_locator(MaxNLocator(nbins=9, integer=True, min_n_ticks=1))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     for above in sheet.axes[:-1, 0]:
         above.tick_params(labelbottom=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,18 +11,37 @@ from fastpin.errors import InputError
 from fastpin.model.checks import LONGEST_TEXT, as_toml, number
 from fastpin.model.synonyms import closest
 
-LOAD_KIND = {
-    "P": "force",
-    "Q": "force",
-    "M": "moment",
-    "sxx": "traction",
-    "syy": "traction",
-    "rotation": "rotation",
-    "sxy": "traction",
-    "ux": "displacement",
-    "uy": "displacement",
+
+class Load(NamedTuple):
+    """A load.
+
+    Attributes
+    ----------
+    kind : str
+        Its kind of quantity, a key of :func:`fastpin.model.units.units`.
+    short : str
+        Its name on an axis.
+    words : str
+        Its meaning, with its sign, for reports.
+    """
+
+    kind: str
+    short: str
+    words: str
+
+
+LOAD = {
+    "P": Load("force", "force P", "force on the pin downwards"),
+    "Q": Load("force", "force Q", "force on the pin to the right"),
+    "M": Load("moment", "moment M", "moment on the pin, counter-clockwise"),
+    "sxx": Load("traction", "remote stress sxx", "remote stress of the plate along x"),
+    "syy": Load("traction", "remote stress syy", "remote stress of the plate along y"),
+    "rotation": Load("rotation", "rotation of the pin", "prescribed rotation of the pin, counter-clockwise"),
+    "sxy": Load("traction", "remote stress sxy", "remote shear stress of the plate"),
+    "ux": Load("displacement", "displacement ux", "prescribed displacement of the pin to the right"),
+    "uy": Load("displacement", "displacement uy", "prescribed displacement of the pin upwards"),
 }
-"""The kind of quantity of every load. The kinds are keys of :func:`fastpin.model.units.units`.
+"""The loads by name.
 
 * ``P``: force on the pin downwards (-y), N/m.
 * ``Q``: force on the pin along +x, N/m.
@@ -36,8 +56,11 @@ LOAD_KIND = {
 Files hold load vectors, so a new load stands at the end.
 """
 
-LOADS = tuple(LOAD_KIND)
+LOADS = tuple(LOAD)
 """Names of the loads, in the order of every load vector."""
+
+LOAD_KIND = {name: load.kind for name, load in LOAD.items()}
+"""The kind of quantity of every load."""
 
 P, Q, M, SXX, SYY, ROTATION, SXY, UX, UY = range(len(LOADS))
 """Places of the loads in a load vector."""

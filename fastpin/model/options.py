@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal, TypedDict
 
 import numpy as np
@@ -107,6 +107,14 @@ class KeepRule:
         return ends_cycle if self.which == "cycles" else (corner + 1) % self.every == 0
 
 
+def option(default: Any, words: str, later: bool = False) -> Any:
+    """Return a field of :class:`SolveOptions`: its default, and its words in reports.
+
+    A later option enters ids and files only where it differs from its default, so that older ones stay.
+    """
+    return field(default=default, metadata={"words": words, "later": later})
+
+
 @explains_keywords
 @dataclass(frozen=True)
 class SolveOptions:
@@ -144,15 +152,15 @@ class SolveOptions:
         If an option can't be used, or has no effect with the chosen method. The error names the option.
     """
 
-    nodes: int = 401
-    method: Method = "path"
-    increments: int | None = None
-    arc: tuple[float, float] | None = None
-    between: int | Sequence[float] = 0
-    keep: str | KeepRule = "all"
-    shortcut: bool = True
-    error_bars: bool = False
-    slip_sums: bool = False
+    nodes: int = option(401, "number of nodes on the arc or circle")
+    method: Method = option("path", "path: exact in load; increment: implicit load increments")
+    increments: int | None = option(None, "increments of each step")
+    arc: tuple[float, float] | None = option(None, "ends of the arc of nodes, rad")
+    between: int | Sequence[float] = option(0, "states inside each step: their number, or fractions of the step")
+    keep: str | KeepRule = option("all", "states that are kept")
+    shortcut: bool = option(True, "states of a periodic contact are copied from the period before, with the same bits")
+    error_bars: bool = option(False, "the history is also followed on a grid with half the intervals", later=True)
+    slip_sums: bool = option(False, "slip distance and friction energy of each node are counted", later=True)
 
     def __post_init__(self) -> None:
         checked: dict[str, Any] = {
@@ -177,7 +185,13 @@ class SolveOptions:
 
     def keywords(self) -> dict[str, Any]:
         """The options as keyword arguments of :func:`fastpin.solve`."""
-        return {name: getattr(self, name) for name in _NAMES}
+        return {name: getattr(self, name) for name in OPTIONS}
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The options that ids and files hold: all but later ones with their defaults."""
+        later = {each.name: each.default for each in fields(self) if each.metadata["later"]}
+        return {name: value for name, value in self.keywords().items() if name not in later or value != later[name]}
 
     @property
     def is_full_turn(self) -> bool:
@@ -197,7 +211,8 @@ class SolveOptions:
         return np.r_[np.array(self.between, dtype=float), 1.0]
 
 
-_NAMES = tuple(field.name for field in fields(SolveOptions))
+OPTIONS: Mapping[str, Mapping[str, Any]] = {each.name: each.metadata for each in fields(SolveOptions)}
+"""The options by name, with the entries "words" and "later" of :func:`option`."""
 
 
 class OptionValues(TypedDict, total=False):

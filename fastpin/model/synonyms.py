@@ -12,6 +12,8 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
+from fastpin.model.fields import FIELDS
+
 T = TypeVar("T")
 
 _SYNONYMS: dict[str, str] = {
@@ -29,17 +31,9 @@ _SYNONYMS: dict[str, str] = {
     "pin": "pin_material disk disc",
     "plate": "plate_material lug_material",
     # contact
-    "hole_radius": "r radius r_hole plate_radius a",
-    "clearance": "delta delta_r dr gap play radial_clearance initial_gap c",
-    "friction": "mu cof f friction_coefficient coefficient_of_friction coulomb",
-    "thickness": "t h width plate_thickness depth b",
+    **{name: field.also for name, field in FIELDS.items()},
     "load_parameter": "lp l_p",
-    "pin_load": "load_type loading load_model",
     "plane": "state plane_state stress_state",
-    "rotation": "theta omega phi angle twist rotate pin_rotation",
-    "hub_radius": "r_hub hub",
-    "hub_stiffness": "stiffness spring_stiffness k k_theta rotational_stiffness",
-    "gauge_radius": "r_gauge gauge",
     "bore_radius": "radius inner_radius r_i ri bore r_bore hollow",
     "outer_radius": "radius r_o ro r_outer rim_radius",
     # loads

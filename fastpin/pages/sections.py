@@ -14,15 +14,15 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
-from fastpin.model.loads import named_load
+from fastpin.model.loads import LOAD, named_load
 from fastpin.model.materials import Material
+from fastpin.model.options import OPTIONS
 from fastpin.model.points import EDGES
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
 from fastpin.pages.source import Source
-from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
 from fastpin.report.case import case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
@@ -32,12 +32,20 @@ from fastpin.report.states import bush_line, cycle_lines, hoop_line, quantity_co
 from fastpin.report.table import MAX_ROWS, Column
 from fastpin.solver.configuration import MAX_RESIDUAL
 from fastpin.states.load_cycle import LoadCycle
-from fastpin.states.quantities import load_point, size
+from fastpin.states.quantities import QUANTITIES, load_point, size
 from fastpin.states.state import State
 from fastpin.states.yield_doubts import yield_doubts
 from fastpin.states.zones import is_all_round
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
+
+RESIDUAL_WORDS = {
+    "gap": "no gap where the bodies touch, in parts of the largest displacement",
+    "slip": "no change of slip where they stick, in parts of the largest displacement",
+    "cone": "Coulomb's law and N >= 0, in parts of the largest pressure",
+    "equilibrium": "equilibrium of the pin, in parts of the resultants of the absolute tractions",
+}
+"""Words for the residuals of a :class:`fastpin.State`."""
 
 STRAIGHT = 3
 """States of a cycle, with both ends, between which a loop is a line."""
@@ -153,7 +161,7 @@ def case(page: Shared) -> Section:
         ]
     known = page.source.knows_options
     options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
-    solver = [(name, as_toml(value), OPTION_WORDS[name]) for name, value in options.items() if value is not None]
+    solver = [(name, as_toml(value), OPTIONS[name]["words"]) for name, value in options.items() if value is not None]
     return Section(
         "case",
         "Case",
@@ -218,7 +226,7 @@ def loads(page: Shared) -> Section:
     initial = page.source.initial
     columns, hidden = corner_columns(found.problem, history, initial)
     names = acting_loads([named_load(row) for row in history.distinct(initial)])
-    rows = [(name, LOAD_WORDS[name]) for name in names]
+    rows = [(name, LOAD[name].words) for name in names]
     count = len(columns[0][2])
     gaps = {min(count, MAX_ROWS) // 2: f"{hidden:,} corners not shown here"} if hidden else {}
     if count > MAX_ROWS:  # each block is short, but there are many
@@ -241,9 +249,9 @@ def key_figures(page: Shared) -> Section:
         return Section("figures", "Key figures", [Text(NO_STATE, "missing")])
     parts: list[Part] = [Table("States", state_columns(problem, states), gaps)]
     drawn = source.drawn
-    natural = {name: max(size(name, state) for state in drawn) for name in QUANTITY_WORDS}
-    cells = [quantity_column(problem, drawn, name, natural=natural[name]) for name in QUANTITY_WORDS]
-    shown = [(words, *cell[1:]) for words, cell in zip(QUANTITY_WORDS.values(), cells, strict=True)]
+    natural = {name: max(size(name, state) for state in drawn) for name in QUANTITIES}
+    cells = [quantity_column(problem, drawn, name, natural=natural[name]) for name in QUANTITIES]
+    shown = [(each.words, *cell[1:]) for each, cell in zip(QUANTITIES.values(), cells, strict=True)]
     shown = [row for row in shown if not all(cell in ("nan", "-") for cell in row[2])]
     columns: list[Column] = [("quantity", "", [row[0] for row in shown]), ("unit", "", [row[1] for row in shown])]
     for place, state in enumerate(drawn):

@@ -12,6 +12,7 @@ from typing import Any
 
 from fastpin.model.checks import choice
 from fastpin.model.compliance import FORMAT, VERSION
+from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
 from fastpin.model.options import METHODS, SolveOptions
 from fastpin.states.cycles import Cycle
@@ -93,11 +94,9 @@ def _problem() -> Schema:
             "plate": material,
             "plane": {"enum": ["strain", "stress"]},
             "dundurs": _object({"alpha": _NUMBER, "beta": _NUMBER, "convention": _TEXT}),
-            **dict.fromkeys(("beta_star", "hole_radius", "clearance", "friction"), _NUMBER),
-            **dict.fromkeys(("pin_load", "rotation"), _TEXT),
-            **dict.fromkeys(("hub_radius", "hub_stiffness"), _UNKNOWN),
-            "drive": _TEXT,
-            **dict.fromkeys(("gauge_radius", "thickness"), _UNKNOWN),
+            "beta_star": _NUMBER,
+            **{name: _TEXT if each.choices else _NUMBER for name, each in FIELDS.items()},
+            **{name: _UNKNOWN for name, each in FIELDS.items() if each.is_optional},
             **dict.fromkeys(("pin_body", "plate_body"), body),
             "assembled_clearance": _NUMBER,
             "press_fit_pressure": _NUMBER,

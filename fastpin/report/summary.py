@@ -12,6 +12,7 @@ from fastpin.model.angles import interval_from_bottom
 from fastpin.model.bodies import PinBody, PlateBody, body_document
 from fastpin.model.case import Case
 from fastpin.model.compliance import Compliance
+from fastpin.model.fields import FIELDS
 from fastpin.model.history import Block
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
@@ -50,7 +51,7 @@ def document(
     cycle : LoadCycle, optional
         The cycle of the entry ``cycle``.
     """
-    problem, pair, unit = case.problem, case.problem.pair, units(case.problem)
+    problem, pair = case.problem, case.problem.pair
     alpha, beta = problem.surfaces.dundurs()
     found = {
         "fastpin": __version__,
@@ -64,16 +65,8 @@ def document(
             "plane": pair.plane,
             "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
             "beta_star": problem.surfaces.beta_star,
-            "hole_radius": problem.hole_radius,
-            "clearance": problem.clearance,
-            "friction": problem.friction,
-            "pin_load": problem.pin_load,
-            "rotation": problem.rotation,
-            "hub_radius": problem.hub_radius,
-            "hub_stiffness": problem.hub_stiffness and unit["stiffness"].factor * problem.hub_stiffness,
-            "drive": problem.drive,
-            "gauge_radius": problem.gauge_radius,
-            "thickness": problem.thickness,
+            **{name: getattr(problem, name) for name in FIELDS},
+            "hub_stiffness": problem.hub_stiffness and units(problem)["stiffness"].factor * problem.hub_stiffness,
             "pin_body": _body_summary(problem.pin_body),
             "plate_body": _body_summary(problem.plate_body),
             "assembled_clearance": problem.assembled_clearance,

@@ -32,6 +32,8 @@ class Quantity(NamedTuple):
         A key of :func:`fastpin.model.units.units`, "angle" (a place on the hole, rad), "width" (rad) or "class".
     of : callable
         Gives its value for a state, in SI units or in the units of a dimensionless problem.
+    words : str
+        Its meaning, for reports.
     classes : dict of int to str
         Of the kind "class": the words of each value.
     """
@@ -39,6 +41,7 @@ class Quantity(NamedTuple):
     label: str
     kind: str
     of: Callable[[State], float]
+    words: str = ""
     classes: Mapping[int, str] = MappingProxyType({})
 
     def shown(self, state: State) -> float | str:
@@ -80,35 +83,72 @@ def _bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "peak_pressure": Quantity("peak N", "traction", lambda state: state.peak_pressure),
-    "peak_pressure_angle": Quantity("peak N at", "angle", lambda state: state.peak_pressure_angle),
-    "peak_shear": Quantity("peak T", "traction", lambda state: state.peak_shear),
-    "peak_shear_angle": Quantity("peak T at", "angle", lambda state: state.peak_shear_angle),
-    "contact_width": Quantity("contact width", "width", lambda state: width(state.contact)),
-    "stick_width": Quantity("stick width", "width", lambda state: width(state.stick)),
-    "rotation": Quantity("rotation", "rotation", lambda state: state.rotation),
-    "dx": Quantity("dx", "displacement", lambda state: state.dx),
-    "dy": Quantity("dy", "displacement", lambda state: state.dy),
-    "P": Quantity("P", "force", lambda state: state.resultants["P"]),
-    "Q": Quantity("Q", "force", lambda state: state.resultants["Q"]),
-    "M": Quantity("M", "moment", lambda state: state.resultants["M"]),
-    "pressure_integral": Quantity("int N", "force", lambda state: _integral(state, state.pressure)),
-    "shear_integral": Quantity("int T", "force", lambda state: _integral(state, state.shear)),
-    "shear_magnitude": Quantity("int |T|", "force", lambda state: _integral(state, np.abs(state.shear))),
-    "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation),
-    "work": Quantity("work", "energy", lambda state: state.work),
-    "peak_hoop": Quantity("peak hoop", "traction", _hoop(lambda peak: peak.value)),
-    "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle)),
-    "kt_gross": Quantity("Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross)),
-    "kt_bearing": Quantity("Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing)),
-    "kt_net": Quantity("Kt net", "ratio", _hoop(lambda peak: peak.kt_net)),
-    "peak_hoop_seat": Quantity("peak hoop seat", "traction", _hoop(lambda peak: peak.value, "seat")),
-    "peak_hoop_seat_angle": Quantity("peak hoop seat at", "angle", _hoop(lambda peak: peak.angle, "seat")),
-    "joint_ux": Quantity("joint ux", "displacement", lambda state: state.joint_displacement()["ux"]),
-    "joint_uy": Quantity("joint uy", "displacement", lambda state: state.joint_displacement()["uy"]),
-    "bush_open_margin": Quantity("bush open margin", "traction", _bush(lambda fit: fit.open_margin)),
-    "bush_slip_margin": Quantity("bush slip margin", "traction", _bush(lambda fit: fit.slip_margin)),
-    "regime": Quantity("regime", "class", lambda state: float(state.regime), REGIMES),
+    "peak_pressure": Quantity("peak N", "traction", lambda state: state.peak_pressure, "largest contact pressure N"),
+    "peak_pressure_angle": Quantity("peak N at", "angle", lambda state: state.peak_pressure_angle, "its place"),
+    "peak_shear": Quantity(
+        "peak T", "traction", lambda state: state.peak_shear, "largest shear traction T, with its sign"
+    ),
+    "peak_shear_angle": Quantity("peak T at", "angle", lambda state: state.peak_shear_angle, "its place"),
+    "contact_width": Quantity("contact width", "width", lambda state: width(state.contact), "width of the contact"),
+    "stick_width": Quantity("stick width", "width", lambda state: width(state.stick), "width of the stick zones"),
+    "rotation": Quantity(
+        "rotation", "rotation", lambda state: state.rotation, "rotation of the pin, counter-clockwise"
+    ),
+    "dx": Quantity("dx", "displacement", lambda state: state.dx, "motion of the pin to the right"),
+    "dy": Quantity("dy", "displacement", lambda state: state.dy, "motion of the pin upwards"),
+    "P": Quantity("P", "force", lambda state: state.resultants["P"], "force of the tractions on the pin, P"),
+    "Q": Quantity("Q", "force", lambda state: state.resultants["Q"], "force of the tractions on the pin, Q"),
+    "M": Quantity("M", "moment", lambda state: state.resultants["M"], "moment of the tractions on the pin, M"),
+    "pressure_integral": Quantity(
+        "int N", "force", lambda state: _integral(state, state.pressure), "integral of N round the hole"
+    ),
+    "shear_integral": Quantity(
+        "int T", "force", lambda state: _integral(state, state.shear), "integral of T round the hole"
+    ),
+    "shear_magnitude": Quantity(
+        "int |T|", "force", lambda state: _integral(state, np.abs(state.shear)), "integral of |T| round the hole"
+    ),
+    "dissipation": Quantity("dissipated", "energy", lambda state: state.dissipation, "energy dissipated so far"),
+    "work": Quantity("work", "energy", lambda state: state.work, "work of the loads so far"),
+    "peak_hoop": Quantity(
+        "peak hoop", "traction", _hoop(lambda peak: peak.value), "largest hoop stress round the hole"
+    ),
+    "peak_hoop_angle": Quantity("peak hoop at", "angle", _hoop(lambda peak: peak.angle), "its place"),
+    "kt_gross": Quantity(
+        "Kt gross", "ratio", _hoop(lambda peak: peak.kt_gross), "its ratio to the remote stress, Kt gross"
+    ),
+    "kt_bearing": Quantity(
+        "Kt bearing", "ratio", _hoop(lambda peak: peak.kt_bearing), "its ratio to the bearing stress, Kt bearing"
+    ),
+    "kt_net": Quantity(
+        "Kt net", "ratio", _hoop(lambda peak: peak.kt_net), "its ratio to the net-section stress, Kt net"
+    ),
+    "peak_hoop_seat": Quantity(
+        "peak hoop seat",
+        "traction",
+        _hoop(lambda peak: peak.value, "seat"),
+        "largest hoop stress of the plate at the seat of the bush",
+    ),
+    "peak_hoop_seat_angle": Quantity("peak hoop seat at", "angle", _hoop(lambda peak: peak.angle, "seat"), "its place"),
+    "joint_ux": Quantity(
+        "joint ux",
+        "displacement",
+        lambda state: state.joint_displacement()["ux"],
+        "displacement of the joint to the right",
+    ),
+    "joint_uy": Quantity(
+        "joint uy", "displacement", lambda state: state.joint_displacement()["uy"], "displacement of the joint upwards"
+    ),
+    "bush_open_margin": Quantity(
+        "bush open margin", "traction", _bush(lambda fit: fit.open_margin), "least pressure between bush and plate"
+    ),
+    "bush_slip_margin": Quantity(
+        "bush slip margin",
+        "traction",
+        _bush(lambda fit: fit.slip_margin),
+        "least pressure between bush and plate, minus shear over friction",
+    ),
+    "regime": Quantity("regime", "class", lambda state: float(state.regime), "regime of the contact", REGIMES),
 }
 """The quantities of every state, by name. P, Q, M are the resultants of the tractions; integrals are over R dtheta.
 

@@ -33,11 +33,12 @@ from fastpin.errors import InputError
 from fastpin.kernels.half_line import LEAST_PLACE, MOST_PLACE
 from fastpin.kernels.status import Status
 from fastpin.model.case import About
+from fastpin.model.fields import FIELDS
 from fastpin.model.grid import Grid
 from fastpin.model.history import Block, LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import MaterialPair
-from fastpin.model.options import SolveOptions
+from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units_per_thickness
 from fastpin.states.cycles import Cycle
@@ -127,19 +128,7 @@ WHOLE_NUMBERS = ("step", "corner", "length", "number")
 SMALL_NUMBERS = ("status", "old_borders")
 """Fields of states that are whole numbers of one byte."""
 
-_PROBLEM_FIELDS = (
-    "hole_radius",
-    "clearance",
-    "friction",
-    "pin_load",
-    "rotation",
-    "hub_radius",
-    "hub_stiffness",
-    "drive",
-    "gauge_radius",
-    "dimensionless",
-    "thickness",
-)
+_PROBLEM_FIELDS = (*FIELDS, "dimensionless")
 
 STATUS_LIMITS = (min(Status), max(Status))
 """Smallest and largest status of a node."""
@@ -253,10 +242,13 @@ def read_grid(file: h5py.File) -> Grid:
 
 def option_attributes(options: SolveOptions) -> dict[str, Any]:
     """Return the options of a run as attributes of ``/solver``."""
-    attributes = options.keywords()
+    attributes = options.written
     del attributes["between"]
-    later = {"slip_sums": options.slip_sums or None, "error_bars": options.error_bars or None}
-    return {**attributes, "fractions": options.fractions, **later}
+    return {**attributes, "fractions": options.fractions}
+
+
+_OTHER_FORM = ("nodes", "method", "increments", "arc", "between")
+"""Options that a file holds in another form, or not always."""
 
 
 def read_options(file: h5py.File) -> SolveOptions:
@@ -271,7 +263,7 @@ def read_options(file: h5py.File) -> SolveOptions:
         start, stop = stored["arc"].tolist()
         # Earlier versions took an arc longer than 2 pi as a circle.
         options["arc"] = (start, min(stop, start + 2.0 * np.pi))
-    options |= {name: stored[name] for name in ("keep", "shortcut", "slip_sums", "error_bars") if name in stored}
+    options |= {name: stored[name] for name in OPTIONS if name in stored and name not in _OTHER_FORM}
     return SolveOptions(**options)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fastpin.model.loads import LOAD_KIND, LOADS
+from fastpin.model.fields import FIELDS
+from fastpin.model.loads import LOAD, LOAD_KIND
 
 _OWNERS = {"pin": "pin", "plate": "plate", "pin_body": "pin", "plate_body": "plate"}
 """Sections of a case whose keys belong to a body."""
@@ -10,25 +11,16 @@ _OWNERS = {"pin": "pin", "plate": "plate", "pin_body": "pin", "plate_body": "pla
 _KEYS = {
     "E": "modulus",
     "nu": "Poisson's ratio",
-    "friction": "friction coefficient",
-    "pin_load": "load of the pin",
+    **{name: field.words for name, field in FIELDS.items() if field.words},
     "reaction": "distance of the reaction",
     "interference": "interference of the bush",
     "nodes": "number of nodes",
 }
 """Words for keys whose names are no words."""
 
-_LOADS = {"P": "force P", "Q": "force Q", "M": "moment M", "ux": "displacement ux", "uy": "displacement uy"}
-"""Words for loads; the others are remote stresses."""
-
 
 _KIND = {
-    "contact.hole_radius": "length",
-    "contact.clearance": "length",
-    "contact.hub_radius": "length",
-    "contact.hub_stiffness": "stiffness",
-    "contact.gauge_radius": "length",
-    "contact.thickness": "length",
+    **{f"contact.{name}": field.kind for name, field in FIELDS.items()},
     "pin.E": "traction",
     "plate.E": "traction",
     "pin_body.bore_radius": "length",
@@ -45,7 +37,7 @@ def field_words(field: str) -> str:
     """Return words for a field of a case: "modulus of the pin" for "pin.E", "moment M in load 2" for "load.2.M"."""
     section, *between, key = field.split(".")
     if section == "load":
-        load = _LOADS.get(key, f"remote stress {key}") if key in LOADS else key.replace("_", " ")
+        load = LOAD[key].short if key in LOAD else key.replace("_", " ")
         number, *part = between or [""]  # the part is mean, amplitude or phase of a harmonic block
         words = f"{part[0]} of the {load}" if part else load
         return f"{words} in load {number}" if number else words

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from dataclasses import fields
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -16,6 +17,7 @@ import numpy as np
 
 from fastpin.model.bodies import Disk, Plate, body_document
 from fastpin.model.case import Case
+from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import Material
@@ -25,9 +27,6 @@ from fastpin.version import __version__
 
 FIRST_LOADS = 6
 """Loads that were known first. Later ones enter an id only where they are given, so that older ids stay."""
-
-_LATER_FIELDS = ("hub_stiffness", "drive", "gauge_radius")
-"""Fields of a problem that enter an id only where they are given, so that older ids stay."""
 
 ID_LENGTH = 16
 """Hexadecimal digits of an id."""
@@ -49,13 +48,7 @@ def canonical(case: Case) -> dict[str, Any]:
         "pin": _material(pair.pin),
         "plate": _material(pair.plate),
         "plane": pair.plane,
-        "hole_radius": problem.hole_radius,
-        "clearance": _number(problem.clearance),
-        "friction": _number(problem.friction),
-        "pin_load": problem.pin_load,
-        "rotation": problem.rotation,
-        "hub_radius": problem.hub_radius,
-        **{name: value for name in _LATER_FIELDS if (value := getattr(problem, name)) not in (None, "force")},
+        **_fields(problem),
         **_bodies(problem),
         "dimensionless": problem.dimensionless,
         "loads": _loads(case.history),
@@ -88,6 +81,17 @@ def _material(material: Material) -> dict[str, Any]:
     constants = {} if material.fatigue is None else material.fatigue.given()
     constants.pop("source", None)
     return {**elastic, "fatigue": constants} if constants else elastic
+
+
+def _fields(problem: Problem) -> dict[str, Any]:
+    """Return the fields of a problem. A later field with its default is left out, so that older ids stay."""
+    usual = {each.name: each.default for each in fields(Problem)}
+    values = {name: (getattr(problem, name), each.in_ids) for name, each in FIELDS.items()}
+    return {
+        name: _without_negative_zero(value)
+        for name, (value, in_ids) in values.items()
+        if in_ids == "always" or (in_ids == "given" and value != usual[name])
+    }
 
 
 def _bodies(problem: Problem) -> dict[str, Any]:
@@ -135,12 +139,8 @@ def _digested(history: LoadHistory) -> dict[str, Any]:
 
 
 def _options(options: SolveOptions) -> dict[str, Any]:
-    keywords = options.keywords()
+    keywords = options.written
     del keywords["shortcut"]  # It changes no state.
-    if not options.error_bars:
-        del keywords["error_bars"]  # Sweeps learned them later; older ids stay.
     if options.method == "path":
         del keywords["increments"]
-    if not options.slip_sums:
-        del keywords["slip_sums"]  # It came later; older ids stay.
     return keywords

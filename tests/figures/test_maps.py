@@ -64,6 +64,13 @@ def test_states_without_contact_have_white_columns():
     assert {box.point for box in zone_boxes(result)} == {2.0, 3.0}
 
 
+def test_the_axis_of_one_state_has_one_number():
+    figure = figures.plot_stick_slip(sample_result()[0])
+    axis = figure.axes[-1]
+    first, last = axis.get_xlim()
+    assert [tick for tick in axis.get_xticks() if first <= tick <= last] == [1.0]
+
+
 def test_the_two_directions_of_slip_differ_without_colour():
     _, first, _ = LOOKS[SLIP_POSITIVE]
     _, second, _ = LOOKS[SLIP_NEGATIVE]

@@ -14,14 +14,13 @@ import pytest
 import fastpin
 from fastpin.errors import InputError, OutputError
 from fastpin.model import Bushing, Material, MaterialPair
-from fastpin.model.loads import LOADS
-from fastpin.model.options import SolveOptions
+from fastpin.model.loads import LOAD, LOADS
+from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.pages import album, drawings, write_report
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Text
-from fastpin.pages.sections import SECTIONS, Shared, case, overview
+from fastpin.pages.sections import RESIDUAL_WORDS, SECTIONS, Shared, case, overview
 from fastpin.pages.source import MOST_DRAWN, Source
-from fastpin.pages.words import LOAD_WORDS, OPTION_WORDS, QUANTITY_WORDS, RESIDUAL_WORDS
 from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
@@ -341,9 +340,9 @@ def test_a_pin_that_does_not_touch_has_no_tractions(tmp_path: Path) -> None:
 
 
 def test_words_cover_all_names() -> None:
-    assert set(QUANTITY_WORDS) == set(QUANTITIES)
-    assert set(LOAD_WORDS) == set(LOADS)
-    assert set(OPTION_WORDS) == set(SolveOptions().keywords())
+    assert all(each.words for each in (*QUANTITIES.values(), *LOAD.values()))
+    assert all(each["words"] for each in OPTIONS.values())
+    assert set(OPTIONS) == set(SolveOptions().keywords())
     assert set(RESIDUAL_WORDS) == set(RESIDUALS)
 
 

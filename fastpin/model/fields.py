@@ -1,0 +1,58 @@
+"""The fields of a problem, beside its materials and bodies: each is described once.
+
+Case files, plans, ids, HDF5 files and JSON walk this list. :class:`fastpin.Problem` has an attribute of each name, with
+its default and its check. Nothing heavy is imported: the hints of the command line need the other words.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+
+class Field(NamedTuple):
+    """A field of a problem.
+
+    Attributes
+    ----------
+    kind : str
+        Its kind of quantity, a key of :func:`fastpin.model.units.units`; empty for a word or a plain number.
+    choices : tuple of str
+        The words that it may be; empty for a number.
+    is_optional : bool
+        Whether it may be None.
+    in_ids : {"always", "given", "never"}
+        Whether it enters the id of a run: a later field does where it has another value than its default.
+    words : str
+        Its name on an axis; empty if the name of the field is made of words.
+    also : str
+        Other words that users write for its name, in lower case.
+    """
+
+    kind: str = ""
+    choices: tuple[str, ...] = ()
+    is_optional: bool = False
+    in_ids: Literal["always", "given", "never"] = "always"
+    words: str = ""
+    also: str = ""
+
+
+FIELDS = {
+    "hole_radius": Field("length", also="r radius r_hole plate_radius a"),
+    "clearance": Field("length", also="delta delta_r dr gap play radial_clearance initial_gap c"),
+    "friction": Field(
+        words="friction coefficient", also="mu cof f friction_coefficient coefficient_of_friction coulomb"
+    ),
+    "pin_load": Field(choices=("centre", "body"), words="load of the pin", also="load_type loading load_model"),
+    "rotation": Field(choices=("free", "fixed", "spring"), also="theta omega phi angle twist rotate pin_rotation"),
+    "hub_radius": Field("length", is_optional=True, also="r_hub hub"),
+    "hub_stiffness": Field(
+        "stiffness",
+        is_optional=True,
+        in_ids="given",
+        also="stiffness spring_stiffness k k_theta rotational_stiffness",
+    ),
+    "drive": Field(choices=("force", "ux", "uy", "both"), in_ids="given"),
+    "gauge_radius": Field("length", is_optional=True, in_ids="given", also="r_gauge gauge"),
+    "thickness": Field("length", is_optional=True, in_ids="never", also="t h width plate_thickness depth b"),
+}
+"""The fields by name, in the order of case files."""
