@@ -42,6 +42,9 @@ NEARLY_ROUND = 340.0
 SAME = 1e-3
 """Difference of two states, in parts of the largest tractions, below which one line shows both: it is 0.1 points."""
 
+MOST_JOINED = 10_000
+"""Most states that a map of a whole history joins in its columns. With 400 nodes they take 300 MB of memory."""
+
 LONG_ENTRY = 32
 """Characters of an entry of the legend beyond which two columns of entries would need letters too small to read."""
 
@@ -172,6 +175,7 @@ def drawn_places(
         many cycles would look like a slow cycle.
     whole : bool
         Whether all chosen states are drawn, in the order of the history: the figure joins more than `most` of them.
+        Without a choice these are all states, up to :data:`MOST_JOINED`.
     marked : callable
         ``marked()`` gives the places of the extremes of all states, with words on each.
 
@@ -181,7 +185,7 @@ def drawn_places(
         If there is no such state. The field is "states".
     """
     chosen = states
-    if states is None and len(points) > most and cycles:
+    if states is None and cycles and len(points) > (MOST_JOINED if whole else most):
         chosen = "cycle"
     try:
         places = chosen_places(points, cycles, chosen)
@@ -196,7 +200,8 @@ def drawn_places(
     if in_a_row:
         places = places[:most] if cycles else even_choice(places, most)
         return places, [""] * len(places), count
-    marks = marked() if len(places) > most or (states is None and len(places) < len(points)) else {}
+    is_part = states is None and len(places) < len(points) and not whole
+    marks = marked() if len(places) > most or is_part else {}
     if states is None:
         places = sorted({*places, *marks})
     places = even_choice(places, most, marks)

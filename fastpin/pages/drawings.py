@@ -12,6 +12,7 @@ import numpy as np
 
 from fastpin import figures
 from fastpin.damage import Fatigue
+from fastpin.figures.states import DrawnStates
 from fastpin.model.case import Case
 from fastpin.model.points import bodies_of
 from fastpin.model.units import named_loads
@@ -65,12 +66,12 @@ def tractions(album: Album, states: Sequence[State]) -> Picture:
     return album.picture(lambda path: figures.plot_tractions(states, path), *words)
 
 
-def stick_slip(album: Album, states: Sequence[State], total: int) -> Picture:
-    """Draw the map of stick and slip. The caption says that the states are a part of the `total` number of states."""
+def stick_slip(album: Album, states: DrawnStates) -> Picture:
+    """Draw the map of stick and slip. The caption says whether the states are a part of all."""
     first, last = load_point(states[0]), load_point(states[-1])
     part = (
-        f"Only {len(states):,} of {total:,} states, load points {first:.5g} to {last:.5g}: stick"
-        if len(states) < total
+        f"Only {len(states):,} of {states.total:,} states, load points {first:.5g} to {last:.5g}: stick"
+        if len(states) < states.total
         else "Stick"
     )
     words = Words(

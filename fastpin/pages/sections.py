@@ -292,7 +292,7 @@ def zones(page: Shared) -> Section:
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
     parts: list[Part] = [Table("Zones of contact, stick and slip", columns)]
     if len(page.source.mapped) > 1:
-        parts = [*_drawn(lambda: drawings.stick_slip(page.album, page.source.mapped, page.source.points.size)), *parts]
+        parts = [*_drawn(lambda: drawings.stick_slip(page.album, page.source.mapped)), *parts]
     return Section("zones", "Stick and slip", parts)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from fastpin import storage
 from fastpin.damage import Fatigue, fatigue
 from fastpin.errors import InputError
-from fastpin.figures.states import DrawnStates
+from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
@@ -39,7 +39,7 @@ MOST_DRAWN = 6
 """Most states that a figure or a table of all quantities shows: as many have a legend of their own."""
 
 MOST_MAPPED = 60
-"""Most states of a map that begins with the history. The first cycles of most histories fit."""
+"""States of the map of a history that is too long to be mapped whole: its first cycles."""
 
 MOST_CORNERS = 100_000
 """Most corners in which a closed part without repeated blocks is looked for."""
@@ -213,11 +213,10 @@ class Source:
         return DrawnStates(self.read(chosen), self.points.size, self.result.cycles, marks)
 
     @cached_property
-    def mapped(self) -> list[State]:
-        """States in a row for the map of stick and slip: of the last cycle, or the first ones if it has few."""
-        if self.cycle is not None and len(self.cycle.states) > MOST_DRAWN:
-            return list(self.cycle.states)
-        return self.read(range(min(self.points.size, MOST_MAPPED)))
+    def mapped(self) -> DrawnStates:
+        """States in a row for the map of stick and slip: all of them, or the first ones of a very long history."""
+        states = self.read(range(self.points.size if self.points.size <= MOST_JOINED else MOST_MAPPED))
+        return DrawnStates(states, self.points.size, self.result.cycles)
 
     @cached_property
     def _cycle(self) -> LoadCycle | str:

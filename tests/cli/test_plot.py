@@ -282,6 +282,16 @@ def test_a_long_map_of_stick_and_slip_says_what_its_columns_join(blocks, tmp_pat
     assert first.startswith("0,")
 
 
+def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(figures.stick_slip, "MOST_COLUMNS", 5)
+    arguments = ["plot", str(blocks), "stick-slip", "-o", str(tmp_path / "a.png")]
+    assert main(arguments) == 0
+    assert "the figure shows 39 states in 5 columns" in capsys.readouterr().out
+    monkeypatch.setattr(figures.states, "MOST_JOINED", 38)
+    assert main(arguments) == 0
+    assert "states: load points 11.33 to 13" in capsys.readouterr().out
+
+
 def test_the_regime_is_printed(blocks, capsys):
     assert main(["show", str(blocks)]) == 0
     assert "partial slip, slip range up to" in capsys.readouterr().out

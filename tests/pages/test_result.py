@@ -155,10 +155,11 @@ def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
     assert "… 2 to 9: repeat load point 1, 8 times …" in (tmp_path / "a.html").read_text()
 
 
-@pytest.mark.parametrize(("corners", "words"), [(70, "Only 60 of 70 states, load points 1 to 60: stick"), (3, "Stick")])
-def test_a_map_of_a_part_of_the_states_says_so(corners: int, words: str, undrawn: None) -> None:
-    source = Source.of_result(sample_result([{"P": 1e6 + 100.0 * k} for k in range(corners)], nodes=21))
-    picture = drawings.stick_slip(Album(), source.mapped, source.points.size)
+@pytest.mark.parametrize(("joined", "words"), [(69, "Only 60 of 70 states, load points 1 to 60: stick"), (70, "Stick")])
+def test_a_map_holds_all_states_or_says_that_it_does_not(joined: int, words: str, undrawn: None, monkeypatch) -> None:
+    monkeypatch.setattr("fastpin.pages.source.MOST_JOINED", joined)
+    source = Source.of_result(sample_result([{"P": 1e6 + 100.0 * k} for k in range(70)], nodes=21))
+    picture = drawings.stick_slip(Album(), source.mapped)
     assert picture.caption.startswith(f"{words} and slip over the angle")
 
 
