@@ -231,10 +231,7 @@ def stored_states(
         return marked_places({each: found[each] for each in extremes if each in found})
 
     places, marks, chosen = drawn_places(points, cycles, states, most, in_a_row, whole, marked)
-    neighbours = bool(places) and places == list(range(places[0], places[-1] + 1))
-    # A slice is read at once, a list state by state.
-    read = load(path, states=slice(places[0], places[-1] + 1) if neighbours else places)
-    return DrawnStates(read.states, len(points), cycles, marks, chosen)
+    return DrawnStates(load(path, states=places).states, len(points), cycles, marks, chosen)
 
 
 class Frame:

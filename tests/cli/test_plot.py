@@ -289,7 +289,7 @@ def test_a_map_joins_all_states_of_a_long_history_with_cycles(blocks, tmp_path, 
     assert "the figure shows 39 states in 5 columns" in capsys.readouterr().out
     monkeypatch.setattr(figures.states, "MOST_JOINED", 38)
     assert main(arguments) == 0
-    assert "states: load points 11.33 to 13" in capsys.readouterr().out
+    assert "the figure shows 7 of 39 states: load points 11, 11.333" in capsys.readouterr().out
 
 
 def test_the_regime_is_printed(blocks, capsys):
