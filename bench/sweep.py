@@ -34,7 +34,7 @@ from threadpoolctl import threadpool_limits
 
 import fastpin
 from fastpin.kernels import exchange
-from fastpin.kernels.threads import in_one_thread
+from fastpin.runtime.threads import in_one_thread
 from fastpin.storage import store
 from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, parse_plan

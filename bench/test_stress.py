@@ -17,8 +17,8 @@ import pytest
 
 import fastpin
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
-from fastpin.kernels import threads as work
 from fastpin.model import Bushing, Plate, Ring
+from fastpin.runtime import threads as work
 
 Timed = Callable[..., Any]
 

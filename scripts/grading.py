@@ -16,9 +16,9 @@ import time
 
 import numpy as np
 
-from fastpin.kernels.threads import in_one_thread
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
+from fastpin.runtime.threads import in_one_thread
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from scripts.cusps import CASES, Case

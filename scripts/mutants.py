@@ -1,7 +1,7 @@
 """Do the tests notice? Change one small thing of the package at a time, and run the tests that can notice it.
 
-``python -m scripts.mutants [--count 400] [--seed 1] [--all]`` picks places by a seed, evenly over six folders, with the
-folders in turn: a part of a run is a fair sample, too. Each change is made in a private copy of the tree. The tests run
+``python -m scripts.mutants [--count 400] [--seed 1] [--all]`` picks places by a seed, evenly over the folders of
+FOLDERS in turn: a part of a run is a fair sample, too. Each change is made in a private copy of the tree. The tests run
 in a process forked from this one, which has imported the libraries, but nothing of fastpin.
 
 The tests are chosen by a map from lines to tests. It is recorded once, with coverage.py, and again for what has
@@ -45,7 +45,7 @@ from scripts.changes import Change, changes
 
 ROOT = Path(__file__).resolve().parents[1]
 OUT = ROOT / "out" / "mutants"
-FOLDERS = ("kernels", "elasticity", "solver", "states", "damage", "storage")
+FOLDERS = ("runtime", "kernels", "elasticity", "solver", "states", "damage", "storage")
 TESTS = (*FOLDERS, "whole")
 """Folders of the tests that may notice a change."""
 
@@ -61,7 +61,7 @@ LONGEST = 4.0
 PLAIN = "tests/kernels/"
 """Tests that run with kernels as plain Python."""
 
-TOO_SLOW = ("tests/kernels/test_products.py",)
+TOO_SLOW = ("tests/runtime/test_products.py",)
 """Tests of kernels that follow whole histories."""
 
 MOST_TIMES, MARGIN = 5.0, 5.0
@@ -73,7 +73,7 @@ MEMORY = 6 << 30
 STUCK = 300.0
 """Seconds of waiting, beside MOST_TIMES of the unchanged time, after which tests hang: the machine may be busy."""
 
-SKIPPED = ("tests/whole/test_mutations.py", "tests/kernels/test_jit.py")
+SKIPPED = ("tests/whole/test_mutations.py", "tests/runtime/test_jit.py")
 """Tests that start many processes or compile. They test no formula."""
 
 

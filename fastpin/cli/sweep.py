@@ -16,7 +16,7 @@ from fastpin.cli.options import DEFAULT_KEY_FIGURE
 from fastpin.cli.progress import READ_POINTS, Bar, note_duration, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_OK, check_outputs, fail, say
 from fastpin.errors import InputError
-from fastpin.kernels.threads import cores
+from fastpin.runtime.threads import cores
 
 MOST_REASONS = 20
 """Most failed runs that are listed with their reasons."""

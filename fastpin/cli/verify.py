@@ -11,7 +11,7 @@ import time
 from fastpin import report, storage, verification
 from fastpin.cli.progress import Bar, progress_to
 from fastpin.cli.terminal import EXIT_FAILED, EXIT_OK, check_outputs, say, write_files, write_text
-from fastpin.kernels.threads import cores
+from fastpin.runtime.threads import cores
 from fastpin.version import __version__
 
 

@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
 from fastpin.kernels import planes, spheres
-from fastpin.kernels.threads import in_chunks
 from fastpin.model.checks import number, numbers, positive
+from fastpin.runtime.threads import in_chunks
 
 COMPONENTS = ("sxx", "syy", "szz", "sxy")
 """The components of a stress history, in the order of its last axis."""

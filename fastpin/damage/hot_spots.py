@@ -14,7 +14,6 @@ from fastpin.damage import criteria, lives
 from fastpin.damage.criteria import Planes
 from fastpin.elasticity.stress import is_beyond_bush
 from fastpin.errors import InputError
-from fastpin.kernels.threads import in_threads
 from fastpin.model.angles import near_bottom
 from fastpin.model.checks import choice, instance, instances, items, whole_number
 from fastpin.model.fatigue import FatigueConstants
@@ -23,6 +22,7 @@ from fastpin.model.points import Body, Points, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
+from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State

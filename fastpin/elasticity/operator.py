@@ -14,9 +14,9 @@ import numpy as np
 from fastpin.elasticity.bodies import BodyTerms
 from fastpin.elasticity.drive import Drive
 from fastpin.kernels import influence, toeplitz
-from fastpin.kernels.extensions import fft
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
+from fastpin.runtime.extensions import fft
 
 LARGEST_DENSE = 1_000
 """Equally spaced nodes, at most, for which all entries are stored.

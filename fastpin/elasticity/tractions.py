@@ -9,7 +9,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from fastpin.kernels import cauchy
-from fastpin.kernels.threads import in_chunks
+from fastpin.runtime.threads import in_chunks
 
 LEAF = 8
 """Linear pieces in a leaf of the tree of blocks."""

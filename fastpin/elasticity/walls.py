@@ -19,11 +19,11 @@ from fastpin.elasticity import bodies
 from fastpin.elasticity.tractions import CHUNK, Tractions
 from fastpin.kernels import fourier, harmonics, laurent
 from fastpin.kernels.harmonics import First
-from fastpin.kernels.threads import in_chunks
 from fastpin.model.bodies import Plate, Ring, Tube
 from fastpin.model.compliance import Compliance
 from fastpin.model.loads import REMOTE, P, Q
 from fastpin.model.problem import Problem
+from fastpin.runtime.threads import in_chunks
 
 SMALLEST = 1e-18
 """Coefficients of the series below this part of the largest are left out: they are below rounding at every point."""

@@ -1,4 +1,4 @@
-"""Compiled code and BLAS. Its functions take arrays and numbers, and return arrays or a code."""
+"""Compiled mathematics. Its functions take arrays and numbers, and return arrays or a code."""
 
 import lazy_loader
 

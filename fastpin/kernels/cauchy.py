@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 TERMS = 28
 """Terms of the expansion of a block."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 # Codes that `lemke` returns.
 SOLVED = 0

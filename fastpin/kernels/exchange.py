@@ -27,10 +27,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.kernels.status import SLIP_NEGATIVE as NEGATIVE
 from fastpin.kernels.status import SLIP_POSITIVE as POSITIVE
+from fastpin.runtime.jit import compiled, inner
 
 WIDTH = 32
 """Columns in a block."""

@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 TERMS = 6
 """Most terms of a fit at one end."""

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from fastpin.kernels import fourier
-from fastpin.kernels.jit import compiled
+from fastpin.runtime.jit import compiled
 
 TWO_PI = 2.0 * math.pi
 TWO_PI_LOW = 2.4492935982947064e-16

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from fastpin.kernels.jit import compiled
+from fastpin.runtime.jit import compiled
 
 
 @compiled

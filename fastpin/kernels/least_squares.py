@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 RANK = 1e-15
 """A column with less than this part of the largest column, beside the columns before it, counts as zero.

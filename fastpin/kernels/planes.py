@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 SWING_TIMES_PUSH, SWING_TIMES_MORE, SWING_AND_PUSH = 0, 1, 2
 """The forms of criteria."""

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 
 ROUNDING = 1e-13
 """Growth of a radius that is rounding, in parts of the radius."""

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fastpin.kernels.jit import compiled
+from fastpin.runtime.jit import compiled
 
 TURNED = np.array([1.0, -1.0, -1.0, 1.0])
 """Signs of the entries of a block B in D B D."""

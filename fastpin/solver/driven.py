@@ -14,9 +14,9 @@ import numpy as np
 from fastpin.elasticity.drive import DISPLACEMENTS, FORCES, SIGNS
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import LoadTerms
-from fastpin.kernels.extensions import optimize
 from fastpin.model.loads import UX, UY, M, P, Q
 from fastpin.model.problem import Problem
+from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.solver.rest import hole_gap

@@ -9,10 +9,10 @@ import numpy as np
 
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
-from fastpin.kernels.extensions import optimize
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
 from fastpin.model.loads import REMOTE, ROTATION, UX, UY, M, P, Q
+from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
     Configuration,

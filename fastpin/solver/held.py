@@ -19,8 +19,8 @@ from fastpin.elasticity.system import System
 from fastpin.kernels import exchange, toeplitz
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import WIDTH
-from fastpin.kernels.extensions import blas
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.runtime.extensions import blas
 from fastpin.solver.tableau import TableauMemory, expected_ties, has_turned
 from fastpin.solver.unknowns import DenseUnknowns, entries_by_distance, have_toeplitz_matrix
 

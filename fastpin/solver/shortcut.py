@@ -11,7 +11,7 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import Contact, Tableau
-from fastpin.kernels.products import add_product
+from fastpin.runtime.products import add_product
 
 WORTHWHILE = 4_000_000
 """Least number of multiplications a column that transforms must save. They take as long at 4,096 nodes (measured)."""

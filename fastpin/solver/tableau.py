@@ -10,9 +10,9 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels.arrays import Contact, Tableau
 from fastpin.kernels.exchange import CHUNK, WIDTH
-from fastpin.kernels.extensions import blas
-from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.runtime.extensions import blas
+from fastpin.runtime.products import add_product
 from fastpin.solver.shortcut import TractionRows
 from fastpin.solver.unknowns import DenseUnknowns, LatestUnknowns, StickingRun
 

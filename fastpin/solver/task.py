@@ -319,7 +319,7 @@ def reference_force(problem: Problem, values: np.ndarray) -> float:
 def one_blas_thread() -> AbstractContextManager[Any]:
     """A context with one thread for BLAS, so that results don't depend on the number of cores.
 
-    Large products have two threads all the same (kernels/products.py).
+    Large products have two threads all the same (runtime/products.py).
     """
     return _blas_libraries().limit(limits=1, user_api="blas")
 

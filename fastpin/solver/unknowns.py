@@ -12,9 +12,9 @@ import numpy as np
 
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
-from fastpin.kernels.extensions import lapack
-from fastpin.kernels.products import add_product
 from fastpin.kernels.status import OPEN, STICK
+from fastpin.runtime.extensions import lapack
+from fastpin.runtime.products import add_product
 
 SINGULAR = 1e-13
 """Smallest reciprocal condition number. A system below it is a mechanism."""

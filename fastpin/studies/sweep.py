@@ -20,7 +20,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError
-from fastpin.kernels.threads import cores
 from fastpin.model.checks import (
     as_toml,
     check_callable,
@@ -31,6 +30,7 @@ from fastpin.model.checks import (
     whole_number,
 )
 from fastpin.model.inputs import HDF5_SIGNATURE
+from fastpin.runtime.threads import cores
 from fastpin.storage import store
 from fastpin.storage.files import INDEX, forget_temporaries, replacing
 from fastpin.storage.packed import FOLDER

@@ -24,10 +24,10 @@ from typing import Any, TypeVar
 from threadpoolctl import threadpool_limits
 
 from fastpin.errors import FastpinError
-from fastpin.kernels.jit import limit_to_one_thread
-from fastpin.kernels.threads import in_one_thread
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
+from fastpin.runtime.jit import limit_to_one_thread
+from fastpin.runtime.threads import in_one_thread
 from fastpin.solver.errors import SolveError
 from fastpin.solver.result import Result, without_restart
 from fastpin.solver.solving import solve

@@ -24,8 +24,8 @@ import fastpin
 from fastpin import figures, solver
 from fastpin.casefile.reader import EXAMPLE, builtin_case
 from fastpin.cli.main import main
-from fastpin.kernels import jit, machine
 from fastpin.paper import catalog
+from fastpin.runtime import jit, machine
 from fastpin.solver import solving
 from fastpin.solver.errors import NoEquilibriumError
 from fastpin.version import __version__

@@ -11,7 +11,8 @@ from scipy.special import spence
 
 from fastpin.elasticity import tractions as module
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
-from fastpin.kernels import cauchy, threads
+from fastpin.kernels import cauchy
+from fastpin.runtime import threads
 
 KERNELS = ("cauchy", "moments", "shift_moments")
 INNER = ("_log_one_minus", "_dilogarithm", "_reduced", "_stretch", "_expansion", "_opposite")

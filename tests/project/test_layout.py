@@ -33,6 +33,7 @@ BREAKS = {
     "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),
     "a circle of files": ("no_circles", "states/zones.py", "from fastpin.states.state import State\n"),
     "a kernel that imports the package": ("kernels_alone", "kernels/toeplitz.py", "import fastpin.errors\n"),
+    "an import below the kernels": ("kernels_alone", "runtime/threads.py", "import fastpin.errors\n"),
     "a kernel that calls one of another file": (
         "kernels_alone",
         "kernels/toeplitz.py",

@@ -17,8 +17,8 @@ from distributed.scheduler import KilledWorker
 import fastpin
 from fastpin.errors import FastpinError, InputError, OutputError
 from fastpin.kernels.status import OPEN
-from fastpin.kernels.threads import works_alone
 from fastpin.model.angles import interval_from_bottom
+from fastpin.runtime.threads import works_alone
 from fastpin.storage import store
 from fastpin.storage.packed import INDEX
 from fastpin.studies import run_end, sweep, work, workers

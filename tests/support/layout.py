@@ -13,6 +13,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 RANKS = {
+    "runtime": 0,
     "kernels": 1,
     "model": 2,
     "elasticity": 3,
@@ -36,10 +37,13 @@ RANKS = {
 ROOT_FILES = ("errors", "version")
 """Files of rank 0, beside the folders."""
 
+KNOWN = {"runtime": ("runtime",), "kernels": ("kernels", "runtime")}
+"""The folders that know no others than these, not even the files of rank 0."""
+
 HOMES = {
-    "numba": ("kernels",),
-    "llvmlite": ("kernels",),
-    "ctypes": ("kernels",),
+    "numba": ("runtime",),
+    "llvmlite": ("runtime",),
+    "ctypes": ("runtime",),
     "matplotlib": ("figures", "paper", "benchmarks"),
     "h5py": ("storage",),
     "tomllib": ("casefile",),
@@ -243,10 +247,10 @@ def no_circles(tree: Tree) -> Iterator[str]:
 
 
 def kernels_alone(tree: Tree) -> Iterator[str]:
-    """Kernels import nothing of fastpin but kernels; compiled functions call compiled functions of their own file."""
+    """Kernels and what they run on know no other folders; compiled functions call those of their own file only."""
     for one in tree.imports:
-        target = tree.target(one)
-        if _folder(one.file) == "kernels" and target is not None and _folder(target) != "kernels":
+        folder, target = _folder(one.file), tree.target(one)
+        if target is not None and _folder(target) not in KNOWN.get(folder, (_folder(target),)):
             yield f"{one.file}:{one.line} imports {one.module}"
     compiled = {file: _compiled_functions(tree.trees[file]) for file in tree.trees if _folder(file) == "kernels"}
     everywhere = {name for names in compiled.values() for name in names}

@@ -1,7 +1,7 @@
 """Matrix products in two threads. Their bits are the same for any number of cores.
 
 A product is always cut into the same two halves. If every core has other work
-(:func:`fastpin.kernels.threads.in_one_thread`), the halves are computed one after the other. BLAS runs on one thread
+(:func:`fastpin.runtime.threads.in_one_thread`), the halves are computed one after the other. BLAS runs on one thread
 for each half. BLAS's own threads wait in loops. The loops cost more than they give as soon as another process wants a
 core. The bits of BLAS's results may also depend on its number of threads.
 """
@@ -14,8 +14,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import numpy as np
 
-from fastpin.kernels.extensions import blas_address
-from fastpin.kernels.threads import works_alone
+from fastpin.runtime.extensions import blas_address
+from fastpin.runtime.threads import works_alone
 
 WORTHWHILE = 4_000_000
 """Least number of multiplications of a product in two threads."""

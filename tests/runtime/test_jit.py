@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fastpin.kernels import compiler, exchange, influence, jit, machine
+from fastpin.kernels import exchange, influence
+from fastpin.runtime import compiler, jit, machine
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
-from fastpin.kernels.jit import compiled, inner
+from fastpin.runtime.jit import compiled, inner
 @inner
 def product(x, y):
     return x * y
@@ -40,7 +41,7 @@ keeps = pytest.mark.skipif(not machine.CAN_LOAD, reason="Numba keeps the code")
 @pytest.fixture
 def installed(tmp_path: Path) -> Path:
     """A directory with copies of the files that compile, and a small kernel."""
-    for part in ("kernels", ""):
+    for part in ("kernels", "runtime", ""):
         folder = tmp_path / "site" / "fastpin" / part
         folder.mkdir(parents=True, exist_ok=True)
         for file in (PACKAGE / part).glob("*.py*"):
@@ -99,10 +100,10 @@ print(small.doubled(1.5))
 
 
 @keeps
-@pytest.mark.parametrize("file", ["small.py", *jit.SHARED])
+@pytest.mark.parametrize("file", ["kernels/small.py", *jit.SHARED])
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
-    path = installed / "fastpin" / "kernels" / file
+    path = installed / "fastpin" / file
     variables = {**os.environ, "PYTHONPATH": str(installed), "HOME": str(installed), "NUMBA_CACHE_DIR": ""}
     words = [sys.executable, "-c", REPLACED, str(path), "# upgraded\n"]
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=variables, cwd=installed)
@@ -209,7 +210,7 @@ KEPT = """
 import sys
 from fastpin.kernels import influence
 if len(sys.argv) > 1:
-    from fastpin.kernels import compiler
+    from fastpin.runtime import compiler
     compiler._object_code = lambda result: 1 / 0  # a Numba whose parts have other names
 print(influence.clausen(1.0), "numba" in sys.modules)
 """
@@ -243,7 +244,8 @@ def test_only_kernels_call_inner_kernels() -> None:
 AFTER = """
 import sys
 import numpy as np
-from fastpin.kernels import extensions, influence, jit
+from fastpin.kernels import influence
+from fastpin.runtime import extensions, jit
 blas = extensions.library("scipy.linalg._fblas")
 clausen = influence.clausen
 value = clausen(1.0)

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from fastpin.kernels import threads
+from fastpin.runtime import threads
 
 
 def test_items_come_in_order(monkeypatch):

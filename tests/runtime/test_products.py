@@ -10,9 +10,9 @@ import sys
 import numpy as np
 import pytest
 
-from fastpin.kernels import products
-from fastpin.kernels.products import add_product
-from fastpin.kernels.threads import in_one_thread
+from fastpin.runtime import products
+from fastpin.runtime.products import add_product
+from fastpin.runtime.threads import in_one_thread
 
 
 def arrays(m, k, n):

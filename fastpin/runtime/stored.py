@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.kernels import machine
-from fastpin.kernels.jit import SETTINGS, Kernel
+from fastpin.runtime import machine
+from fastpin.runtime.jit import SETTINGS, Kernel
 
 SUFFIX = ".machine"
 
@@ -60,7 +60,7 @@ class Place:
             key, code = marshal.loads(body)
             if key == self.key:
                 if not code:
-                    kept: Callable[..., Any] = importlib.import_module("fastpin.kernels.compiler").kept(self.kernel)
+                    kept: Callable[..., Any] = importlib.import_module("fastpin.runtime.compiler").kept(self.kernel)
                     return kept
                 return machine.load(machine.Code(*code), self.name, self.module)
         return None

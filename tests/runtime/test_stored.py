@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fastpin.kernels import jit, machine, stored
+from fastpin.runtime import jit, machine, stored
 
 pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no code is stored")
 

@@ -13,8 +13,8 @@ from typing import Any
 import numba
 from numba.core import intrinsics, types
 
-from fastpin.kernels.jit import CACHED, SETTINGS, Kernel
-from fastpin.kernels.machine import CAN_LOAD, Code, helpers, load
+from fastpin.runtime.jit import CACHED, SETTINGS, Kernel
+from fastpin.runtime.machine import CAN_LOAD, Code, helpers, load
 
 
 @functools.cache

@@ -1,7 +1,7 @@
 """The settings of compiled code, and the functions that are compiled with them.
 
 A kernel is compiled when it is first called, once for each combination of types of its arguments. The machine code is
-kept on disk (:mod:`fastpin.kernels.stored`). Later processes load it without Numba, whose import takes several times
+kept on disk (:mod:`fastpin.runtime.stored`). Later processes load it without Numba, whose import takes several times
 as long as that of NumPy. Set ``FASTPIN_CACHE=0`` to compile afresh. Numba's own ``NUMBA_DISABLE_JIT=1`` runs everything
 as plain Python.
 """
@@ -15,6 +15,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
-SHARED = ("arrays.py", "status.py")
+SHARED = ("kernels/arrays.py", "kernels/status.py")
 """Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
 
 logger = logging.getLogger("fastpin.compiler")
@@ -58,7 +59,7 @@ def stamp(file: str) -> tuple[int, int] | None:
     return found.st_mtime_ns, found.st_size
 
 
-_shared = tuple((file, stamp(file)) for file in (__file__.removesuffix("jit.py") + name for name in SHARED))
+_shared = tuple((file, stamp(file)) for file in (str(Path(__file__).parents[1] / name) for name in SHARED))
 
 
 class Kernel:
@@ -109,7 +110,7 @@ class Kernel:
             if types not in self._entries:
                 place: Any = None
                 if CACHED:
-                    place = importlib.import_module("fastpin.kernels.stored").place_of(self, signature(types))
+                    place = importlib.import_module("fastpin.runtime.stored").place_of(self, signature(types))
                 entry: Any = place and place.load()
                 if entry is None:
                     _announce()
@@ -185,4 +186,4 @@ def limit_to_one_thread() -> None:
 
 def _compiler() -> Any:
     """The module that imports Numba. Nothing that is loaded from disk needs it."""
-    return importlib.import_module("fastpin.kernels.compiler")
+    return importlib.import_module("fastpin.runtime.compiler")
