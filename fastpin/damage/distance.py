@@ -20,8 +20,8 @@ from fastpin.errors import InputError
 from fastpin.model.checks import choice, instance, numbers, positive
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.points import Body, Points, near_rim, owner_of
+from fastpin.reading.stress import check_body
 from fastpin.states.state import State
-from fastpin.states.stress import check_body
 
 Method = Literal["point", "line", "area"]
 

@@ -22,11 +22,11 @@ from fastpin.model.points import Body, Points, material_of, owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import units_per_thickness
+from fastpin.reading.stress import check_body
 from fastpin.runtime.threads import in_threads
 from fastpin.states.choice import missing_corners, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import State
-from fastpin.states.stress import check_body
 
 Criterion = Literal["smith-watson-topper", "fatemi-socie", "findley", "crossland", "dang-van"]
 

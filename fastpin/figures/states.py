@@ -19,6 +19,7 @@ from fastpin.figures.words import caption, load_text, loads_by_change, point_tex
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import AT_TOP, turns_from_bottom
 from fastpin.model.checks import as_toml
+from fastpin.reading.zones import ALL_ROUND
 from fastpin.solver.result import Result
 from fastpin.states.choice import StateChoice, chosen_places, even_choice
 from fastpin.states.curves import traction_patches
@@ -26,7 +27,6 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.extremes import KeptStates, Side, find_extremes, marked_places
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.zones import ALL_ROUND
 from fastpin.storage.origin import marked_extremes
 from fastpin.storage.store import load, load_points
 

@@ -4,7 +4,7 @@ A fit of 20 values with 8 unknowns takes some 3 microseconds. With NumPy it take
 
 The values at the nodes 0, 1, ... of a window are fitted by a polynomial and by the solutions at some ends. The
 polynomial of k has the variable k/(m - 1) for m nodes. The solutions stand in tables, one for each half line
-(:func:`fastpin.states.half_line.table`). The rows of a table, with TERMS entries each, are
+(:func:`fastpin.reading.half_line.table`). The rows of a table, with TERMS entries each, are
 
     0 to 2 MOST_NODES - 2   the fitted quantity at the nodes from -MOST_NODES + 1 to MOST_NODES - 1, a solution a column
     MATCHING and on         the far fields: times the coefficients of the solutions, the coefficients of the powers

@@ -23,6 +23,7 @@ from fastpin.pages import drawings
 from fastpin.pages.album import Album
 from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
 from fastpin.pages.source import Source
+from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns, edge_body
 from fastpin.report.convergence import heading, reported_series, series_columns
 from fastpin.report.cycle import cycle_line, hot_spot_line
@@ -35,7 +36,6 @@ from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import QUANTITIES, load_point, size
 from fastpin.states.state import State
 from fastpin.states.yield_doubts import yield_doubts
-from fastpin.states.zones import is_all_round
 from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical, run_id
 

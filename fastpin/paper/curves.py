@@ -9,9 +9,9 @@ from typing import TypeVar
 import numpy as np
 
 from fastpin.model.angles import interval_near_bottom
+from fastpin.reading.zones import ALL_ROUND, Interval, is_all_round
 from fastpin.report.curves import Curve
 from fastpin.states.state import State
-from fastpin.states.zones import ALL_ROUND, Interval, is_all_round
 
 Report = Callable[[float], None]
 """A callable that receives the computed fraction of a figure, 0 to 1."""

@@ -24,11 +24,11 @@ from fastpin.paper import figure10
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.legends import head
 from fastpin.paper.tractions import NAMES, PAIRS
+from fastpin.reading.zones import runs
 from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from fastpin.states.zones import runs
 from fastpin.verification import interference
 
 TITLE = "Regimes of contact under remote stress, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75 and -0.75"

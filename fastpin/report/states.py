@@ -17,6 +17,7 @@ from fastpin.model.checks import instance, instances
 from fastpin.model.points import Body, elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.model.units import Unit, units
+from fastpin.reading.zones import is_all_round
 from fastpin.report.case import ROUNDING, edge_body, load_columns
 from fastpin.report.table import (
     MAX_ROWS,
@@ -35,7 +36,6 @@ from fastpin.states.cycles import Cycle, consecutive_cycles, periodic_from
 from fastpin.states.quantities import QUANTITIES, load_point, sizes
 from fastpin.states.regimes import Regime
 from fastpin.states.state import State
-from fastpin.states.zones import is_all_round
 
 LOAD_POINT = "load point"
 """Heading of the first column."""

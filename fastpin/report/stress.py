@@ -14,10 +14,10 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.points import BODIES, ROUNDING, Body, Points, elastic_bodies, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
+from fastpin.reading.stress import Stress
 from fastpin.report.curves import Curve
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.stress import Stress
 
 AROUND = 720
 """Equally spaced angles of a curve round the hole, beside the places of its states where the stress turns sharply."""

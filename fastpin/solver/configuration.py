@@ -10,8 +10,8 @@ import numpy as np
 from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, SLIP_POSITIVE, STICK
 from fastpin.model.loads import P, Q
+from fastpin.reading.marks import Marks
 from fastpin.solver.unknowns import DenseUnknowns
-from fastpin.states.marks import Marks
 
 MAX_RESIDUAL = 1e-9
 """Largest relative violation of the contact conditions in a returned state."""

@@ -12,6 +12,7 @@ from fastpin.elasticity.system import System
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.angles import angle_between
 from fastpin.model.loads import REMOTE, ROTATION, UX, UY, M, P, Q
+from fastpin.reading.zones import runs
 from fastpin.runtime.extensions import optimize
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
@@ -33,7 +34,6 @@ from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import hole_gap, put_at_rest, release
 from fastpin.solver.settling import FiniteStep
 from fastpin.solver.window import Window
-from fastpin.states.zones import runs
 
 FIRST_NODES = (2, 4)
 """Least and largest number of closed nodes that the first contact aims at, in each of its patches."""

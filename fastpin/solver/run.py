@@ -17,6 +17,7 @@ from fastpin.model.loads import LOADS, M, P, Q, complete_load, named_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.read_only import ReadOnlyDict
 from fastpin.model.units import named_loads
+from fastpin.reading.zones import runs
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import (
     MAX_RESIDUAL,
@@ -40,7 +41,6 @@ from fastpin.solver.step import Piece, Position, Stepper, force_of, is_pushed, p
 from fastpin.solver.window import WindowStepper
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
-from fastpin.states.zones import runs
 
 log = logging.getLogger(__name__)
 

@@ -23,6 +23,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, UX, UY, M, P, Q, complete_load
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.reading.marks import Marks
+from fastpin.reading.zones import runs
 from fastpin.solver.assembly import unloaded_configuration
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.driven import rest_on_hole
@@ -33,8 +35,6 @@ from fastpin.solver.rest import climb_angle, hole_gap, release
 from fastpin.solver.result import Restart
 from fastpin.solver.run import LEAST_CLOSED, Progress, Run
 from fastpin.solver.settling import FiniteStep
-from fastpin.states.marks import Marks
-from fastpin.states.zones import runs
 
 log = logging.getLogger(__name__)
 

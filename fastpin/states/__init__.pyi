@@ -3,14 +3,10 @@ from . import extremes as extremes
 from . import hoop as hoop
 from . import joint as joint
 from . import refined as refined
-from . import stress as stress
 from . import traction_bars as traction_bars
-from .bush import BushFit as BushFit
 from .load_cycle import LoadCycle as LoadCycle
 from .load_cycle import Loop as Loop
 from .load_cycle import NodeBehaviour as NodeBehaviour
 from .quantities import QUANTITIES as QUANTITIES
 from .regimes import Regime as Regime
 from .state import State as State
-from .stress import HoopPeak as HoopPeak
-from .stress import Stress as Stress

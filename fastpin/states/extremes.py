@@ -18,7 +18,7 @@ from fastpin.model.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
-from fastpin.states.marks import Marks
+from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point
 from fastpin.states.reading_bounds import NUMBERS, Block, Bounds
 from fastpin.states.state import State

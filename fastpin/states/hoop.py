@@ -12,9 +12,9 @@ from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.bodies import Ring
 from fastpin.model.points import Body, near_rim
 from fastpin.model.problem import Problem
+from fastpin.reading.stress import HoopPeak, open_hole_hoop
 from fastpin.states.error_bars import UNRESOLVED
 from fastpin.states.state import State
-from fastpin.states.stress import HoopPeak, open_hole_hoop
 
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""

@@ -14,7 +14,7 @@ from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOADS
 from fastpin.model.points import Points
 from fastpin.model.problem import LEAST_HUB, MOST_GAUGE, Problem
-from fastpin.states.bush import BushFit
+from fastpin.reading.bush import BushFit
 from fastpin.states.state import State
 
 AROUND = 1440

@@ -12,13 +12,13 @@ import numpy as np
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
 from fastpin.model.bodies import Bushing
 from fastpin.model.points import Body, elastic_bodies
+from fastpin.reading.zones import Interval, is_all_round
 from fastpin.states.regimes import REGIMES
 from fastpin.states.state import State
-from fastpin.states.zones import Interval, is_all_round
 
 if TYPE_CHECKING:  # this module imports compiled code
-    from fastpin.states.bush import BushFit
-    from fastpin.states.stress import HoopPeak
+    from fastpin.reading.bush import BushFit
+    from fastpin.reading.stress import HoopPeak
 
 
 class Quantity(NamedTuple):
@@ -154,10 +154,10 @@ QUANTITIES: dict[str, Quantity] = {
 
 "peak_hoop" is the largest hoop stress round the hole, with a bush in the bore of the bush. "kt_gross", "kt_bearing" and
 "kt_net" are its ratios to the remote stress, the bearing stress and the net-section stress, see
-:class:`fastpin.states.HoopPeak`. "peak_hoop_seat" is the largest hoop stress of the plate round a bush, at the seat of
+:class:`fastpin.reading.HoopPeak`. "peak_hoop_seat" is the largest hoop stress of the plate round a bush, at the seat of
 the bush, NaN without a bush. All are NaN for a rigid body.
 "joint_ux" and "joint_uy" are :meth:`State.joint_displacement`. "bush_open_margin" and "bush_slip_margin" are those of
-:class:`fastpin.states.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
+:class:`fastpin.reading.BushFit`, NaN without a bush, and without its friction. "regime" is a number of
 :class:`fastpin.states.Regime`, :attr:`State.regime`.
 
 A state also has the ends of its contact and stick intervals: "contact_1_start", "contact_1_stop", "contact_2_start",

@@ -19,9 +19,9 @@ from fastpin.model.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
+from fastpin.reading.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
 from fastpin.states.hoop import AROUND
 from fastpin.states.joint import AROUND as AROUND_BUSH
-from fastpin.states.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
 from fastpin.states.yielding import PREFIX, Places
 
 NUMBERS = ("dx", "dy", "rotation", "dissipation", "work")
@@ -79,7 +79,7 @@ class Block(NamedTuple):
     pressure, shear, status : ndarray, shape (k, n)
     loads : ndarray, shape (k, loads)
     marks : tuple of ndarray, shape (k, n)
-        The arrays of :class:`fastpin.states.marks.Marks`; empty if the states have none.
+        The arrays of :class:`fastpin.reading.marks.Marks`; empty if the states have none.
     numbers : dict of str to ndarray, shape (k,)
         Of :data:`NUMBERS`.
     """
@@ -169,7 +169,7 @@ def pressure_bounds(grid: Grid, pressure: np.ndarray, coupled: bool) -> Pair:
     grid : Grid
     pressure : ndarray, shape (k, n)
     coupled : bool
-        Whether a peak that is not smooth may be a corner, see :func:`fastpin.states.peaks.pressure_peak`.
+        Whether a peak that is not smooth may be a corner, see :func:`fastpin.reading.peaks.pressure_peak`.
     """
     before, after = _spacings(grid)
     top = pressure.max(axis=1, initial=0.0)
@@ -188,7 +188,7 @@ def shear_bounds(shear: np.ndarray, most: np.ndarray) -> Pair:
     """Bounds of the shear traction of largest magnitude, with its sign.
 
     A peak lies above its node by no more than the largest drop beside the node, see
-    :func:`fastpin.states.peaks.shear_peak`.
+    :func:`fastpin.reading.peaks.shear_peak`.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def width_bounds(grid: Grid, inside: np.ndarray) -> Pair:
 
 
 def _sticking(problem: Problem, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray) -> np.ndarray:
-    """Nodes that truly stick, see :func:`fastpin.states.old_borders.truly_sticking`, bool, shape (k, n)."""
+    """Nodes that truly stick, see :func:`fastpin.reading.old_borders.truly_sticking`, bool, shape (k, n)."""
     reserve = problem.friction * pressure - np.abs(shear)
     return np.asarray((status == STICK) & (reserve > 1e-9 * reserve.max(axis=1, initial=0.0)[:, None]))
 

@@ -1,7 +1,7 @@
 """Tractions refined at contact edges and stick-slip borders, where they go like a root of the distance.
 
 Straight lines between the nodes give the hoop stress at these places to O(sqrt(h)) only. So the tractions near them are
-taken from power laws in the distance x, which are fitted to the nodes (:func:`fastpin.states.fits.law`):
+taken from power laws in the distance x, which are fitted to the nodes (:func:`fastpin.reading.fits.law`):
 
 * N beside a contact edge, with the exponents (T21);
 * mu N - s T on the stick side of a border, with the exponents (T26), where T = s mu N in the slip zone;
@@ -22,13 +22,13 @@ import numpy as np
 
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
-from fastpin.states import fits
-from fastpin.states.exponents import contact_exponents, signs_beside, stick_exponents
-from fastpin.states.fits import Law
-from fastpin.states.half_line import half_line
-from fastpin.states.old_borders import OldBorder
+from fastpin.reading import fits
+from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
+from fastpin.reading.fits import Law
+from fastpin.reading.half_line import half_line
+from fastpin.reading.old_borders import OldBorder
+from fastpin.reading.zones import is_all_round, runs, unrolled
 from fastpin.states.state import State
-from fastpin.states.zones import is_all_round, runs, unrolled
 
 REACH = 20.0
 """Nodes on the side of a cusp within which it is refined."""

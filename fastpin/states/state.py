@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
-from fastpin import states
+from fastpin import reading, states
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.checks import true_or_false
@@ -19,22 +19,22 @@ from fastpin.model.points import Body, Points
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
 from fastpin.model.units import named_loads, units
-from fastpin.states import peaks, zones
-from fastpin.states.cusps import ShearNodes
-from fastpin.states.exponents import contact_exponents, signs_beside, stick_exponents
-from fastpin.states.half_line import HalfLine, half_line
-from fastpin.states.marks import Marks
-from fastpin.states.old_borders import truly_sticking
+from fastpin.reading import peaks, zones
+from fastpin.reading.cusps import ShearNodes
+from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
+from fastpin.reading.half_line import HalfLine, half_line
+from fastpin.reading.marks import Marks
+from fastpin.reading.old_borders import truly_sticking
+from fastpin.reading.zones import Interval, runs
 from fastpin.states.regimes import Regime, regime_of
-from fastpin.states.zones import Interval, runs
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     # these modules import compiled code, and are loaded when a stress is asked for
     from fastpin.elasticity.tractions import RefinedTractions, Tractions
-    from fastpin.states.bush import BushFit
-    from fastpin.states.stress import HoopPeak, Stress
+    from fastpin.reading.bush import BushFit
+    from fastpin.reading.stress import HoopPeak, Stress
 
 
 class SlipFields(TypedDict, total=False):
@@ -96,7 +96,7 @@ class State(ReadOnly):
     grid : Grid
         The nodes.
     marks : Marks or None
-        Old borders, see :mod:`fastpin.states.marks`. None in a result from a file of an earlier version.
+        Old borders, see :mod:`fastpin.reading.marks`. None in a result from a file of an earlier version.
     error_bars : ErrorBars or None
         Largest likely error of each quantity and of each end of a zone, by name, and of the tractions at each node, see
         :class:`fastpin.states.state.ErrorBars`. None unless ``solve(..., error_bars=True)``.
@@ -170,7 +170,7 @@ class State(ReadOnly):
     def contact(self) -> list[Interval]:
         """Contact intervals (start, stop), rad, read between the nodes.
 
-        The pressure is extrapolated to zero, see :mod:`fastpin.states.fits`. A contact round the whole circle is one
+        The pressure is extrapolated to zero, see :mod:`fastpin.reading.fits`. A contact round the whole circle is one
         interval of length 2 pi.
         """
         return zones.in_order(self.contact_in_runs)
@@ -184,8 +184,8 @@ class State(ReadOnly):
     def stick(self) -> list[Interval]:
         """Stick intervals (start, stop), rad, read between the nodes.
 
-        mu N - |T| is extrapolated to zero, see :mod:`fastpin.states.fits`. Sticking nodes that reach |T| = mu N exactly
-        at this load count as slipping.
+        mu N - |T| is extrapolated to zero, see :mod:`fastpin.reading.fits`. Sticking nodes that reach |T| = mu N
+        exactly at this load count as slipping.
         """
         return zones.in_order(self._stick)
 
@@ -296,7 +296,7 @@ class State(ReadOnly):
 
     @property
     def old_borders(self) -> np.ndarray | None:
-        """Marks of the nodes beside old borders, int8, shape (n,), see :mod:`fastpin.states.old_borders`; or None."""
+        """Marks of the nodes beside old borders, int8, shape (n,), see :mod:`fastpin.reading.old_borders`; or None."""
         return None if self.marks is None else self.marks.arrays(self.grid.size)[0]
 
     @property
@@ -329,7 +329,7 @@ class State(ReadOnly):
 
     @cached_property
     def _tractions(self) -> Tractions:
-        return states.stress.tractions_of(self.grid, self.status, self.pressure, self.shear)
+        return reading.stress.tractions_of(self.grid, self.status, self.pressure, self.shear)
 
     @cached_property
     def refined(self) -> RefinedTractions:
@@ -359,7 +359,7 @@ class State(ReadOnly):
             infinite, if the body is rigid, or if an argument is of another class.
         """
         tractions = self._tractions if true_or_false("straight", straight) else self.refined.tractions
-        return states.stress.stress_at(self.problem, tractions, self.load, points, body)
+        return reading.stress.stress_at(self.problem, tractions, self.load, points, body)
 
     def hoop_stress(self, body: Body = "plate", theta: ArrayLike | None = None, straight: bool = False) -> np.ndarray:
         """The hoop stress on the edge of the hole, of the pin, or of the plate at the seat of a bush, Pa.
@@ -389,7 +389,7 @@ class State(ReadOnly):
         InputError
             If the body is rigid, or there is no bush.
         """
-        states.stress.check_body(self.problem, body)
+        reading.stress.check_body(self.problem, body)
         is_kept = "refined" in self.__dict__
         peak: HoopPeak = getattr(self, f"_{body}_peak")
         if not is_kept:  # the refined tractions of many states would fill the memory

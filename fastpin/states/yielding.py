@@ -21,7 +21,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
-from fastpin.states.stress import Stress
+from fastpin.reading.stress import Stress
 
 if TYPE_CHECKING:  # this module imports compiled code
     from fastpin.states.state import State

@@ -41,9 +41,9 @@ from fastpin.model.materials import MaterialPair
 from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.model.problem import Problem
 from fastpin.model.units import units_per_thickness
+from fastpin.reading.marks import Marks
+from fastpin.reading.old_borders import BITS
 from fastpin.states.cycles import Cycle
-from fastpin.states.marks import Marks
-from fastpin.states.old_borders import BITS
 from fastpin.states.state import State
 from fastpin.storage.bodies import read_bodies, read_material, write_bodies, write_material
 from fastpin.storage.damage import (

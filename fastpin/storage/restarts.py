@@ -9,10 +9,10 @@ import numpy as np
 
 from fastpin.model.checks import number, whole_number
 from fastpin.model.loads import LOADS
+from fastpin.reading.marks import Marks
 from fastpin.solver.configuration import Configuration
 from fastpin.solver.repeats import CycleEnd, KnownConfiguration, Repeats
 from fastpin.solver.result import Restart
-from fastpin.states.marks import Marks
 from fastpin.storage.damage import as_python, check_between, check_extremes, check_finite, dataset_of, numbers_of
 from fastpin.storage.layout import BORDER_FIELDS, SMALL_NUMBERS, STATUS_LIMITS, all_loads, check_old_borders
 

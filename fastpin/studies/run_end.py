@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fastpin.model.angles import interval_from_bottom
+from fastpin.reading.zones import Interval
 from fastpin.states.quantities import QUANTITIES, bar_in_degrees, in_degrees
-from fastpin.states.zones import Interval
 from fastpin.studies.outcomes import OutcomeValue, bar_of_taken
 
 if TYPE_CHECKING:  # the solver is compiled code, and a plan is read without it

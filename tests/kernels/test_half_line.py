@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import half_line
-from fastpin.states.half_line import End, Tries, Try
-from fastpin.states.half_line import half_line as line_of
+from fastpin.reading.half_line import End, Tries, Try
+from fastpin.reading.half_line import half_line as line_of
 from tests.support.half_line import NaiveFit, columns, powers, shift
 
 KERNELS = ("exponential", "solve", "match", "evaluate", "end_places", "value_errors")

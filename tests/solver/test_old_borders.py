@@ -13,10 +13,10 @@ import pytest
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.reading.marks import Marks
+from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, old_borders, present_borders
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
-from fastpin.states.marks import Marks
-from fastpin.states.old_borders import BITS, OldBorder, is_ambiguous, old_borders, present_borders
 from fastpin.storage.store import load, save
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))

@@ -11,8 +11,8 @@ from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.reading.bush import BushFit
 from fastpin.solver.solving import solve
-from fastpin.states.bush import BushFit
 from fastpin.states.quantities import QUANTITIES
 from fastpin.states.state import State
 

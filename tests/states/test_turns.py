@@ -19,10 +19,10 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import Problem
+from fastpin.reading import zones
 from fastpin.report.states import state_table
 from fastpin.report.summary import document
 from fastpin.solver.solving import solve
-from fastpin.states import zones
 from fastpin.states.quantities import in_degrees, values
 from fastpin.states.state import State
 from fastpin.verification.comparisons import residuals_away

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from fastpin.kernels.half_line import AT_END, LEAST_PLACE, MOST_NODES, MOST_PLACE, TERMS
-from fastpin.states.half_line import End, HalfLine, shear_columns
+from fastpin.reading.half_line import End, HalfLine, shear_columns
 
 FACTORIALS = np.array([math.factorial(k) for k in range(TERMS)])
 

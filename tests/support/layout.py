@@ -12,33 +12,28 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 
-RANKS = {
-    "runtime": 0,
-    "kernels": 1,
-    "model": 2,
-    "elasticity": 3,
-    "casefile": 3,
-    "states": 4,
-    "solver": 5,
-    "damage": 5,
-    "verification": 6,
-    "storage": 6,
-    "studies": 7,
-    "report": 8,
-    "figures": 9,
-    "paper": 10,
-    "pages": 10,
-    "live": 10,
-    "benchmarks": 11,
-    "cli": 12,
-}
+LEVELS = (
+    ("runtime",),
+    ("kernels",),
+    ("model",),
+    ("elasticity", "casefile"),
+    ("reading",),
+    ("states",),
+    ("solver", "damage"),
+    ("verification", "storage"),
+    ("studies",),
+    ("report",),
+    ("figures",),
+    ("paper", "pages", "live"),
+    ("benchmarks",),
+    ("cli",),
+)
+
+RANKS = {folder: rank for rank, level in enumerate(LEVELS) for folder in level}
 """Every folder and its rank. A file imports from its own folder and from lower ranks."""
 
-ROOT_FILES = ("errors", "version")
+ROOT_FILES = ("errors", "moved", "version")
 """Files of rank 0, beside the folders."""
-
-KNOWN = {"runtime": ("runtime",), "kernels": ("kernels", "runtime")}
-"""The folders that know no others than these, not even the files of rank 0."""
 
 HOMES = {
     "numba": ("runtime",),
@@ -247,10 +242,10 @@ def no_circles(tree: Tree) -> Iterator[str]:
 
 
 def kernels_alone(tree: Tree) -> Iterator[str]:
-    """Kernels and what they run on know no other folders; compiled functions call those of their own file only."""
+    """Kernels import kernels and their runtime only; compiled functions call compiled functions of their own file."""
     for one in tree.imports:
-        folder, target = _folder(one.file), tree.target(one)
-        if target is not None and _folder(target) not in KNOWN.get(folder, (_folder(target),)):
+        target = tree.target(one)
+        if _folder(one.file) == "kernels" and target is not None and _folder(target) not in ("kernels", "runtime"):
             yield f"{one.file}:{one.line} imports {one.module}"
     compiled = {file: _compiled_functions(tree.trees[file]) for file in tree.trees if _folder(file) == "kernels"}
     everywhere = {name for names in compiled.values() for name in names}

@@ -13,8 +13,8 @@ from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, named_load
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.reading.marks import Marks
 from fastpin.solver.result import Result
-from fastpin.states.marks import Marks
 from fastpin.states.state import State
 
 PAIR = MaterialPair(MATERIALS["Ti-6Al-4V"], MATERIALS["aluminium"])

@@ -14,10 +14,10 @@ import pytest
 from fastpin.cli.main import main
 from fastpin.elasticity import stress as formulas
 from fastpin.kernels import cauchy, influence
+from fastpin.reading import stress
 from fastpin.report.checks import table
 from fastpin.solver import solving
 from fastpin.solver.errors import ConvergenceError
-from fastpin.states import stress
 from fastpin.verification import checks as installation
 from fastpin.verification import closed_forms, finite_elements, rows
 from fastpin.verification.checks import TOLERANCES, TOPICS

@@ -10,8 +10,8 @@ import pytest
 
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.reading import fits
 from fastpin.solver.solving import solve
-from fastpin.states import fits
 from fastpin.verification import closed_forms
 
 BOTTOM = -0.5 * math.pi

@@ -15,9 +15,9 @@ import numpy as np
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.states.ends import MOST_VALUES, end_place
-from fastpin.states.half_line import half_line
-from fastpin.states.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
+from fastpin.reading.ends import MOST_VALUES, end_place
+from fastpin.reading.half_line import half_line
+from fastpin.reading.old_borders import BITS, OldBorder, is_ambiguous, present_borders, truly_sticking
 
 DEEPEST = 64
 """Largest number of corners whose unread places follow from each other.
@@ -62,7 +62,7 @@ class Marks:
     Parameters
     ----------
     bits : dict of int to int
-        Mark of each marked node, see :data:`fastpin.states.old_borders.BITS`.
+        Mark of each marked node, see :data:`fastpin.reading.old_borders.BITS`.
     places : dict of int to Place or float
         Places of the borders of marked nodes, where they are known.
     """

@@ -8,9 +8,9 @@ import pytest
 from fastpin.model.grid import Grid
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.reading import peaks
+from fastpin.reading.cusps import ShearNodes
 from fastpin.solver.solving import solve
-from fastpin.states import peaks
-from fastpin.states.cusps import ShearNodes
 
 GRID = Grid.arc(-1.0, 1.0, 81)
 X = np.arange(-40.0, 41.0)

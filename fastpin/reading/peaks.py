@@ -10,9 +10,9 @@ import numpy as np
 
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.grid import Grid
-from fastpin.states import fits
-from fastpin.states.cusps import ShearNodes
-from fastpin.states.zones import Interval, is_all_round, runs, unrolled
+from fastpin.reading import fits
+from fastpin.reading.cusps import ShearNodes
+from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
 
 NEAR = 12
 """Reach of the cusp at a stick-slip border of unlike bodies, in node distances.

@@ -9,8 +9,8 @@ from fastpin import Grid, InputError, Material, MaterialPair, Points, Problem, s
 from fastpin.elasticity.stress import pin_stress, plate_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN
+from fastpin.reading.stress import tractions_of
 from fastpin.states.quantities import QUANTITIES
-from fastpin.states.stress import tractions_of
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 UNLIKE = MaterialPair(Material(2.1, 0.3), Material(0.7, 0.2), "stress")

@@ -20,7 +20,7 @@ from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material
 from fastpin.model.points import ROUNDING, Body, Points, material_of, near_rim
 from fastpin.model.problem import Problem
-from fastpin.states.zones import runs, unrolled
+from fastpin.reading.zones import runs, unrolled
 
 NEGLIGIBLE = 1e-9
 """A nominal stress below this part of the peak is rounding: there is no concentration."""

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin import kernels
-from fastpin.states.ends import end_fit
-from fastpin.states.half_line import HalfLine
-from fastpin.states.old_borders import OldBorder
+from fastpin.reading.ends import end_fit
+from fastpin.reading.half_line import HalfLine
+from fastpin.reading.old_borders import OldBorder
 
 SPARE = 4
 """Least number of nodes of a window beyond the number of unknowns."""

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fastpin.states.half_line import End, Fit, HalfLine, Tries, Try
-from fastpin.states.old_borders import OldBorder
+from fastpin.reading.half_line import End, Fit, HalfLine, Tries, Try
+from fastpin.reading.old_borders import OldBorder
 
 WINDOWS = ((8, 4), (6, 4), (5, 3), (6, 3), (10, 5), (14, 5), (20, 5))
 """Windows to try: the number of nodes from the end, and the number of terms."""

@@ -12,8 +12,8 @@ import pytest
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
+from fastpin.reading import peaks, zones
 from fastpin.solver.solving import solve
-from fastpin.states import peaks, zones
 
 SAMPLED = 0.2
 """Largest error of an edge, in node distances, that is read from samples of a root.

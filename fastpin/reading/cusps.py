@@ -1,7 +1,7 @@
 """Cusps of the shear traction at present and old borders, read with the solutions of the half-line problem.
 
 The outermost sticking node of each border is known: from the statuses, or from the marks of old borders. So a cusp is
-read by linear fits (:mod:`fastpin.states.half_line`), also where borders and contact edges lie a few nodes apart.
+read by linear fits (:mod:`fastpin.reading.half_line`), also where borders and contact edges lie a few nodes apart.
 
 Near a slip zone the fitted quantity is mu N - s T, where s T = mu N in the slip zone. It is zero there, so the edge of
 the contact just beyond does not matter. N itself is fitted from the edge of the contact inwards.
@@ -19,10 +19,10 @@ import numpy as np
 
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.states.ends import end_place
-from fastpin.states.half_line import End, Fit, Tries, Try, half_line
-from fastpin.states.old_borders import OldBorder, old_borders, truly_sticking
-from fastpin.states.zones import runs, unrolled
+from fastpin.reading.ends import end_place
+from fastpin.reading.half_line import End, Fit, Tries, Try, half_line
+from fastpin.reading.old_borders import OldBorder, old_borders, truly_sticking
+from fastpin.reading.zones import runs, unrolled
 
 HALF_WIDTHS = (5, 7, 10, 14, 20)
 """Windows to try about a place: the number of nodes on either side."""
@@ -153,7 +153,7 @@ class ShearNodes:
     pressure, shear : ndarray, shape (n,)
     sticking : ndarray of bool, shape (n,)
     marks, places : ndarray, shape (n,)
-        Old borders, see :mod:`fastpin.states.old_borders`.
+        Old borders, see :mod:`fastpin.reading.old_borders`.
     friction, tilt, coupling : float
         mu, arctan(mu beta_D)/pi of (T26), and beta_D.
     """

@@ -11,10 +11,10 @@ import numpy as np
 
 from fastpin.model.angles import BOTTOM, angle_between, interval_near_bottom
 from fastpin.model.grid import Grid
-from fastpin.states import fits
-from fastpin.states.ends import end_place
-from fastpin.states.half_line import HalfLine, half_line
-from fastpin.states.old_borders import OldBorder
+from fastpin.reading import fits
+from fastpin.reading.ends import end_place
+from fastpin.reading.half_line import HalfLine, half_line
+from fastpin.reading.old_borders import OldBorder
 
 Interval = tuple[float, float]
 """Start and stop angle of an interval round the hole, rad, start < stop."""
@@ -149,7 +149,7 @@ def _end(
     kinds: np.ndarray,
     cusps: list[OldBorder],
 ) -> float:
-    """Angle of an end of a zone, rad: see :func:`fastpin.states.fits.edge`.
+    """Angle of an end of a zone, rad: see :func:`fastpin.reading.fits.edge`.
 
     `cusps` are the old borders in the zone. The quantity may have a kink where `kinds` changes.
     """

@@ -1,0 +1,4 @@
+from . import stress as stress
+from .bush import BushFit as BushFit
+from .stress import HoopPeak as HoopPeak
+from .stress import Stress as Stress
