@@ -76,7 +76,7 @@ class Tractions:
 
 @dataclass(frozen=True, eq=False)
 class RefinedTractions:
-    """Tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`.
+    """Tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.reading.refined`.
 
     Attributes
     ----------

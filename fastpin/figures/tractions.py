@@ -70,8 +70,8 @@ def plot_tractions(
     single state has no lower panel; its slip zones are shaded in the panels above. Without friction there is only the
     upper panel. Angles are in degrees from the bottom of the hole, counter-clockwise positive.
 
-    The curves follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. At most
-    :data:`~fastpin.figures.style.MAX_NAMED` states are drawn.
+    The curves follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.reading.refined`. At
+    most :data:`~fastpin.figures.style.MAX_NAMED` states are drawn.
 
     Parameters
     ----------

@@ -54,8 +54,17 @@ def library(name: str) -> ModuleType:
     return module
 
 
+numba = Later("numba")
+"""The compiler, which kernels without machine code on disk need."""
+
+llvm = Later("llvmlite.binding")
+"""The part of the compiler that loads machine code."""
+
 fft = Later("scipy.fft")
 """Fourier transforms, which grids of many nodes need."""
+
+interpolate = Later("scipy.interpolate")
+"""Cubics, which curves between the nodes follow."""
 
 optimize = Later("scipy.optimize")
 """Minima and roots, which few problems need."""

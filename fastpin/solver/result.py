@@ -22,7 +22,8 @@ from fastpin.states.choice import StateChoice, span_of, states_between
 from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
-from fastpin.states.state import ErrorBars, State
+from fastpin.states.state import State
+from fastpin.states.traction_bars import PairBars
 
 if TYPE_CHECKING:
     import pandas
@@ -310,5 +311,5 @@ def with_error_bars(result: Result, coarse: Result) -> Result:
     states = []
     for state, coarse_state in zip(result, coarse, strict=True):
         assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
-        states.append(replace(state, error_bars=ErrorBars(state, coarse_state)))
+        states.append(replace(state, error_bars=PairBars(state, coarse_state)))
     return replace(result, states=states, coarse=coarse)

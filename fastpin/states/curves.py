@@ -1,6 +1,6 @@
 """Curves of the tractions of a state, for figures and the live page.
 
-They follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`. Their points
+They follow the power laws at contact edges and stick-slip borders, see :mod:`fastpin.reading.refined`. Their points
 gather there. Between the nodes elsewhere they are smooth.
 """
 
@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
+from fastpin.runtime.extensions import interpolate
 from fastpin.states.state import State
 
 FINEST = 0.5
@@ -64,7 +64,7 @@ def _smoothed(points: np.ndarray) -> np.ndarray:
     shares = [np.arange(1, math.ceil(steps[k] / FINEST)) / math.ceil(steps[k] / FINEST) for k in wide]
     between = np.concatenate([points[k, 0] + steps[k] * share for k, share in zip(wide, shares, strict=True)])
     every = np.unique(np.r_[points[:, 0], between])
-    return np.column_stack([every, PchipInterpolator(points[:, 0], points[:, 1:])(every)])
+    return np.column_stack([every, interpolate.PchipInterpolator(points[:, 0], points[:, 1:])(every)])
 
 
 def thinned(points: np.ndarray, error: float) -> np.ndarray:

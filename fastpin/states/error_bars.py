@@ -13,6 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from fastpin import reading
 from fastpin.errors import InputError
 from fastpin.model.angles import angle_between
 from fastpin.states.quantities import QUANTITIES, intervals, matching_values, quantity, size, sizes, values, width
@@ -53,12 +54,6 @@ contact. The floor of int |T| is large: |T| has kinks at earlier borders and whe
 
 HOOP_FLOOR = 0.2
 """Floor of the largest hoop stress and of its ratios, in parts of the value over the number of nodes in contact."""
-
-UNRESOLVED = 0.13
-"""Bar of a hoop stress whose peak the nodes do not resolve, in parts of the value.
-
-Straight lines between 101 nodes or more miss at most this part of the hoop stress at an edge.
-"""
 
 ROUNDING = 1e-11
 """Largest relative difference of two equal values, in parts of the size of the quantity.
@@ -186,7 +181,7 @@ def _floor(name: str, state: State) -> float:
         return floor * max(peak - float(beside.min()), 0.0)
     if name in ("peak_hoop", "peak_hoop_seat") or kind == "ratio":
         resolved = state.peak_hoop_stress("seat" if name == "peak_hoop_seat" else "plate").resolved
-        part = HOOP_FLOOR / closed if resolved else UNRESOLVED
+        part = HOOP_FLOOR / closed if resolved else reading.hoop.UNRESOLVED
         return part * abs(QUANTITIES[name].of(state))
     if kind in ("angle", "width"):
         ends = 1 if kind == "angle" else _ends(state, name.removesuffix("_width"))

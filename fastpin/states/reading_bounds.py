@@ -19,9 +19,9 @@ from fastpin.model.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
+from fastpin.reading.hoop import AROUND
+from fastpin.reading.joint import AROUND as AROUND_BUSH
 from fastpin.reading.peaks import DROP_NODES, LARGEST_FALL, STEEPEST_RISE
-from fastpin.states.hoop import AROUND
-from fastpin.states.joint import AROUND as AROUND_BUSH
 from fastpin.states.yielding import PREFIX, Places
 
 NUMBERS = ("dx", "dy", "rotation", "dissipation", "work")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
-from fastpin import reading, states
+from fastpin import reading
 from fastpin.kernels.status import OPEN
 from fastpin.model.angles import from_bottom, interval_from_bottom, near_bottom
 from fastpin.model.checks import true_or_false
@@ -333,8 +334,8 @@ class State(ReadOnly):
 
     @cached_property
     def refined(self) -> RefinedTractions:
-        """The tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.states.refined`."""
-        return states.refined.refined_tractions(self)
+        """The tractions with power laws at contact edges and stick-slip borders, see :mod:`fastpin.reading.refined`."""
+        return reading.refined.refined_tractions(self.nodes, self.status, self.contact_in_runs, self.stick_runs)
 
     def stress(self, points: Points, body: Body = "plate", straight: bool = False) -> Stress:
         """The stress at points of plate or pin, Pa, from the tractions in closed form; tension is positive.
@@ -390,23 +391,20 @@ class State(ReadOnly):
             If the body is rigid, or there is no bush.
         """
         reading.stress.check_body(self.problem, body)
-        is_kept = "refined" in self.__dict__
-        peak: HoopPeak = getattr(self, f"_{body}_peak")
-        if not is_kept:  # the refined tractions of many states would fill the memory
-            self.__dict__.pop("refined", None)
-        return peak
+        if body not in self._hoop_peaks:
+            is_kept = "refined" in self.__dict__
+            self._hoop_peaks[body] = reading.hoop.hoop_peak(
+                self.problem, self.load, self.resultants, self.grid, self.status != OPEN, self.refined,
+                partial(self.hoop_stress, body), body,
+            )  # fmt: skip
+            if not is_kept:  # the refined tractions of many states would fill the memory
+                del self.__dict__["refined"]
+        return self._hoop_peaks[body]
 
     @cached_property
-    def _plate_peak(self) -> HoopPeak:
-        return states.hoop.hoop_peak(self, "plate")
-
-    @cached_property
-    def _pin_peak(self) -> HoopPeak:
-        return states.hoop.hoop_peak(self, "pin")
-
-    @cached_property
-    def _seat_peak(self) -> HoopPeak:
-        return states.hoop.hoop_peak(self, "seat")
+    def _hoop_peaks(self) -> dict[Body, HoopPeak]:
+        """The largest hoop stresses that were asked for."""
+        return {}
 
     @property
     def displacement(self) -> dict[str, float]:
@@ -436,7 +434,7 @@ class State(ReadOnly):
         InputError
             If the plate has no bush, or `friction` is negative.
         """
-        return states.joint.bush_fit(self, friction)
+        return reading.joint.bush_fit(self.problem, partial(self.stress, straight=True), friction)
 
     def joint_displacement(
         self, hub_radius: float | None = None, gauge_radius: float | None = None
@@ -461,7 +459,10 @@ class State(ReadOnly):
         InputError
             If a circle lies outside its body, or the body has no such circle.
         """
-        return states.joint.joint_displacement(self, hub_radius, gauge_radius)
+        moved, force = complex(self.dx, self.dy), complex(self.resultants["Q"], -self.resultants["P"])
+        return reading.joint.joint_displacement(
+            self.problem, self.grid, (self.pressure, self.shear), self.load, moved, force, hub_radius, gauge_radius
+        )
 
 
 class ErrorBars(Mapping[str, float]):
@@ -469,39 +470,25 @@ class ErrorBars(Mapping[str, float]):
 
     The names and units are those of :func:`fastpin.states.error_bars.bars`.
 
-    Parameters
-    ----------
-    state, coarse : State
-        States at the same load; the grid of `coarse` has half the intervals.
-
     Attributes
     ----------
     coarse : State
         The state on the coarse grid.
     """
 
-    def __init__(self, state: State, coarse: State) -> None:
-        self._state = state
-        self.coarse = coarse
-
-    @cached_property
-    def _bars(self) -> dict[str, float]:
-        return states.error_bars.bars(self._state, self.coarse)
-
-    @cached_property
-    def _of_tractions(self) -> tuple[np.ndarray, np.ndarray]:
-        return states.traction_bars.node_bars(self._state, self)
+    coarse: State
 
     @property
+    @abstractmethod
     def pressure(self) -> np.ndarray:
         """Error bars >= 0 of the pressure at the nodes, Pa, shape (n,); see :mod:`fastpin.states.traction_bars`."""
-        return self._of_tractions[0]
 
     @property
+    @abstractmethod
     def shear(self) -> np.ndarray:
         """Error bars >= 0 of the shear traction at the nodes, Pa, shape (n,)."""
-        return self._of_tractions[1]
 
+    @abstractmethod
     def of_curves(self, theta: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Error bars >= 0 of pressure and shear traction on the curves that figures draw, Pa.
 
@@ -515,20 +502,6 @@ class ErrorBars(Mapping[str, float]):
         InputError
             If an angle is no finite number.
         """
-        return states.traction_bars.curve_bars(self._state, self, theta)
-
-    def __repr__(self) -> str:
-        shown = ", ".join(f"{name} {bar:.2g}" for name, bar in self.items() if not math.isnan(bar))
-        return f"<ErrorBars from {self.coarse.grid.size} nodes: {shown}>"
-
-    def __getitem__(self, name: str) -> float:
-        return self._bars[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._bars)
-
-    def __len__(self) -> int:
-        return len(self._bars)
 
 
 _FIELDS = tuple(field.name for field in fields(State))

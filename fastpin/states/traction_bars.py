@@ -15,6 +15,10 @@ nodal values miss the power law, which the curve follows.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -22,7 +26,7 @@ from fastpin.model.angles import angle_between
 from fastpin.model.checks import numbers
 from fastpin.model.grid import Grid
 from fastpin.states.curves import traction_patches, tractions_at
-from fastpin.states.error_bars import ORDER, pair_bar, size_floor
+from fastpin.states.error_bars import ORDER, bars, pair_bar, size_floor
 from fastpin.states.quantities import QUANTITIES, quantity, sizes
 from fastpin.states.state import ErrorBars, State
 
@@ -45,22 +49,51 @@ SHIFTS = np.array([-1.0, -0.5, 0.5, 1.0])
 """Parts of its shift by which an edge is moved. The largest change counts."""
 
 
-def curve_bars(state: State, bars: ErrorBars, theta: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Error bars of the curves of pressure and shear traction of a state; see :meth:`ErrorBars.of_curves`.
+class PairBars(ErrorBars):
+    """The error bars of a state from the state at the same load on a `coarse` grid with half the intervals."""
 
-    They are 0 where neither grid has contact nearby.
-    """
-    angles = numbers("theta", theta)
-    pressure, shear = _curves_and_bars(state, bars, angles.ravel())[1]
-    return pressure.reshape(angles.shape), shear.reshape(angles.shape)
+    def __init__(self, state: State, coarse: State) -> None:
+        self._state = state
+        self.coarse = coarse
 
+    @cached_property
+    def _bars(self) -> dict[str, float]:
+        return bars(self._state, self.coarse)
 
-def node_bars(state: State, bars: ErrorBars) -> tuple[np.ndarray, np.ndarray]:
-    """Error bars of pressure and shear traction at the nodes of a state, read-only, Pa, shape (n,) each."""
-    curves, found = _curves_and_bars(state, bars, state.theta)
-    found += np.abs(curves - np.array([state.pressure, state.shear]))
-    found.setflags(write=False)
-    return found[0], found[1]
+    @cached_property
+    def _of_tractions(self) -> np.ndarray:
+        """The bars of pressure and shear traction at the nodes, read-only, shape (2, n)."""
+        curves, found = _curves_and_bars(self._state, self, self._state.theta)
+        found += np.abs(curves - np.array([self._state.pressure, self._state.shear]))
+        found.setflags(write=False)
+        return found
+
+    @cached_property
+    def pressure(self) -> np.ndarray:
+        return self._of_tractions[0]
+
+    @cached_property
+    def shear(self) -> np.ndarray:
+        return self._of_tractions[1]
+
+    def of_curves(self, theta: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        # They are 0 where neither grid has contact nearby.
+        angles = numbers("theta", theta)
+        pressure, shear = _curves_and_bars(self._state, self, angles.ravel())[1]
+        return pressure.reshape(angles.shape), shear.reshape(angles.shape)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name} {bar:.2g}" for name, bar in self.items() if not math.isnan(bar))
+        return f"<ErrorBars from {self.coarse.grid.size} nodes: {shown}>"
+
+    def __getitem__(self, name: str) -> float:
+        return self._bars[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._bars)
+
+    def __len__(self) -> int:
+        return len(self._bars)
 
 
 def _curves_and_bars(state: State, bars: ErrorBars, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -19,7 +19,7 @@ MOST = {
     "classes defined twice": 21,
     "small private functions used once": 162,
     "constants of modules": 1_395,
-    "hidden imports": 4,
+    "hidden imports": 3,
     "lines of code": 34_690,
 }
 """The most that each number may be. A smaller number takes its place here."""

@@ -8,7 +8,7 @@ import fastpin
 from fastpin import reading
 
 
-@pytest.mark.parametrize("name", ["BushFit", "HoopPeak", "Stress", "stress"])
+@pytest.mark.parametrize("name", ["BushFit", "HoopPeak", "Stress", "hoop", "joint", "refined", "stress"])
 def test_names_have_their_old_place_too(name: str) -> None:
     with pytest.warns(DeprecationWarning, match=f"this is fastpin.reading.{name} now"):
         old = getattr(fastpin.states, name)

@@ -9,9 +9,8 @@ import pytest
 
 from fastpin import Grid, InputError, Material, MaterialPair, Problem, Status, solve
 from fastpin.kernels.status import OPEN
-from fastpin.reading import fits
+from fastpin.reading import fits, refined
 from fastpin.reading.half_line import End, half_line
-from fastpin.states import refined
 from tests.support.half_line import columns, powers
 
 LIKE = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -11,19 +12,25 @@ from fastpin.errors import InputError
 from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.checks import number
 from fastpin.model.compliance import Compliance
+from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.points import Points
 from fastpin.model.problem import LEAST_HUB, MOST_GAUGE, Problem
 from fastpin.reading.bush import BushFit
-from fastpin.states.state import State
+from fastpin.reading.stress import Stress
 
 AROUND = 1440
 """Equally spaced angles of the interface of a bush. Its tractions are smooth: the contact is a wall away."""
 
 
-def joint_displacement(state: State, hub_radius: float | None, gauge_radius: float | None) -> dict[str, float]:
-    """The displacement of the joint, "ux" and "uy" in m; see :meth:`fastpin.State.joint_displacement`."""
-    problem = state.problem
+def joint_displacement(
+    problem: Problem, grid: Grid, tractions: tuple[np.ndarray, np.ndarray], load: Mapping[str, float], moved: complex,
+    force: complex, hub_radius: float | None, gauge_radius: float | None,
+) -> dict[str, float]:  # fmt: skip
+    """The displacement of the joint, "ux" and "uy" in m; see :meth:`fastpin.State.joint_displacement`.
+
+    `tractions` are the pressure and the shear (n,), `moved` is dx + i dy, and `force` is Q - i P of the tractions.
+    """
     radius, hub, gauge = problem.hole_radius, None, None
     if hub_radius is not None:
         hub = _checked_hub(problem, hub_radius) / radius
@@ -31,26 +38,22 @@ def joint_displacement(state: State, hub_radius: float | None, gauge_radius: flo
         gauge = _checked_gauge(problem, gauge_radius) / radius
     own, coupling = problem.joint.displacement_compliances(hub, gauge)
     unit = problem.surfaces.beta_star
-    (cos, sin), force = state.grid.trig_moments(), state.resultants
-    first = complex(cos @ state.pressure - sin @ state.shear, sin @ state.pressure + cos @ state.shear)
-    moved = complex(state.dx, state.dy) + unit * own * complex(force["Q"], -force["P"])
-    moved -= unit * coupling * radius * first
+    (cos, sin), (pressure, shear) = grid.trig_moments(), tractions
+    moved += unit * own * force
+    moved -= unit * coupling * radius * complex(cos @ pressure - sin @ shear, sin @ pressure + cos @ shear)
     if isinstance(problem.plate_body, Compliance):
-        moved += _over_supports(state, problem.plate_body)
+        nodal = basis(problem.plate_body.matrix, grid)[1] @ np.r_[pressure, shear]
+        moved += _over_supports(problem, problem.plate_body, nodal, load)
     return {"ux": float(moved.real), "uy": float(moved.imag)}
 
 
-def _over_supports(state: State, body: Compliance) -> complex:
+def _over_supports(problem: Problem, body: Compliance, tractions: np.ndarray, load: Mapping[str, float]) -> complex:
     """Mean displacement of the hole over the supports of a compliance, m."""
-    tractions = basis(body.matrix, state.grid)[1] @ np.r_[state.pressure, state.shear]
     displacement = body.matrix @ tractions
     for name in set(body.columns) & set(LOADS):
-        displacement = displacement + state.load[name] * body.columns[name]
+        displacement = displacement + load[name] * body.columns[name]
     x, y = (
-        math.sqrt(0.5)
-        * state.problem.hole_radius
-        * state.problem.pair.plate_compliance
-        * (translation_rows(body) @ displacement)
+        math.sqrt(0.5) * problem.hole_radius * problem.pair.plate_compliance * (translation_rows(body) @ displacement)
     )
     return complex(x, y)
 
@@ -73,14 +76,17 @@ def _checked_gauge(problem: Problem, gauge_radius: float) -> float:
     return number("gauge_radius", gauge_radius, problem.hole_radius, most)
 
 
-def bush_fit(state: State, friction: float | None) -> BushFit:
-    """The interface of the bush; see :meth:`fastpin.State.bush_fit`."""
-    body = state.problem.plate_body
+def bush_fit(problem: Problem, stress_at: Callable[[Points], Stress], friction: float | None) -> BushFit:
+    """The interface of the bush; see :meth:`fastpin.State.bush_fit`.
+
+    `stress_at` gives the stress in the plate, with straight lines between the nodes.
+    """
+    body = problem.plate_body
     if not isinstance(body, Bushing):
         raise InputError("plate_body", "the plate has no bush: there is no interface")
     if friction is not None:
         friction = number("friction", friction, 0.0)
     theta = -0.5 * math.pi + math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
-    stress = state.stress(Points.at_radius(body.outer_radius, theta), straight=True)
+    stress = stress_at(Points.at_radius(body.outer_radius, theta))
     chosen = body.friction if friction is None else friction
-    return BushFit(theta, -stress.radial, stress.shear, state.problem.press_fit_pressure, chosen)
+    return BushFit(theta, -stress.radial, stress.shear, problem.press_fit_pressure, chosen)

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from fastpin.kernels.status import OPEN, STICK
-from fastpin.states import hoop
+from fastpin.elasticity.tractions import RefinedTractions, Tractions
+from fastpin.reading import hoop
 
 SPACING = 0.01
 
 
 def is_resolved(shape: Callable[[np.ndarray], np.ndarray], nodes: int = 60) -> bool:
     """Whether a peak of height 1 at the angle 0 is resolved. `shape` is its drop at distances in node distances."""
-    state = SimpleNamespace(
-        status=np.r_[np.full(nodes, STICK), np.full(100, OPEN)],
-        grid=SimpleNamespace(weights=np.full(nodes + 100, SPACING)),
-        refined=SimpleNamespace(resolved=(), unresolved=()),
-        hoop_stress=lambda body, angles: 1.0 - 0.01 * shape(angles / SPACING),
-    )
-    return hoop._is_resolved(state, "plate", 1.0, 0.0)
+    refined = RefinedTractions(Tractions(()), (), ())
+    stress = lambda angles: 1.0 - 0.01 * shape(angles / SPACING)  # noqa: E731
+    return hoop._is_resolved(np.full(nodes, SPACING), refined, stress, 1.0, 0.0, 0.0)
 
 
 def test_a_peak_needs_forty_nodes_in_contact() -> None:

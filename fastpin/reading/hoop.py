@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fastpin.elasticity.stress import press_fit_hoop
-from fastpin.kernels.status import OPEN
+from fastpin.elasticity.tractions import RefinedTractions
 from fastpin.model.angles import angle_between, near_bottom
 from fastpin.model.bodies import Ring
+from fastpin.model.grid import Grid
 from fastpin.model.points import Body, near_rim
 from fastpin.model.problem import Problem
 from fastpin.reading.stress import HoopPeak, open_hole_hoop
-from fastpin.states.error_bars import UNRESOLVED
-from fastpin.states.state import State
 
 AROUND = 180
 """Equally spaced angles round the hole that are tried, beside edges, borders, closed nodes and their middles."""
@@ -40,32 +41,42 @@ SHARP = 0.45
 A parabola has 0.25, a straight line 0.5, a root 0.71.
 """
 
+UNRESOLVED = 0.13
+"""Bar of a hoop stress whose peak the nodes do not resolve, in parts of the value.
 
-def hoop_peak(state: State, body: Body) -> HoopPeak:
-    """The largest hoop stress on the edge of a body that is not rigid."""
+Straight lines between 101 nodes or more miss at most this part of the hoop stress at an edge.
+"""
+
+Hoop = Callable[[ArrayLike], np.ndarray]
+"""Gives the hoop stress at angles on the edge of a body, Pa."""
+
+
+def hoop_peak(
+    problem: Problem, load: Mapping[str, float], resultants: Mapping[str, float], grid: Grid, closed: np.ndarray,
+    refined: RefinedTractions, hoop: Hoop, body: Body,
+) -> HoopPeak:  # fmt: skip
+    """The largest hoop stress on the edge of a body that is not rigid, of a state with these `closed` nodes."""
     around = math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
-    closed = state.theta[state.status != OPEN]
-    between = closed + 0.5 * state.grid.weights[state.status != OPEN]
-    angles = np.r_[around, closed, between, state.refined.resolved, state.refined.unresolved]
+    nodes = grid.theta[closed]
+    angles = np.r_[around, nodes, nodes + 0.5 * grid.weights[closed], refined.resolved, refined.unresolved]
     angles = np.unique(np.remainder(angles, 2.0 * math.pi))
-    values = state.hoop_stress(body, angles)
+    values = hoop(angles)
     before, after = np.roll(values, 1), np.roll(values, -1)
     tops = np.flatnonzero((values >= before) & (values >= after))
-    found = [_highest(state, body, angles, int(top)) for top in tops[np.argsort(-values[tops])[:TRIED]]]
+    found = [_highest(hoop, angles, int(top)) for top in tops[np.argsort(-values[tops])[:TRIED]]]
     largest = max(value for value, _ in found)
     value, angle = max((peak for peak in found if peak[0] >= largest - TIE * abs(largest)), key=lambda peak: peak[1])
-    resolved = _is_resolved(state, body, value, angle)
-    force = math.hypot(state.resultants["P"], state.resultants["Q"])
-    edge = near_rim(state.problem, body) * state.problem.hole_radius
-    bearing, gross, bypass, press_fit = force / (2.0 * edge), 0.0, 0.0, 0.0
+    rim, force = near_rim(problem, body), math.hypot(resultants["P"], resultants["Q"])
+    resolved = _is_resolved(grid.weights[closed], refined, hoop, value, angle, rim - 1.0)
+    bearing, gross, bypass, press_fit = force / (2.0 * (rim * problem.hole_radius)), 0.0, 0.0, 0.0
     if body != "pin":
-        sxx, syy, sxy = (state.load[name] for name in ("sxx", "syy", "sxy"))
+        sxx, syy, sxy = (load[name] for name in ("sxx", "syy", "sxy"))
         mean, radius = 0.5 * (sxx + syy), math.hypot(0.5 * (sxx - syy), sxy)
         gross = mean + math.copysign(radius, mean)
-        bypass = open_hole_hoop(state.problem, np.array([sxx, syy, sxy]), angle, body)
-        press_fit = press_fit_hoop(state.problem, body)
-    place = angle if state.in_contact or value != 0.0 else math.nan
-    section = _net_section(state.problem, body)
+        bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
+        press_fit = press_fit_hoop(problem, body)
+    place = angle if closed.any() or value != 0.0 else math.nan
+    section = _net_section(problem, body)
     return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
 
 
@@ -77,14 +88,14 @@ def _net_section(problem: Problem, body: Body) -> float:
     return 2.0 * (lug.outer_radius - near_rim(problem, body) * problem.hole_radius)
 
 
-def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[float, float]:
+def _highest(hoop: Hoop, angles: np.ndarray, top: int) -> tuple[float, float]:
     """The largest hoop stress between the neighbours of the angle `top`, and its place."""
     angle = float(angles[top])
-    value = float(state.hoop_stress(body, [angle])[0])
+    value = float(hoop([angle])[0])
     low, high = (float(angle_between(angles[(top + side) % angles.size], angle)) for side in (-1, 1))
     for _ in range(ZOOMS):
         tried = angle + np.linspace(low, high, ZOOMED)
-        values = state.hoop_stress(body, tried)
+        values = hoop(tried)
         if values.max() > value:
             value, angle = float(values.max()), float(tried[np.argmax(values)])
         step = (high - low) / (ZOOMED - 1)
@@ -92,22 +103,25 @@ def _highest(state: State, body: Body, angles: np.ndarray, top: int) -> tuple[fl
     return value, near_bottom(angle)
 
 
-def _is_resolved(state: State, body: Body, value: float, angle: float) -> bool:
-    """Whether power laws describe the peak, and no place without a law may have a higher one."""
-    closed = state.status != OPEN
-    if 0 < np.count_nonzero(closed) < LEAST_NODES:
+def _is_resolved(
+    distances: np.ndarray, refined: RefinedTractions, hoop: Hoop, value: float, angle: float, wall: float
+) -> bool:
+    """Whether power laws describe the peak, and no place without a law may have a higher one.
+
+    `distances` are those of the nodes in contact, and `wall` the distance from the contact to the edge of the body.
+    """
+    if 0 < distances.size < LEAST_NODES:
         return False
-    spacing = float(state.grid.weights[closed].max(initial=0.0))
-    if body == "seat":  # the stress has no cusp a wall away from the contact
-        return spacing < near_rim(state.problem, body) - 1.0
-    refined = state.refined
+    spacing = float(distances.max(initial=0.0))
+    if wall > 0.0:  # the stress has no cusp a wall away from the contact
+        return spacing < wall
     if refined.unresolved:
         places = np.array(refined.unresolved)
-        missed = state.hoop_stress(body, places) >= (1.0 - UNRESOLVED) * value
+        missed = hoop(places) >= (1.0 - UNRESOLVED) * value
         if np.any(missed | (np.abs(angle_between(places, angle)) < NEAR * spacing)):
             return False
     if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):
         return True
-    around = state.hoop_stress(body, angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
+    around = hoop(angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
     drops = value - around
     return not any(drops[near] > SHARP * drops[far] for near, far in ((1, 0), (2, 3)) if drops[far] > 1e-3 * abs(value))

@@ -23,12 +23,12 @@ import numpy as np
 from fastpin.elasticity.tractions import RefinedTractions, Tractions
 from fastpin.kernels.status import OPEN
 from fastpin.reading import fits
+from fastpin.reading.cusps import ShearNodes
 from fastpin.reading.exponents import contact_exponents, signs_beside, stick_exponents
 from fastpin.reading.fits import Law
 from fastpin.reading.half_line import half_line
 from fastpin.reading.old_borders import OldBorder
-from fastpin.reading.zones import is_all_round, runs, unrolled
-from fastpin.states.state import State
+from fastpin.reading.zones import Interval, is_all_round, runs, unrolled
 
 REACH = 20.0
 """Nodes on the side of a cusp within which it is refined."""
@@ -180,12 +180,24 @@ class Laws:
         return [*(law for law in self.pressure if law is not None), *(law for law, _ in self.borders), *self.sticking]
 
 
-def refined_tractions(state: State) -> RefinedTractions:
-    """Refine the tractions of a state at its contact edges and stick-slip borders."""
+def refined_tractions(
+    nodes: ShearNodes, status: np.ndarray, contact: list[Interval], stick: list[tuple[np.ndarray, Interval]]
+) -> RefinedTractions:
+    """Refine the tractions of a state at its contact edges and stick-slip borders.
+
+    Parameters
+    ----------
+    nodes : ShearNodes
+    status : ndarray, shape (n,)
+    contact : list of (float, float)
+        The contact intervals of the runs of closed nodes, rad, in the turns of the grid.
+    stick : list of (ndarray, (float, float))
+        The runs of sticking nodes, each with its interval.
+    """
     arrays: list[np.ndarray] = []
     resolved: list[float] = []
     unresolved: list[float] = []
-    for patch in _patches(state):
+    for patch in _patches(nodes, status, contact, stick):
         pressure = _pressure_laws(patch)
         zones = tuple(_with_hidden_slip(patch, zone, pressure) for zone in patch.stick)
         hidden = [end for zone, was in zip(zones, patch.stick, strict=True) if zone is not was for end in zone.ends]
@@ -193,7 +205,7 @@ def refined_tractions(state: State) -> RefinedTractions:
         arrays.append(_refined(replace(patch, pressure=_pressure_at_borders(patch, laws), stick=zones), laws, cusps))
         resolved += [*(law.place for law in laws.all), *(cusp.place for cusp in cusps)]
         unresolved += laws.unresolved + hidden
-    moment = float(state.grid.weights @ state.shear)
+    moment = float(nodes.grid.weights @ nodes.shear)
     excess = sum(float(np.trapezoid(array[:, 2], array[:, 0])) for array in arrays) - moment
     total = sum(float(np.trapezoid(array[:, 1], array[:, 0])) for array in arrays)
     for array in arrays:  # otherwise the errors of the fits would be a moment at the pin's centre
@@ -418,32 +430,34 @@ def _slip_zones(patch: Patch) -> Iterator[tuple[float, float, int]]:
             yield start, stop, sign
 
 
-def _patches(state: State) -> Iterator[Patch]:
+def _patches(
+    nodes: ShearNodes, status: np.ndarray, contact: list[Interval], stick: list[tuple[np.ndarray, Interval]]
+) -> Iterator[Patch]:
     """The contact intervals of a state. All round, the first node is one that sticks."""
-    grid, sticking = state.grid, state.stick_runs
+    grid = nodes.grid
     left, right = grid.knots()
-    for run, edges in zip(runs(grid, state.status != OPEN), state.contact_in_runs, strict=True):
+    for run, edges in zip(runs(grid, status != OPEN), contact, strict=True):
         whole = is_all_round(edges[1] - edges[0])
-        exponents = None if whole else contact_exponents(state.status, state.tilt, run)
-        if whole and sticking:
-            run = np.roll(run, -int(np.flatnonzero(run == sticking[0][0][0])[0]))
+        exponents = None if whole else contact_exponents(status, nodes.tilt, run)
+        if whole and stick:
+            run = np.roll(run, -int(np.flatnonzero(run == stick[0][0][0])[0]))
         theta = unrolled(grid, run)
         if whole:
             edges = float(theta[0]), float(theta[0]) + 2.0 * math.pi
         before, after = grid.theta[run[0]] - left[run[0]], right[run[-1]] - grid.theta[run[-1]]
         yield Patch(
-            theta, state.pressure[run], state.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
-            _zones(state, run), state.problem.friction, state.problem.surfaces.dundurs()[1], state.tilt,
+            theta, nodes.pressure[run], nodes.shear[run], edges, (theta[0] - before, theta[-1] + after), exponents,
+            _zones(nodes, stick, run), nodes.friction, nodes.coupling, nodes.tilt,
         )  # fmt: skip
 
 
-def _zones(state: State, run: np.ndarray) -> tuple[Zone, ...]:
+def _zones(nodes: ShearNodes, stick: list[tuple[np.ndarray, Interval]], run: np.ndarray) -> tuple[Zone, ...]:
     """The stick zones in the contact of the nodes `run`, in their order there. They may cross the first node."""
-    places = np.full(state.grid.size, -1)
+    places = np.full(nodes.grid.size, -1)
     places[run] = np.arange(run.size)
     zones = []
-    for nodes, ends in state.stick_runs:
-        if places[nodes[0]] >= 0:
-            signs, exponents = signs_beside(state.shear, nodes), stick_exponents(state.shear, state.tilt, nodes)
-            zones.append(Zone(ends, places[nodes], signs, exponents, state.nodes.old_borders(nodes)))
+    for inside, ends in stick:
+        if places[inside[0]] >= 0:
+            signs, exponents = signs_beside(nodes.shear, inside), stick_exponents(nodes.shear, nodes.tilt, inside)
+            zones.append(Zone(ends, places[inside], signs, exponents, nodes.old_borders(inside)))
     return tuple(sorted(zones, key=lambda zone: int(zone.nodes[0])))
