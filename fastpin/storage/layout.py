@@ -424,7 +424,7 @@ def read_rows(group: h5py.Group, names: Sequence[str], picked: slice | Sequence[
     if isinstance(picked, slice):
         return {name: array[picked] for name, array in arrays.items()}
     first, last = min(picked, default=0), max(picked, default=0)
-    if 0 <= first and last < min(size, first + DENSE * len(picked)):
+    if first >= 0 and last < min(size, first + DENSE * len(picked)):
         within = np.asarray(picked, dtype=np.int64) - first
         return {name: array[first : last + 1][within] for name, array in arrays.items()}
     return {
