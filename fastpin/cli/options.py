@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import functools
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -65,10 +66,11 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser() -> argparse.ArgumentParser:
-    """Build the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
+    """Return the parser of the command line. ``command`` of its result is a pair of names: (file, function)."""
     return _parsers()[0]
 
 
+@functools.cache
 def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
     """The parser of the command line, and the parsers of the commands by name."""
     root = Parser(

@@ -1,11 +1,12 @@
 """``fastpin plot``: all kinds of figures, their numbers, and wrong options."""
 
 import csv
+import functools
 
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, report
 from fastpin.cli.main import main
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.plot import KINDS
@@ -21,6 +22,12 @@ def stored(tmp_path_factory):
     return path
 
 
+@pytest.fixture
+def coarse(monkeypatch):
+    """Maps of few points: those of a usual one take seconds to draw and to write."""
+    monkeypatch.setattr(report.stress, "field_curves", functools.partial(report.stress.field_curves, fineness=40))
+
+
 def read_rows(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
@@ -29,13 +36,23 @@ def test_every_kind_has_its_options():
     assert list(KINDS) == list(PLOT_OPTIONS)
 
 
+BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change")
+"""Columns of numbers without a unit."""
+
+
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("kind", [kind for kind, names in PLOT_OPTIONS.items() if "csv" in names])
-def test_a_figure_and_its_numbers(stored, kind, tmp_path, capsys):
+def test_a_figure_and_its_numbers_with_units(stored, kind, tmp_path, capsys):
     figure, numbers = tmp_path / f"{kind}.svg", tmp_path / f"{kind}.csv"
     assert main(["plot", str(stored), kind, "-o", str(figure), "--csv", str(numbers)]) == 0
     assert figure.read_text(encoding="utf-8").startswith("<?xml")
-    assert len(read_rows(numbers)) >= 2
     assert capsys.readouterr().out.splitlines()[-1] == f"wrote {figure} and {numbers}"
+    rows = read_rows(numbers)
+    assert len(rows) >= 2
+    for row in rows:
+        for name, cell in row.items():
+            is_text = not cell or cell[0].isalpha()
+            assert is_text or name in BARE or (name.endswith("]") and " [" in name), (name, cell)
 
 
 def test_the_terminal_says_which_states_are_drawn(stored, tmp_path, capsys):
@@ -63,30 +80,16 @@ def test_bars_are_drawn_and_written(tmp_path, capsys):
 
 def test_more_states_than_a_figure_holds_get_a_remedy(stored, tmp_path, capsys):
     remedy = "; of the 10 chosen states it holds 8: choose at most so many with --states\n"
-    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "all"]) == 0
+    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--states", "all"]) == 0
     first = capsys.readouterr().out.splitlines(keepends=True)[0]
     assert first.startswith("the figure shows 8 of 10 states: load points ")
     assert first.endswith(remedy)
     assert main(["show", str(stored), "--plot", str(tmp_path / "a.png"), "--states", "all"]) == 0
     assert remedy in capsys.readouterr().out
-    assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "1-3"]) == 0
+    assert main(["plot", str(stored), "tractions", "-o", str(tmp_path / "a.png"), "--states", "1-3"]) == 0
     assert "chosen" not in capsys.readouterr().out
     assert main(["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--states", "20"]) == 2
     assert "--states: there is no state at load point 20; the last is 5" in capsys.readouterr().err
-
-
-BARE = ("load point", "cycle", "corner", "length", "number", "pressure_change", "shear_change")
-"""Columns of numbers without a unit."""
-
-
-@pytest.mark.parametrize("kind", [kind for kind, names in PLOT_OPTIONS.items() if "csv" in names])
-def test_every_column_of_numbers_names_its_unit(stored, kind, tmp_path):
-    numbers = tmp_path / "a.csv"
-    assert main(["plot", str(stored), kind, "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]) == 0
-    for row in read_rows(numbers):
-        for name, cell in row.items():
-            is_text = not cell or cell[0].isalpha()
-            assert is_text or name in BARE or (name.endswith("]") and " [" in name), (name, cell)
 
 
 def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, capsys):
@@ -95,7 +98,7 @@ def test_a_sketch_of_a_result_and_of_a_case_file(stored, tmp_path, monkeypatch, 
     (tmp_path / "case.toml").write_text(capsys.readouterr().out)
     for source in (str(stored), "case.toml"):
         assert main(["plot", source, "sketch"]) == 0
-        assert (tmp_path / "sketch.png").stat().st_size > 10_000
+        assert (tmp_path / "sketch.png").stat().st_size > 1_000
     assert main(["plot", "case.toml", "hoop"]) == 2
     assert "case.toml: is a case file; hoop needs a result: fastpin run CASE -o FILE" in capsys.readouterr().err
     assert main(["plot", "case.toml", "sketch", "--states", "1"]) == 2
@@ -108,6 +111,7 @@ def test_an_animation_of_the_last_cycle(stored, tmp_path, capsys):
     assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
 
 
+@pytest.mark.usefixtures("coarse")
 def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["plot", str(stored), "map", "--component", "hoop", "--extent", "3", "--body", "plate"]) == 0
@@ -115,10 +119,14 @@ def test_the_name_of_the_figure_is_the_kind(stored, tmp_path, monkeypatch):
 
 
 def test_states_are_chosen_by_load_points(stored, tmp_path):
-    numbers = tmp_path / "hoop.csv"
-    for chosen, points in (("last", {"5"}), ("2,3.5", {"2", "3.5"}), ("cycle", {"3", "3.5", "4", "4.5", "5"})):
-        arguments = ["plot", str(stored), "hoop", "-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
-        assert main([*arguments, "--states", chosen, "--body", "plate"]) == 0
+    numbers = tmp_path / "a.csv"
+    arguments = ["-o", str(tmp_path / "a.png"), "--csv", str(numbers)]
+    for kind, chosen, points in (
+        (["hoop", "--body", "plate"], "last", {"5"}),
+        (["tractions"], "2,3.5", {"2", "3.5"}),
+        (["tractions"], "cycle", {"3", "3.5", "4", "4.5", "5"}),
+    ):
+        assert main(["plot", str(stored), *kind, *arguments, "--states", chosen]) == 0
         assert {f"{float(row['load point']):g}" for row in read_rows(numbers)} == points
 
 

@@ -34,8 +34,9 @@ def test_a_gif_has_a_picture_for_each_state_of_the_last_cycle(result, tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_without_a_path_a_notebook_shows_the_animation(result, tmp_path, monkeypatch):
+def test_without_a_path_a_notebook_shows_the_animation(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    result = sample_result(CORNERS[:2], nodes=41)
     figures.animate(result, tmp_path / "a.gif", dpi=50)
     shown = figures.animate(result, dpi=50)
     assert shown.gif == (tmp_path / "a.gif").read_bytes()

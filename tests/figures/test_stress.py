@@ -1,5 +1,7 @@
 """Figures of stresses, load cycles and fatigue."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,12 @@ def result():
 def rigid():
     pair = MaterialPair(Material.rigid(), Material(1.0, 0.3))
     return solve(Problem.from_load_parameter(pair, 0.1, 0.3), [{"P": 1.0}], nodes=61)
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Maps of few points: those of a usual one take tenths of a second."""
+    monkeypatch.setattr(figures.stress, "field_curves", functools.partial(field_curves, fineness=40))
 
 
 def test_hoop_stress_with_its_peaks(result, tmp_path):
@@ -131,6 +139,7 @@ def test_fatigue_of_bush_and_seat_share_the_panels():
             figures.plot_fatigue(wrong)
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_point_force_does_not_set_the_colours_of_a_map():
     pair = MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"])
     for load in ("centre", "body"):
@@ -140,12 +149,14 @@ def test_a_point_force_does_not_set_the_colours_of_a_map():
         assert bar.get_ylim()[1] < 2.0 * state.peak_pressure / 1e6
 
 
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("component", COMPONENTS)
 def test_maps_of_all_components(result, component):
     figure = figures.plot_stress_field(result[-1], component=component)
     assert any(COMPONENTS[component] in panel.get_ylabel() for panel in figure.axes)
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_map_of_a_result_is_that_of_its_last_state(result):
     figure = figures.plot_stress_field(result)
     assert figure.get_suptitle().startswith("load point 5: ")

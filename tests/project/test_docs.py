@@ -29,12 +29,18 @@ def test_links_lead_somewhere(document: Path) -> None:
         assert (document.parent / target).exists(), target
 
 
+@pytest.fixture(scope="module")
+def tests() -> set[str]:
+    """The names of all tests."""
+    paths = (ROOT / "tests").rglob("test_*.py")
+    return {name for path in paths for name in re.findall(r"\bdef (test_\w+)\(", path.read_text(encoding="utf-8"))}
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
-def test_named_tests_and_scripts_exist(document: Path) -> None:
+def test_named_tests_and_scripts_exist(document: Path, tests: set[str]) -> None:
     text = document.read_text(encoding="utf-8")
-    tests = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py"))
     for name in set(re.findall(r"`(test_\w+)`", text)):
-        assert f"def {name}(" in tests, name
+        assert name in tests, name
     for name in set(re.findall(r"`((?:tests|scripts|fastpin)/[\w/]+(?:\.py)?)`", text)):
         assert (ROOT / name).exists(), name
 

@@ -14,7 +14,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# Stands for Python, for the Python of the environment and for apt-get. What it was called with goes to $LOG.
+# Stands for Python, for the Python of the environment and for apt-get. What it was called with goes to $LOG. An
+# installation takes $INSTALLS seconds.
 FAKE = """#!/bin/bash
 [[ $0 == */apt-get ]] && { echo "apt-get $*" >>"$LOG"; touch "$HERE/has-ensurepip"; exit 0; }
 case "$1 $2" in
@@ -28,7 +29,7 @@ case "$1 $2" in
 "-m venv") mkdir -p "$4/bin" && cp "$0" "$4/bin/python"; echo "venv" >>"$LOG"; exit ;;
 "-m pip") [[ $3 == --version ]] && exit 0
     [[ -e $HERE/offline ]] && { echo "no network" >&2; exit 1; }
-    sleep 0.2; echo "pip ${!#}" >>"$LOG"; exit ;;
+    sleep "${INSTALLS:-0}"; echo "pip ${!#}" >>"$LOG"; exit ;;
 esac
 echo "$PWD> $*" >>"$LOG"
 for word; do # results of tests
@@ -141,7 +142,9 @@ def test_called_through_a_link(project: Path) -> None:
 
 def test_two_at_once_install_once(project: Path) -> None:
     both = [
-        subprocess.Popen([project / "scripts" / "run", "x"], env=environment(project), stderr=subprocess.PIPE)
+        subprocess.Popen(
+            [project / "scripts" / "run", "x"], env=environment(project, INSTALLS="0.2"), stderr=subprocess.PIPE
+        )
         for _ in range(2)
     ]
     assert [process.wait() for process in both] == [0, 0]

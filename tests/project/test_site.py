@@ -17,7 +17,7 @@ import pytest
 import fastpin
 from fastpin.casefile.reader import KEYS
 from fastpin.cli.options import parser
-from fastpin.storage import layout
+from fastpin.storage import extremes, layout
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -102,8 +102,14 @@ def test_every_key_of_a_case_file_is_explained(extension: ModuleType) -> None:
             assert re.search(rf"^\| `{key}` \| \S", part, re.MULTILINE), (section, key)
 
 
-def test_the_file_format_of_the_reference_has_every_array(extension: ModuleType) -> None:
+def test_the_file_format_of_the_reference_has_every_array(
+    extension: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The sample has few states: the extremes of many are stored."""
+    for module in (__import__("file_layout"), extremes):
+        monkeypatch.setattr(module, "LEAST_STORED", 6)
     text = extension.PARTS["file_layout"]()
+    assert "\n## /extremes\n" in text
     for name in (*layout.FIELD_KINDS, *layout.CYCLE_FIELDS):
         row = re.search(rf"^\| `{name}` \| .* \| (.*) \|$", text, re.MULTILINE)
         assert row, name

@@ -18,29 +18,34 @@ from fastpin.errors import OutputError
 from fastpin.storage import store
 
 result = store.load(sys.argv[1])
-store.MOST_IN_MEMORY = int(sys.argv[3])
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-for limit in map(int, sys.argv[4:]):
-    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
-    try:
-        store.save(result, sys.argv[2])
-    except OutputError as error:
-        print(error)
+for most in (store.MOST_IN_MEMORY, 0):
+    store.MOST_IN_MEMORY = most
+    for limit in map(int, sys.argv[3:]):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
+        try:
+            store.save(result, sys.argv[2])
+        except OutputError as error:
+            print(error)
 """
 
 RECORD = """
-import resource, signal, sys
+import os, resource, signal, sys
 from fastpin.errors import OutputError
 from fastpin.storage import recording, store, writer
 
 result = store.load(sys.argv[1])
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]), resource.RLIM_INFINITY))
 writer.MOST_PENDING = 4
-try:
-    recording.record(result.problem, result.history, sys.argv[2], nodes=31, arc=(-3.1, 0.0))
-except OutputError as error:
-    print(error)
+whole, shares = sys.argv[2], dict(zip(sys.argv[3::2], sys.argv[4::2]))
+recording.record(result.problem, result.history, whole, nodes=31, arc=(-3.1, 0.0))
+for path, share in shares.items():
+    limit = int(float(share) * os.path.getsize(whole))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
+    try:
+        recording.record(result.problem, result.history, path, nodes=31, arc=(-3.1, 0.0))
+    except OutputError as error:
+        print(error)
 """
 
 
@@ -51,14 +56,6 @@ def source(similar, tmp_path_factory) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def recorded_size(source, tmp_path_factory) -> int:
-    """Bytes of the whole file that RECORD writes."""
-    path = tmp_path_factory.mktemp("whole") / "whole.h5"
-    assert output_of(RECORD, source, path, 1 << 30) == ""
-    return path.stat().st_size
-
-
 def output_of(program: str, *words: object) -> str:
     """What a program prints. It may print nothing on standard error."""
     command = [sys.executable, "-c", program, *map(str, words)]
@@ -67,22 +64,23 @@ def output_of(program: str, *words: object) -> str:
     return ended.stdout
 
 
-@pytest.mark.parametrize("most_in_memory", [store.MOST_IN_MEMORY, 0])
-def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path, most_in_memory):
+def test_a_result_that_finds_no_room_is_one_sentence(source, tmp_path):
+    """Prepared in memory, and written in place."""
     size = source.stat().st_size
     path = tmp_path / "out.h5"
     path.write_bytes(source.read_bytes())
     limits = [0, 100, 3000, size // 3, size // 2, size - 1000]
-    said = output_of(SAVE, source, path, most_in_memory, *limits).splitlines()
-    assert said == [f"{path}: can't be written: File too large"] * len(limits)
+    said = output_of(SAVE, source, path, *limits).splitlines()
+    assert said == [f"{path}: can't be written: File too large"] * 2 * len(limits)
     assert path.read_bytes() == source.read_bytes()
     assert [found.name for found in tmp_path.iterdir()] == ["out.h5"]
 
 
-@pytest.mark.parametrize("share", [0.3, 0.5, 0.7, 0.9])
-def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, recorded_size, tmp_path, share):
-    path = tmp_path / "out.h5"
-    said = output_of(RECORD, source, path, int(share * recorded_size))
-    assert said == f"{path}: can't be written: File too large\n"
-    assert not path.with_name("out.h5.journal").exists()
-    assert store.is_unfinished(path) or path.stat().st_size == 0
+def test_a_run_that_finds_no_room_keeps_its_last_transaction(source, tmp_path):
+    paths = [tmp_path / f"{share}.h5" for share in (0.3, 0.5, 0.7, 0.9)]
+    words = [word for path in paths for word in (path, path.stem)]
+    said = output_of(RECORD, source, tmp_path / "whole.h5", *words).splitlines()
+    assert said == [f"{path}: can't be written: File too large" for path in paths]
+    for path in paths:
+        assert not path.with_name(f"{path.name}.journal").exists()
+        assert store.is_unfinished(path) or path.stat().st_size == 0

@@ -148,6 +148,7 @@ def test_damaged_coarse_states_are_one_sentence(problem, path):
         store.load(path)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_show_says_what_is_missing(problem, path, capsys):
     with pytest.raises(Interrupted):
         record(problem, HISTORY[:5], path, error_bars=True, progress=StopAtRun(2, 2.0), **OPTIONS)

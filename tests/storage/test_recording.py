@@ -7,6 +7,7 @@ import importlib.util
 import itertools
 import logging
 import os
+import shutil
 import signal
 import threading
 import time
@@ -46,6 +47,18 @@ def problem(similar):
 @pytest.fixture
 def path(tmp_path):
     return tmp_path / "a.h5"
+
+
+@pytest.fixture(scope="module")
+def whole(problem):
+    """The solution of RANDOM on one arc."""
+    return solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1))
+
+
+@pytest.fixture(scope="module")
+def denser(problem):
+    """The same with a state inside each step."""
+    return solve(problem, RANDOM, nodes=61, between=1, arc=(-3.0, -0.1))
 
 
 def assert_file(path: Path, expected) -> None:
@@ -109,17 +122,16 @@ def test_states_wait_for_one_commit_after_the_other(problem, path, monkeypatch):
 
 
 @pytest.mark.parametrize("corner", [0.0, 0.5, 1.0, 7.0, 20.5, 39.0])
-def test_an_interrupted_run_goes_on(problem, path, corner):
+def test_an_interrupted_run_goes_on(problem, denser, path, corner):
     with pytest.raises(Interrupted):
         follow(problem, RANDOM, path, nodes=61, between=1, progress=StopAt(corner), arc=(-3.0, -0.1))
     interrupted = store.load(path)
     assert not interrupted.complete
     assert corner * 2 - 1 <= len(interrupted) <= corner * 2 + 2
-    expected = solve(problem, RANDOM, nodes=61, between=1, arc=(-3.0, -0.1))
-    for one, other in zip(interrupted, expected, strict=False):
+    for one, other in zip(interrupted, denser, strict=False):
         assert np.array_equal(one.shear, other.shear)
     resume(path)
-    assert_file(path, expected)
+    assert_file(path, denser)
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
@@ -140,7 +152,7 @@ def test_a_run_interrupted_again_and_again(problem, path, program, stops):
     assert_file(path, solve(problem, history, **options))
 
 
-def test_ctrl_c_leaves_a_solution_in_memory_with_what_was_solved(problem):
+def test_ctrl_c_leaves_a_solution_in_memory_with_what_was_solved(problem, whole):
     with pytest.raises(Interrupted) as stopped:
         solve(problem, RANDOM, nodes=61, progress=StopAt(5.0), arc=(-3.0, -0.1))
     assert isinstance(stopped.value, KeyboardInterrupt)
@@ -149,7 +161,7 @@ def test_ctrl_c_leaves_a_solution_in_memory_with_what_was_solved(problem):
     assert len(first) == 5
     assert not first.complete
     second = solve(problem, RANDOM[5:], start=first)
-    assert np.array_equal(second[-1].shear, solve(problem, RANDOM, grid=first.grid)[-1].shear)
+    assert np.array_equal(second[-1].shear, whole[-1].shear)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
@@ -168,7 +180,7 @@ def test_handlers_of_the_program_and_other_threads_are_left_alone(problem):
     assert len(results[0]) == 3
 
 
-def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, path):
+def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, whole, path):
     def progress(done: float, total: int) -> None:
         if total > 1 and done > 10.0:
             os.kill(os.getpid(), signal.SIGINT)
@@ -179,7 +191,7 @@ def test_a_second_ctrl_c_ends_at_once_and_the_file_stays_good(problem, path):
         follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
     assert not isinstance(stopped.value, Interrupted)
     resume(path)
-    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+    assert_file(path, whole)
 
 
 def test_a_lost_load_is_kept_with_what_was_solved(similar, path):
@@ -235,7 +247,7 @@ def begin_and_die(path: Path) -> None:
     os.close(file._file)
 
 
-def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
+def test_a_full_disk_leaves_what_was_there(problem, whole, path, monkeypatch):
     written, allowed = os.pwrite, [2_000_000]
 
     def pwrite(file: int, data: bytes, place: int) -> int:
@@ -251,10 +263,10 @@ def test_a_full_disk_leaves_what_was_there(problem, path, monkeypatch):
             follow(problem, RANDOM, path, nodes=61, arc=(-3.0, -0.1))
     assert 1 < store.load_points(path).size < 40
     resume(path)
-    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+    assert_file(path, whole)
 
 
-def test_a_failure_of_any_kind_leaves_what_was_there(problem, path):
+def test_a_failure_of_any_kind_leaves_what_was_there(problem, whole, path):
     def progress(done: float, total: int) -> None:
         if total > 1 and done > 10.0:
             raise RuntimeError("something else")
@@ -262,7 +274,7 @@ def test_a_failure_of_any_kind_leaves_what_was_there(problem, path):
     with pytest.raises(RuntimeError, match="something else"):
         follow(problem, RANDOM, path, nodes=61, progress=progress, arc=(-3.0, -0.1))
     resume(path)
-    assert_file(path, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+    assert_file(path, whole)
 
 
 @pytest.mark.slow
@@ -304,7 +316,7 @@ def test_a_run_that_ended_before_it_began(problem, path):
     assert len(store.load(path)) == 3
 
 
-def test_links_lead_to_one_run(problem, path, tmp_path):
+def test_links_lead_to_one_run(problem, whole, path, tmp_path):
     (tmp_path / "below").mkdir()
     link = tmp_path / "below" / "link.h5"
     link.symlink_to(path)
@@ -312,23 +324,31 @@ def test_links_lead_to_one_run(problem, path, tmp_path):
     with pytest.raises(Interrupted):
         follow(problem, RANDOM, link, nodes=61, progress=StopAt(9.0), arc=(-3.0, -0.1))
     resume(path)
-    assert_file(link, solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1)))
+    assert_file(link, whole)
     assert link.is_symlink()
 
 
 # -- checkpoints ---------------------------------------------------------------------------------------------
 
 
+@pytest.fixture(scope="module")
+def died(problem, tmp_path_factory):
+    """The folder of a run that has died after some thirty corners, with checkpoints."""
+    folder = tmp_path_factory.mktemp("died")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
+        patch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
+        patch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
+        with pytest.raises(Interrupted):
+            follow(problem, RANDOM, folder / "a.h5", nodes=61, progress=StopAt(30.0), arc=(-3.0, -0.1))
+    return folder
+
+
 @pytest.fixture
-def left(problem, path, monkeypatch):
-    """A run that has died after some thirty corners, with checkpoints."""
-    monkeypatch.setattr(writer, "CHECKPOINT_EVERY", 0.0)
-    monkeypatch.setattr(writer, "CHECKPOINT_SHARE", 0.0)
-    monkeypatch.setattr(writer.FileRecorder, "finish", lambda writer, _: writer.abort())
-    with pytest.raises(Interrupted):
-        follow(problem, RANDOM, path, nodes=61, progress=StopAt(30.0), arc=(-3.0, -0.1))
-    monkeypatch.undo()
-    return solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1))
+def left(died, whole, path):
+    """A copy of the run that has died; the solution that it would have come to."""
+    shutil.copytree(died, path.parent, dirs_exist_ok=True)
+    return whole
 
 
 def test_a_dead_run_goes_on_from_its_checkpoint(left, path):
@@ -468,10 +488,17 @@ def test_a_run_can_be_looked_at_while_it_goes_on(problem, path, monkeypatch):
 # -- branches ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("corner", [1, 5, 6, 20, 41])
-def test_a_branch_goes_on_from_any_corner(problem, path, tmp_path, corner):
+@pytest.fixture(scope="module")
+def stem(problem, tmp_path_factory):
+    """The file of a run with two restarts on its way."""
+    path = tmp_path_factory.mktemp("stem") / "a.h5"
     follow(problem, RANDOM, path, nodes=61, save_after=[5, 12])
-    trunk = store.load(path, after=corner)
+    return path
+
+
+@pytest.mark.parametrize("corner", [1, 5, 6, 20, 41])
+def test_a_branch_goes_on_from_any_corner(problem, stem, tmp_path, corner):
+    trunk = store.load(stem, after=corner)
     assert len(trunk) == len(trunk.history) == corner
     branch = LoadHistory([{"Q": 0.25}, {"Q": -0.25}])
     expected = solve(problem, RANDOM[:corner] + branch, grid=trunk.grid)
@@ -508,14 +535,13 @@ def test_the_way_to_a_corner_is_not_solved_again_where_it_repeats(problem, path)
     assert np.array_equal(branch[-1].shear, store.load(path)[-1].shear)
 
 
-def test_a_branch_of_a_branch_that_was_interrupted(problem, path, tmp_path):
+def test_a_branch_of_a_branch_that_was_interrupted(problem, whole, path, tmp_path):
     follow(problem, RANDOM[:10], path, nodes=61, arc=(-3.0, -0.1))
     second, third = tmp_path / "b.h5", tmp_path / "c.h5"
     with pytest.raises(Interrupted):
         follow(problem, RANDOM[10:30], second, start=store.load(path), progress=StopAt(7.0))
     resume(second)
     follow(problem, RANDOM[30:], third, start=store.load(second))
-    whole = solve(problem, RANDOM, nodes=61, arc=(-3.0, -0.1))
     assert np.array_equal(store.load(third)[-1].shear, whole[-1].shear)
     assert store.load(third)[-1].dissipation == whole[-1].dissipation
     fourth = solve(problem, RANDOM[35:], start=store.load(third, after=5))

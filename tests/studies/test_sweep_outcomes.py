@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-import signal
 import sqlite3
-import subprocess
-import sys
-import time
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 
 from fastpin.errors import InputError
@@ -27,7 +21,6 @@ from scripts.inline import Inline
 from tests.support.outcomes import CYCLES, FILE, TABLE, deadly, last_work
 from tests.support.plans import MOMENT
 
-ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = """
 [outcomes]
 pressure = { function = "mine.py:largest_pressure" }
@@ -212,29 +205,6 @@ def test_a_run_that_fails_when_solved_again_shows_no_old_outcome(copy: Path) -> 
     with Index(copy, write=True) as index:
         index.record([RunEnd(plan.points[0].id, "not enough memory")])
     assert [row["loss"] is None for row in sweep.rows(plan, copy)] == [True, False]
-
-
-def test_a_killed_sweep_goes_on_with_its_outcomes(tmp_path: Path) -> None:
-    path, out = tmp_path / "plan.toml", tmp_path / "out"
-    (tmp_path / "mine.py").write_text(FILE)
-    path.write_text(CYCLES.replace("[0.3, 0.6]", "{ from = 0.1, to = 0.9, count = 41 }") + FUNCTIONS)
-    command = [sys.executable, "-m", "fastpin", "sweep", str(path), "-o", str(out), "--workers", "2"]
-    plan, environment = read_plan(path), {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, start_new_session=True) as process:
-        until = time.monotonic() + 60.0
-        while sweep.status(plan, out).done < 5:
-            assert time.monotonic() < until
-            time.sleep(0.005)
-        children = psutil.Process(process.pid).children(recursive=True)
-        process.send_signal(signal.SIGKILL)
-        process.communicate(timeout=30)
-    psutil.wait_procs(children, timeout=10)
-    known = [row for row in sweep.rows(plan, out) if row["status"] == "done"]
-    assert 5 <= len(known) < 41
-    assert all(row["pressure"] == row["max_pressure"] for row in known)  # they come with the end of the run
-    summary = sweep.run(plan, out, Inline())
-    assert (summary.done, summary.ended, summary.read) == (41, 41 - len(known), 0)
-    assert all(row["pressure"] == row["max_pressure"] for row in sweep.rows(plan, out))
 
 
 @pytest.mark.slow

@@ -24,9 +24,16 @@ from fastpin.studies import sweep
 from fastpin.studies.plan import Plan, Point, parse_plan, read_plan
 from fastpin.studies.work import Pace
 from fastpin.studies.workers import Pool
+from scripts.inline import Inline
+from tests.support.outcomes import FILE
 from tests.support.plans import FRICTION, assert_same_as_serial
 
 ROOT = Path(__file__).resolve().parents[2]
+
+OUTCOME = """
+[outcomes]
+pressure = { function = "mine.py:largest_pressure" }
+"""
 
 
 def threads() -> list[int]:
@@ -103,8 +110,8 @@ def test_the_run_that_kills_its_worker_is_found(size: int, tmp_path: Path, monke
     assert point == guilty
     assert reason.startswith("the worker process died")
     monkeypatch.setattr(Plan, "case", case)
-    assert sweep.run(plan, tmp_path, workers=1).ended == 0
-    again = sweep.run(plan, tmp_path, workers=1, retry=True)
+    assert sweep.run(plan, tmp_path, Inline()).ended == 0
+    again = sweep.run(plan, tmp_path, Inline(), retry=True)
     assert (again.done, again.failed, again.ended) == (5, [], 1)
     assert_same_as_serial(plan, tmp_path)
 
@@ -142,9 +149,10 @@ def test_workers_that_are_being_started_are_deaf_to_interrupts(tmp_path: Path) -
     )
 
 
-def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
+def test_an_interrupted_and_a_killed_sweep_go_on_with_their_outcomes(tmp_path: Path) -> None:
     path, directory = tmp_path / "plan.toml", tmp_path / "out"
-    path.write_text(FRICTION.replace("COUNT", "41"))
+    (tmp_path / "mine.py").write_text(FILE)
+    path.write_text(FRICTION.replace("COUNT", "41") + OUTCOME)
     plan = read_plan(path)
 
     def wait_for(done: int) -> None:
@@ -170,13 +178,17 @@ def test_an_interrupted_and_a_killed_sweep_go_on(tmp_path: Path) -> None:
         process.communicate(timeout=30)
     assert len(left) == 2
     assert psutil.wait_procs(left, timeout=10)[1] == []
-    before = sweep.status(plan, directory).done
+    known = [row for row in sweep.rows(plan, directory) if row["status"] == "done"]
+    before = len(known)
     assert kept.done + 3 <= before < 41
+    assert all(row["pressure"] == row["max_pressure"] for row in known)  # they come with the end of the run
 
     with started(path, directory) as process:
         out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
     assert f"41 runs in {directory}: 41 done, 0 failed, 0 waiting; {41 - before} in " in out
+    assert "were read from their results" not in out
+    assert all(row["pressure"] == row["max_pressure"] for row in sweep.rows(plan, directory))
     assert list((directory / "results").iterdir()) == []
     assert_same_as_serial(plan, directory)
 

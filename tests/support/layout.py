@@ -7,7 +7,7 @@ explains the rules.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -104,7 +104,7 @@ class Import:
 
 
 class Source:
-    """A file, parsed, and what the rules ask of all its nodes. The trees of the tests share most files."""
+    """A file, parsed, and the answers of all its nodes to the rules. The trees of the tests share most files."""
 
     def __init__(self, text: str) -> None:
         self.tree = ast.parse(text)
@@ -130,20 +130,58 @@ class Source:
         ]
         """Line, owner and name of each attribute with an underscore."""
 
+    @cached_property
+    def functions(self) -> list[tuple[str, ast.FunctionDef]]:
+        """Every function with its name, such as ``Run.follow``."""
+        found = []
+        for node in self.tree.body:
+            if isinstance(node, ast.FunctionDef):
+                found.append((node.name, node))
+            elif isinstance(node, ast.ClassDef):
+                methods = (inner for inner in node.body if isinstance(inner, ast.FunctionDef))
+                found += [(f"{node.name}.{inner.name}", inner) for inner in methods]
+        return found
+
+    @cached_property
+    def compiled(self) -> dict[str, ast.FunctionDef]:
+        """The compiled functions by name."""
+        return {
+            node.name: node
+            for node in self.tree.body
+            if isinstance(node, ast.FunctionDef)
+            and any(isinstance(mark, ast.Name) and mark.id in ("compiled", "inner") for mark in node.decorator_list)
+        }
+
+    @cached_property
+    def called(self) -> list[tuple[int, str, str]]:
+        """Line, compiled function and called name of each call of a name in a compiled function."""
+        return [
+            (node.lineno, name, node.func.id)
+            for name, function in self.compiled.items()
+            for node in ast.walk(function)
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+        ]
+
 
 @lru_cache(maxsize=1000)
 def _source(text: str) -> Source:
     return Source(text)
 
 
-class Tree:
-    """The package's files, parsed. ``root`` is the folder that holds ``fastpin/``."""
+def texts_of(root: Path) -> dict[str, str]:
+    """The text of each file of the package, by its name in it. `root` is the folder that holds ``fastpin/``."""
+    package = root / "fastpin"
+    paths = sorted(package.rglob("*.py")) + sorted(package.rglob("*.pyi"))
+    return {str(path.relative_to(package)): path.read_text("utf-8") for path in paths}
 
-    def __init__(self, root: Path) -> None:
-        self.package = root / "fastpin"
-        paths = sorted(self.package.rglob("*.py")) + sorted(self.package.rglob("*.pyi"))
-        self.sources = {str(path.relative_to(self.package)): _source(path.read_text("utf-8")) for path in paths}
+
+class Tree:
+    """The package's files, parsed. `texts` are those of :func:`texts_of`."""
+
+    def __init__(self, texts: Mapping[str, str]) -> None:
+        self.sources = {file: _source(text) for file, text in texts.items()}
         self.trees = {file: source.tree for file, source in self.sources.items()}
+        self._targets: dict[tuple[str, str], str | None] = {}
 
     @cached_property
     def imports(self) -> list[Import]:
@@ -157,10 +195,16 @@ class Tree:
 
     def target(self, one: Import) -> str | None:
         """The file of the package that an import names; None for other packages, "" for the public face."""
-        if one.module.split(".")[0] != "fastpin":
+        key = one.module, one.name
+        if key not in self._targets:
+            self._targets[key] = self._found_target(*key)
+        return self._targets[key]
+
+    def _found_target(self, module: str, name: str) -> str | None:
+        first, *parts = module.split(".")
+        if first != "fastpin":
             return None
-        parts = one.module.split(".")[1:]
-        for candidate in ([*parts, one.name], parts):
+        for candidate in ([*parts, name], parts):
             path = "/".join(part for part in candidate if part)
             for file in (f"{path}.py", f"{path}/__init__.py"):
                 if file in self.trees:
@@ -169,16 +213,9 @@ class Tree:
 
     def functions(self) -> Iterator[tuple[str, ast.FunctionDef]]:
         """Every function with its name, such as ``solver/run.py Run.follow``."""
-        for file, tree in self.trees.items():
-            if file.endswith(".pyi"):
-                continue
-            for node in tree.body:
-                if isinstance(node, ast.FunctionDef):
-                    yield f"{file} {node.name}", node
-                elif isinstance(node, ast.ClassDef):
-                    for inner in node.body:
-                        if isinstance(inner, ast.FunctionDef):
-                            yield f"{file} {node.name}.{inner.name}", inner
+        for file, source in self.sources.items():
+            if not file.endswith(".pyi"):
+                yield from ((f"{file} {name}", function) for name, function in source.functions)
 
 
 def rank(file: str) -> int:
@@ -228,6 +265,9 @@ def no_circles(tree: Tree) -> Iterator[str]:
         target = tree.target(one)
         if target:
             edges.setdefault(one.file, set()).add(target)
+    while ends := [file for file, targets in edges.items() if not targets & edges.keys()]:
+        for file in ends:  # it leads to no circle
+            del edges[file]
 
     def reached(file: str) -> set[str]:
         found, waiting = set(), [file]
@@ -247,22 +287,12 @@ def kernels_alone(tree: Tree) -> Iterator[str]:
         target = tree.target(one)
         if _folder(one.file) == "kernels" and target is not None and _folder(target) not in ("kernels", "runtime"):
             yield f"{one.file}:{one.line} imports {one.module}"
-    compiled = {file: _compiled_functions(tree.trees[file]) for file in tree.trees if _folder(file) == "kernels"}
-    everywhere = {name for names in compiled.values() for name in names}
-    for file, own in compiled.items():
-        for name, function in own.items():
-            for node in ast.walk(function):
-                if isinstance(node, ast.Call) and getattr(node.func, "id", "") in everywhere - set(own):
-                    yield f"{file}:{node.lineno} {name} calls {ast.unparse(node.func)} of another file"
-
-
-def _compiled_functions(tree: ast.Module) -> dict[str, ast.FunctionDef]:
-    return {
-        node.name: node
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef)
-        and any(isinstance(mark, ast.Name) and mark.id in ("compiled", "inner") for mark in node.decorator_list)
-    }
+    kernels = {file: source for file, source in tree.sources.items() if _folder(file) == "kernels"}
+    everywhere = {name for source in kernels.values() for name in source.compiled}
+    for file, source in kernels.items():
+        for line, name, called in source.called:
+            if called in everywhere - set(source.compiled):
+                yield f"{file}:{line} {name} calls {called} of another file"
 
 
 def one_home(tree: Tree) -> Iterator[str]:
@@ -370,7 +400,7 @@ RULES: tuple[Callable[[Tree], Iterator[str]], ...] = (
 )
 
 
-def broken(root: Path) -> list[str]:
-    """All sentences of all rules."""
-    tree = Tree(root)
+def broken(texts: Mapping[str, str]) -> list[str]:
+    """All sentences of all rules, for the files of the package by name."""
+    tree = Tree(texts)
     return [f"{rule.__name__}: {sentence}" for rule in RULES for sentence in rule(tree)]
