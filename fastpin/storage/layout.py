@@ -456,12 +456,13 @@ def check_growing(file: h5py.File, nodes: int) -> None:
     }
     for part, arrays in names.items():
         group = file[part]
+        size = count(group)
         for name in arrays:
             dataset = dataset_of(group, name, np.int64 if name == "state" else _dtype(name))
             if dataset.maxshape[0] is not None or dataset.chunks is None:
                 raise ValueError(f"{part}/{name} can't grow")
-            if len(dataset) != count(group):
-                raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {count(group)}")
+            if len(dataset) != size:
+                raise ValueError(f"{part}/{name} has {len(dataset)} rows, not {size}")
 
 
 def read_states(

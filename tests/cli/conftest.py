@@ -1,11 +1,12 @@
-"""Figures of the commands, drawn coarsely."""
+"""Rough figures for the tests of all commands."""
 
 from __future__ import annotations
 
 import pytest
 
+from tests.support.drawing import draw_roughly
+
 
 @pytest.fixture(autouse=True)
-def _rough(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bitmaps of few dots: the tests of figures look at their quality, and the tests of commands at their names."""
-    monkeypatch.setattr("fastpin.figures.style.number_of_dots", lambda dpi: 30.0)
+def _rough_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_roughly(monkeypatch)

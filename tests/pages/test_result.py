@@ -36,6 +36,7 @@ from fastpin.report.table import MAX_ROWS
 from fastpin.solver.errors import Interrupted
 from fastpin.states.quantities import QUANTITIES
 from fastpin.storage.layout import RESIDUALS
+from tests.support.drawing import draw_roughly
 from tests.support.html import Page
 from tests.support.samples import JOINT, sample_result
 
@@ -65,7 +66,9 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def text(stored: Path) -> str:
     """The page of the stored result, with its case file."""
     path = stored.with_name("page.html")
-    write_report(stored, path, case=stored.with_name("case.toml"))
+    with pytest.MonkeyPatch.context() as patch:
+        draw_roughly(patch)
+        write_report(stored, path, case=stored.with_name("case.toml"))
     return path.read_text(encoding="utf-8")
 
 
@@ -165,6 +168,7 @@ def test_rows_that_repeat_are_folded(text: str, stored: Path) -> None:
     assert words in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_gap_may_be_the_last_row(tmp_path: Path) -> None:
     result = sample_result([{"P": 1e6}, *[{"P": 1e6}] * 8], nodes=21)
     states = [dataclasses.replace(result[0], step=step) for step in range(9)]
@@ -180,7 +184,8 @@ def test_a_map_holds_all_states_or_says_that_it_does_not(joined: int, words: str
     assert picture.caption.startswith(f"{words} and slip over the angle")
 
 
-def test_few_states_of_a_long_history_are_read_and_drawn() -> None:
+def test_few_states_of_a_long_history_are_read_and_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fastpin.report.states.MOST_COMPARED", 100)
     result = sample_result([{"P": 1e6 + 100.0 * k, "Q": 1e5 * (-1) ** k} for k in range(200)], nodes=21)
     source = Source.of_result(result)
     read: list[int] = []

@@ -43,7 +43,7 @@ def test_a_run_interrupted_again_and_again(problem: Problem, path: Path, program
     with pytest.raises(Interrupted):
         record(problem, history, path, progress=StopAt(corner), **options)
     while True:
-        corner += 5.0
+        corner += 11.0
         try:
             resume(path, StopAt(corner))
             break
