@@ -6,7 +6,7 @@ import functools
 import numpy as np
 import pytest
 
-from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, report
+from fastpin import MATERIALS, LoadHistory, MaterialPair, Problem, figures, load, record, report, storage
 from fastpin.cli.main import main
 from fastpin.cli.options import PLOT_OPTIONS
 from fastpin.cli.plot import KINDS
@@ -20,6 +20,16 @@ def stored(tmp_path_factory):
     cycle = LoadHistory([{"Q": 1e5, "sxx": 60e6}, {"Q": -1e5, "sxx": 6e6}])
     record(problem, LoadHistory([{"P": 6e5}]) + cycle.repeated(2), path, nodes=101, between=1, slip_sums=True)
     return path
+
+
+EXTREMES = functools.cache(storage.marked_extremes)
+
+
+@pytest.fixture(autouse=True)
+def _extremes_are_found_once(monkeypatch):
+    """Many tables and figures of one file name its extremes. No file of these tests changes."""
+    for module in (figures.states, storage):
+        monkeypatch.setattr(module, "marked_extremes", EXTREMES)
 
 
 @pytest.fixture
