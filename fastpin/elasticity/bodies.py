@@ -229,6 +229,7 @@ def _columns(problem: Problem) -> Displacements:
     return {place: _through_bush(problem, column) for place, column in columns.items()}
 
 
+@lru_cache(maxsize=16)
 def lug_columns(problem: Problem, rim: float) -> Displacements:
     """Displacements over the radius of the lug's own hole, `rim` R, per unit load."""
     joint, lug = problem.joint, problem.joint.lug

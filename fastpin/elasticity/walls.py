@@ -31,6 +31,9 @@ SMALLEST = 1e-18
 SERIES_BELOW, SERIES_TERMS = 0.2, 12
 """Radius, in parts of the rim's, below which the half cosine is summed by its series, and the terms of the series."""
 
+REMEMBERED = 80
+"""Tractions whose harmonics and fields are remembered: the hat functions of :mod:`fastpin.states.reading_bounds`."""
+
 LEAST_BORE = 1e-30
 """Least bore of the series, in parts of the radius: powers of smaller ones are no numbers."""
 
@@ -120,7 +123,7 @@ def _trimmed(series: np.ndarray) -> np.ndarray:
 # -- harmonics of the tractions -------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=REMEMBERED)
 def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
     """Harmonics (t_n, conj t_-n) of t = s_rr + i s_rtheta on the contact rim, n = 0 to `highest`; (highest + 1, 2)."""
     found = np.zeros((highest + 1, 2), dtype=complex)
@@ -137,7 +140,7 @@ def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
 # -- the pin --------------------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=REMEMBERED)
 def pin_wall(problem: Problem, tractions: Tractions) -> Wall | None:
     """The field of a hollow pin beyond that of a solid pin under a force at its centre; None for a solid pin."""
     body, joint = problem.pin_body, problem.joint
@@ -196,7 +199,7 @@ class PlateWalls(NamedTuple):
     lug: Wall | None
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=REMEMBERED)
 def plate_walls(problem: Problem, tractions: Tractions, remote: tuple[float, ...]) -> PlateWalls | None:
     """The smooth fields of a plate under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
     joint = problem.joint
@@ -221,16 +224,16 @@ def _bush_wall(problem: Problem, t: np.ndarray, remote: tuple[float, ...]) -> tu
     joint, kolosov = problem.joint, problem.surfaces.plate_kolosov
     outer, unit, highest = joint.bush, problem.surfaces.plate_compliance, len(t) - 1
     order = np.arange(2.0, highest + 1.0)
-    layer = bodies.bush_layer(problem, order)
-    assert layer is not None
     assert outer is not None
     moved = _moved_hole(problem, t[1], remote, highest)
-    far, q, found, passed = bodies.lug_compliance(problem, order), outer**-2.0, Amplitudes.zero(highest), t.copy()
-    growing = (layer.amplitudes(far) @ t[2:, :, None])[..., 0] + layer.moved_outside(far, bodies.pairs_of(moved))
+    q, found, passed = outer**-2.0, Amplitudes.zero(highest), t.copy()
+    amplitudes, misfit, growing_traction, decaying_traction = _bush_matrices(problem, highest)
+    growing = (amplitudes @ t[2:, :, None])[..., 0]
+    growing = growing + np.linalg.solve(misfit, bodies.pairs_of(moved)[..., None])[..., 0]
     found.A[2:], found.C[2:] = growing.T
     A, C = growing.T * np.array([outer**-order, outer ** (2.0 - order)])
     found.B[2:], found.D[2:] = -(order + 1.0) * A - C, -order * order * A - (order - 1.0) * C
-    passed[2:] = ((layer.growing_traction @ growing[..., None]) + (layer.decaying_traction @ t[2:, :, None]))[..., 0]
+    passed[2:] = ((growing_traction @ growing[..., None]) + (decaying_traction @ t[2:, :, None]))[..., 0]
     lug, wall = joint.lug_uniform, (1.0 - 1.0 / outer) * (1.0 + 1.0 / outer)
     stiff = 0.5 * unit * (kolosov - 1.0 + 2.0 * q) - 2.0 * lug * wall
     uniform = (q * t[0, 0].real * (lug + 0.5 * unit) + moved[highest].real) / stiff
@@ -243,6 +246,19 @@ def _bush_wall(problem: Problem, t: np.ndarray, remote: tuple[float, ...]) -> tu
     passed[1, 0] = joint.bush_first.traction(outer) @ t[1] + 2.0 * grown * (outer - outer**-3.0)
     passed[1, 1] = t[1, 1] / outer
     return found.wall(kolosov, 1.0, outer), passed
+
+
+@lru_cache(maxsize=16)
+def _bush_matrices(problem: Problem, highest: int) -> tuple[np.ndarray, ...]:
+    """Matrices of the bush for the harmonics from 2 to `highest`, shape (m, 2, 2) each.
+
+    They are the growing amplitudes per traction on the contact rim, the misfit, and the traction at the outer rim per
+    growing amplitude and per traction on the contact rim; see :class:`fastpin.kernels.harmonics.Layer`.
+    """
+    order = np.arange(2.0, highest + 1.0)
+    layer, far = bodies.bush_layer(problem, order), bodies.lug_compliance(problem, order)
+    assert layer is not None
+    return layer.amplitudes(far), layer.misfit(far), layer.growing_traction, layer.decaying_traction
 
 
 def _moved_hole(problem: Problem, first: np.ndarray, remote: tuple[float, ...], highest: int) -> np.ndarray:

@@ -302,15 +302,17 @@ class Layer(NamedTuple):
         found: np.ndarray = 0.5 * self.compliance * (self.kolosov + 1.0) * np.stack([A, rest], axis=1)
         return found
 
+    def misfit(self, far: np.ndarray) -> np.ndarray:
+        """Displacement at the outer rim per growing amplitude, beyond that of the body outside, shape (m, 2, 2)."""
+        return self.growing_displacement - far @ self.growing_traction
+
     def amplitudes(self, far: np.ndarray) -> np.ndarray:
         """Growing amplitudes per traction on the contact rim; `far`, (m, 2, 2), is the whole compliance outside."""
-        system = self.growing_displacement - far @ self.growing_traction
-        return np.linalg.solve(system, far @ self.decaying_traction - self.decaying_displacement)
+        return np.linalg.solve(self.misfit(far), far @ self.decaying_traction - self.decaying_displacement)
 
     def moved_outside(self, far: np.ndarray, displacement: np.ndarray) -> np.ndarray:
         """Growing amplitudes (m, 2) when the free hole of the body outside is displaced by `displacement` (m, 2) c."""
-        system = self.growing_displacement - far @ self.growing_traction
-        return np.linalg.solve(system, displacement[..., None])[..., 0]
+        return np.linalg.solve(self.misfit(far), displacement[..., None])[..., 0]
 
     def loaded_outside(self, traction: np.ndarray) -> np.ndarray:
         """Growing amplitudes (m, 2) under tractions (t_n, conj t_-n) at the outer rim, shape (m, 2)."""

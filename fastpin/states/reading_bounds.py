@@ -7,7 +7,8 @@ follow from the way in which they are read. The bound of the largest hoop stress
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +52,9 @@ The refined shear has a step there. Its hoop stress was up to 19 steps higher in
 
 MAPPED = 40
 """Different states from which on the stresses of straight lines are computed by matrices. Fewer are all read."""
+
+AT_ONCE = 32
+"""Nodes whose hat functions are looked at together. :mod:`fastpin.elasticity.walls` remembers their fields."""
 
 COARSER, THICK = 4, 0.1
 """Every so many points of the interface of a bush are taken, if its wall is thicker than this part of the hole radius.
@@ -239,43 +243,72 @@ def _sticking(problem: Problem, pressure: np.ndarray, shear: np.ndarray, status:
 # -- stresses ------------------------------------------------------------------------------------------------------
 
 
+class Hats:
+    """The hat functions of the nodes as pressures and shears, and which of them are known to stresses.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : Grid
+
+    Attributes
+    ----------
+    known : ndarray of bool, shape (n,)
+    unit : float
+        Height of the hats. Beside the stress of a press fit a traction of 1 Pa is rounding.
+    """
+
+    def __init__(self, problem: Problem, grid: Grid) -> None:
+        self._grid, self.known = grid, np.zeros(grid.size, dtype=bool)
+        self.unit = problem.press_fit_pressure or 1.0
+
+    def blocks(self, pressure: np.ndarray, shear: np.ndarray) -> Iterator[tuple[np.ndarray, list[Tractions]]]:
+        """Give all nodes (k,) that these tractions (m, n) load and that are not known yet, and then know them.
+
+        With some nodes come their hats as pressures, and then as shears.
+        """
+        loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
+        new, (before, after) = np.flatnonzero(loaded & ~self.known), _spacings(self._grid)
+        for begin in range(0, new.size, AT_ONCE):
+            nodes, hats = new[begin : begin + AT_ONCE], []
+            for column in (1, 2):
+                for node in nodes.tolist():
+                    hat = np.zeros((3, 3))
+                    hat[:, 0] = self._grid.theta[node] + np.array([-before[node], 0.0, after[node]])
+                    hat[1, column] = self.unit
+                    hats.append(Tractions((hat,)))
+            yield nodes, hats
+        self.known[new] = True
+
+
 class NodalStress:
     """The stress at points of a body as a linear function of the nodal tractions: straight lines between the nodes.
 
     Parameters
     ----------
-    grid : Grid
+    hats : Hats
     stress : callable
         ``stress(tractions, remote)`` gives (srr, stt, srt) at the points, shape (3, m).
     """
 
-    def __init__(self, grid: Grid, stress: Callable[[Tractions, np.ndarray], np.ndarray]) -> None:
-        self._grid, self._stress = grid, stress
+    def __init__(self, hats: Hats, stress: Callable[[Tractions, np.ndarray], np.ndarray]) -> None:
+        self._hats, self._stress, self._unit = hats, stress, hats.unit
         self._press_fit = stress(Tractions(()), np.zeros(3))
-        self._unit = float(np.abs(self._press_fit).max(initial=0.0)) or 1.0  # beside it a traction of 1 Pa is rounding
         self._remote = np.array([stress(Tractions(()), self._unit * one) - self._press_fit for one in np.eye(3)])
         self._remote /= self._unit
-        self._response = np.zeros((2, 3, grid.size, self._press_fit.shape[1]))
-        self._known = np.zeros(grid.size, dtype=bool)
+        self._response = np.zeros((2, 3, hats.known.size, self._press_fit.shape[1]))
 
-    def learn(self, pressure: np.ndarray, shear: np.ndarray) -> None:
-        """Compute the stresses of the hat functions of all nodes that these tractions (k, n) load."""
-        before, after = _spacings(self._grid)
-        loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
-        for node in np.flatnonzero(loaded & ~self._known).tolist():
-            theta = self._grid.theta[node] + np.array([-before[node], 0.0, after[node]])
-            for k in range(2):
-                hat = np.zeros((3, 3))
-                hat[:, 0], hat[1, 1 + k] = theta, self._unit
-                found = self._stress(Tractions((hat,)), np.zeros(3)) - self._press_fit
-                self._response[k, :, node] = found / self._unit
-            self._known[node] = True
+    def learn(self, nodes: np.ndarray, hats: Sequence[Tractions]) -> None:
+        """Compute the stresses of the hat functions of some `nodes` (k,), see :meth:`Hats.blocks`."""
+        for place, hat in enumerate(hats):
+            found = (self._stress(hat, np.zeros(3)) - self._press_fit) / self._unit
+            self._response[place // nodes.size, :, nodes[place % nodes.size]] = found
 
     def component(
         self, which: int, points: slice, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray
     ) -> np.ndarray:
         """Return a component of (srr, stt, srt) at some points, shape (k, points)."""
-        known, response = self._known, self._response[:, which]
+        known, response = self._hats.known, self._response[:, which]
         found = pressure[:, known] @ response[0, known, points] + shear[:, known] @ response[1, known, points]
         return np.asarray(found + remote @ self._remote[:, which, points] + self._press_fit[which, points])
 
@@ -289,17 +322,21 @@ class MisesBounds:
     grid : Grid
     owner : str
         One of :data:`fastpin.states.yielding.OWNERS`.
+    hats : Hats
+
+    Attributes
+    ----------
+    stress : NodalStress
     """
 
-    def __init__(self, problem: Problem, grid: Grid, owner: str) -> None:
+    def __init__(self, problem: Problem, grid: Grid, owner: str, hats: Hats) -> None:
         self._problem, self._places = problem, Places.of(problem, grid, owner)
-        self._stress = NodalStress(grid, lambda tractions, remote: self._places.stress(problem, tractions, remote))
+        self.stress = NodalStress(hats, lambda tractions, remote: self._places.stress(problem, tractions, remote))
 
     def of(self, pressure: np.ndarray, shear: np.ndarray, remote: np.ndarray) -> Pair:
-        """Return the bounds for tractions of the nodes (k, n) and remote stresses (k, 3)."""
-        self._stress.learn(pressure, shear)
+        """Return the bounds for tractions (k, n) of nodes that are known, and remote stresses (k, 3)."""
         every = slice(0, self._places.theta.size)
-        stress = np.array([self._stress.component(k, every, pressure, shear, remote) for k in range(3)])
+        stress = np.array([self.stress.component(k, every, pressure, shear, remote) for k in range(3)])
         top = self._places.von_mises(self._problem, stress).max(axis=1)
         slack = ROUNDING * np.abs(stress).max(axis=(0, 2))
         return top - slack, top + slack
@@ -321,32 +358,42 @@ class StressBounds:
     BUSH = ("bush_open_margin", "bush_slip_margin", "bush_least_friction")
 
     def __init__(self, problem: Problem, grid: Grid, names: set[str]) -> None:
-        mises = {name for name in names if name.startswith(PREFIX)}
-        self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *mises}
-        self._mises = {name: MisesBounds(problem, grid, name.removeprefix(PREFIX)) for name in sorted(mises)}
+        owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
+        self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
+        self._owners, self._hats = owners, Hats(problem, grid)
         self._bush = problem.plate_body if isinstance(problem.plate_body, Bushing) else None
         self._problem, self._grid = problem, grid
-        self._stress: NodalStress | None = None
 
     def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray, remote: np.ndarray) -> dict[str, Pair]:
         """Return the bounds for tractions and status of the nodes (k, n) and remote stresses (k, 3)."""
         values = pressure, shear, remote
+        stresses = [bounds.stress for bounds in self._mises.values()]
+        plate = self._plate if self.names - self._owners.keys() else None
+        for nodes, hats in self._hats.blocks(pressure, shear):
+            for stress in stresses if plate is None else [*stresses, plate]:
+                stress.learn(nodes, hats)
         found: dict[str, Pair] = {name: bounds.of(*values) for name, bounds in self._mises.items()}
-        if self.names == found.keys():
+        if plate is None:
             return found
-        if self._stress is None:
-            self._stress = NodalStress(self._grid, self._of_plate(*self._points()))
-        self._stress.learn(pressure, shear)
         if self.HOOP in self.names:
-            found[self.HOOP] = _hoop_bounds(self._stress.component(1, slice(0, self._rim), *values), shear, status)
+            found[self.HOOP] = _hoop_bounds(plate.component(1, slice(0, self._rim), *values), shear, status)
         if self._bush is not None and self.names & {*self.BUSH}:
             interface = slice(self._rim, self._rim + self._round)
-            normal, along = (self._stress.component(k, interface, *values) for k in (0, 2))
+            normal, along = (plate.component(k, interface, *values) for k in (0, 2))
             found |= zip(self.BUSH, _interface_bounds(-normal, along, self._bush.friction), strict=True)
         if self.SEAT in self.names:
-            hoop = self._stress.component(1, slice(self._rim + self._round, None), *values)
+            hoop = plate.component(1, slice(self._rim + self._round, None), *values)
             found[self.SEAT] = _seat_bounds(hoop) if self._is_thick else _unbounded(len(hoop))
         return {name: found[name] for name in self.names}
+
+    @cached_property
+    def _mises(self) -> dict[str, MisesBounds]:
+        return {name: MisesBounds(self._problem, self._grid, owner, self._hats) for name, owner in self._owners.items()}
+
+    @cached_property
+    def _plate(self) -> NodalStress:
+        """The stress round the hole and at the interface and the seat of a bush."""
+        return NodalStress(self._hats, self._of_plate(*self._points()))
 
     def _of_plate(
         self, theta: np.ndarray, depth: np.ndarray, seat: np.ndarray
