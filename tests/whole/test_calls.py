@@ -40,7 +40,7 @@ def test_the_sample_has_each_parameter_of_each_public_callable(sample):
 
 def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     monkeypatch.setattr(calls, "LONGEST", 0.1)
-    monkeypatch.setattr(calls, "LONGEST_WAIT", 5.0)
+    monkeypatch.setattr(calls, "LONGEST_WAIT", 2.0)
 
     def call(kind: str) -> None:
         if kind == "raw":
@@ -67,7 +67,7 @@ def test_a_raw_error_a_slow_call_and_a_crash_are_findings(monkeypatch):
     assert made[0][1].words.startswith("AttributeError: shape")
     assert [ending.words for _, ending in made[1:3]] == [
         "no end within 0.1 s of the processor",
-        "no end within 5 s",
+        "no end within 2 s",
     ]
     assert "exit code 3" in made[3][1].words
 

@@ -440,7 +440,7 @@ def test_a_plan_names_the_runs_in_doubt(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("other", [False, True], ids=["named", "given"])
 def test_a_pressure_above_the_yield_strength_is_doubted(
-    other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    other: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], undrawn: None
 ) -> None:
     strength = "fatigue = { yield_strength = 100e6 }" if other else "yield_strength = 100e6"
     text = EXAMPLE.replace("nu = 0.33", f"nu = 0.33\n{strength}").replace("nodes = 401", "nodes = 51")
