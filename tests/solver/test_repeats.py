@@ -19,7 +19,7 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.cycles import consecutive_cycles, periodic_from
 from tests.support.marks import first_quick
-from tests.support.programs import CYCLE, FIELDS, PROGRAMS, RANDOM, P, assert_same, known, q
+from tests.support.programs import CYCLE, FIELDS, PROGRAMS, RANDOM, P, assert_same, grid_of, known, q
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +39,10 @@ def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, progra
     problem, history = request.getfixturevalue(kind), PROGRAMS[program]
     keep = keep if history.longest_cycle or keep != "cycles" else "every 40"
     between = 1 if keep == "all" else 0
-    short = solve(problem, history, nodes=61, between=between, keep=keep)
-    whole = solve(problem, history, nodes=61, between=between, keep=keep, shortcut=False)
+    short, whole = (
+        solve(problem, history, grid=grid_of(problem, program), between=between, keep=keep, shortcut=shortcut)
+        for shortcut in (True, False)
+    )
     assert_same(short, whole)
     assert known(short) == known(whole)
     assert whole.statistics["repeated"] == 0
@@ -53,7 +55,7 @@ def test_what_repeats_has_the_bits_of_what_is_solved_again(request, kind, progra
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_split_history_has_the_bits_of_the_whole(free, program):
     history = PROGRAMS[program]
-    whole = solve(free, history, nodes=61)
+    whole = solve(free, history, grid=grid_of(free, program))
     for cut in (3, 8, len(history) - 2):
         first = solve(free, history[:cut], grid=whole.grid)
         second = solve(free, history[cut:], start=first)
@@ -135,8 +137,8 @@ def test_a_cycle_that_began_before_the_history_is_not_known(held):
 
 
 def test_the_last_cycle_is_not_solved_for_its_last_state(held):
-    history = P + q(*RANDOM, 0.3).repeated(4)
-    whole = solve(held, history, nodes=61, shortcut=False)
+    history = PROGRAMS["spectrum"]
+    whole = solve(held, history, grid=grid_of(held, "spectrum"), shortcut=False)
     for keep in ("all", "cycles", f"every {len(RANDOM) + 1}"):
         result = solve(held, history, grid=whole.grid, keep=keep)
         assert result.statistics["repeated"] == 2 * (len(RANDOM) + 1)

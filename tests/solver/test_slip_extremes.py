@@ -17,18 +17,17 @@ from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-from scripts.histories import random_case
 from tests.support.marks import first_quick
 from tests.support.programs import EXTREMES, RANDOM, SLIP, P, q
-from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
+from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, random_states, solved, unitless
 
 PATHS = ["unlike bodies", "remote stress", "driven", "normal unloading", "neat fit", "interference"]
 
 
-def solved(name: str, **options: Any) -> list[State]:
-    problem, history, given = CASES[name]
-    given = {} if "grid" in options else given
-    return list(solve(problem, history, slip_sums=True, **{**given, **options}))
+def stopped(name: str, between: int | list[float]) -> list[State]:
+    """The states of a case with other stops inside its steps, on the same grid."""
+    plain = solved(name)
+    return list(solve(plain.problem, plain.history, slip_sums=True, between=between, grid=plain.grid))
 
 
 def extremes(states: Sequence[State]) -> np.ndarray:
@@ -64,19 +63,18 @@ def assert_contains(states: Sequence[State]) -> None:
     [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name],
 )
 def test_extremes_contain_the_states(name: str, method: str) -> None:
-    assert_contains(solved(name, between=4, **METHODS[method]))
+    assert_contains(solved(name, 4, method))
 
 
 @pytest.mark.parametrize("seed", first_quick(8, range(100, 130)))
 def test_extremes_of_random_histories_contain_the_states(seed: int) -> None:
-    problem, history = random_case(seed)
-    assert_contains(list(solve(problem, history, nodes=81, slip_sums=True, between=2)))
+    assert_contains(random_states(seed))
 
 
 @pytest.fixture(scope="module")
 def finer(request: pytest.FixtureRequest) -> list[list[State]]:
     """The states of a case with more and more stops inside its steps."""
-    return [solved(request.param, between=between) for between in (7, 63, 511)]
+    return [stopped(request.param, between) for between in (3, 31, 255)]
 
 
 @pytest.mark.parametrize("finer", first_quick(3, PATHS), indirect=True)
@@ -87,7 +85,7 @@ def test_readings_from_states_converge_to_the_exact_extremes(finer: list[list[St
         missed.append(float(np.nanmax(np.abs(found - exact))) / size_of(states))
     assert missed[1] < 0.3 * missed[0]
     assert missed[2] < 0.3 * missed[1]
-    assert missed[2] < 2e-3
+    assert missed[2] < 4e-3
     assert np.array_equal(np.isnan(found), np.isnan(exact))
 
 
@@ -109,15 +107,15 @@ def test_sums_from_state_to_state_converge_to_the_exact_sums(finer: list[list[St
         errors.append(np.abs(naive(states) - exact).max(axis=1) / exact.max(axis=1))
     assert np.all(errors[1] < 0.4 * errors[0])
     assert np.all(errors[2] < 0.4 * errors[1])
-    assert np.all(errors[2] < 1.2e-2)  # measured: 9.2e-3; 5.8e-3 with 1,023 and 6e-4 with 8,191 states a step
+    assert np.all(errors[2] < 2.8e-2)  # measured: 2.1e-2; 9.2e-3 with 511 and 6e-4 with 8,191 states a step
 
 
 @pytest.mark.parametrize("name", ["snap", "snap under a moment"])
 def test_readings_across_snaps_approach_the_extremes(name: str) -> None:
     """What happens at one instant of the load is in the extremes; the states see a part of it only."""
     missed = []
-    for between in (3, 511):
-        states = solved(name, between=between)
+    for between in (3, 255):
+        states = stopped(name, between)
         assert_contains(states)
         missed.append(float(np.nanmax(np.abs(read(states) - extremes(states)))) / size_of(states))
     assert missed[1] < 0.3 * missed[0]
@@ -128,8 +126,7 @@ def test_extremes_do_not_depend_on_the_states_between(name: str) -> None:
     first = solved(name)
     expected, rounding = extremes(first), (1e-10 if "snap" in name else 1e-13) * size_of(first)
     for between in (19, [0.1, 0.35, 0.7]):
-        states = solved(name, between=between, grid=first[0].grid)
-        found = extremes(states)
+        found = extremes(stopped(name, between))
         assert np.array_equal(np.isnan(found), np.isnan(expected))
         assert np.nanmax(np.abs(found - expected)) <= rounding
 
@@ -139,7 +136,8 @@ def test_increments_converge_to_the_extremes_of_the_path(name: str) -> None:
     path = solved(name)
     exact, errors = extremes(path), []
     for increments in (10, 160):
-        found = extremes(solved(name, method="increment", increments=increments, grid=path[0].grid))
+        options = {"method": "increment", "increments": increments, "grid": path.grid}
+        found = extremes(solve(path.problem, path.history, slip_sums=True, **options))
         errors.append(float(np.nanmax(np.abs(found - exact))) / size_of(path))
     assert errors[1] < 0.3 * errors[0]
     assert errors[1] < 0.02
@@ -157,7 +155,7 @@ def test_extremes_have_the_same_bits_whatever_is_kept(keep: str) -> None:
 
 
 def test_states_between_count_from_the_corner() -> None:
-    states = solved("unlike bodies", between=3)
+    states = list(solved("unlike bodies", 3))
     for begin in range(0, len(states), 4):
         for earlier, later in zip(states[begin : begin + 3], states[begin + 1 : begin + 4], strict=True):
             assert not np.any(later.slip_lowest > earlier.slip_lowest)

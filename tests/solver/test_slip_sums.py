@@ -17,10 +17,21 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.storage.recording import record
 from fastpin.storage.store import load, save
-from scripts.histories import random_case
 from tests.support.marks import first_quick
-from tests.support.programs import EXTREMES, FIELDS, NUMBERS, PROGRAMS, RANDOM, SLIP, P, assert_same, known, q
-from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, unitless
+from tests.support.programs import (
+    EXTREMES,
+    FIELDS,
+    NUMBERS,
+    PROGRAMS,
+    RANDOM,
+    SLIP,
+    P,
+    assert_same,
+    grid_of,
+    known,
+    q,
+)
+from tests.support.slip_cases import CASES, LIKE, METHODS, UNLIKE, random_states, solved, unitless
 
 
 def energies(result: Result) -> np.ndarray:
@@ -45,9 +56,7 @@ def assert_balance(result: Result) -> None:
     [(name, method) for name in CASES for method in METHODS if method == "path" or "snap" not in name],
 )
 def test_the_friction_energy_of_all_nodes_is_the_dissipation(name: str, method: str) -> None:
-    problem, history, options = CASES[name]
-    options = {**options, **METHODS[method], "between": 2}
-    found = solve(problem, history, slip_sums=True, **options)
+    found = solved(name, 4, method)
     assert_balance(found)
     assert found[-1].dissipation > 0.0
     assert sum(float(state.slip_distance.max()) for state in found) > 0.0
@@ -55,8 +64,8 @@ def test_the_friction_energy_of_all_nodes_is_the_dissipation(name: str, method: 
 
 @pytest.mark.parametrize("name", list(CASES))
 def test_nothing_else_changes(name: str) -> None:
-    problem, history, options = CASES[name]
-    plain, summed = (solve(problem, history, slip_sums=sums, **options) for sums in (False, True))
+    summed = solved(name)
+    plain = solve(*CASES[name][:2], grid=summed.grid)
     for one, two in zip(plain, summed, strict=True):
         assert all(getattr(one, field) is None for field in (*SLIP, *EXTREMES))
         assert all(np.array_equal(getattr(one, field), getattr(two, field)) for field in FIELDS)
@@ -66,15 +75,13 @@ def test_nothing_else_changes(name: str) -> None:
 
 @pytest.mark.parametrize("seed", first_quick(8, range(100, 130)))
 def test_random_histories_balance(seed: int) -> None:
-    problem, history = random_case(seed)
-    assert_balance(solve(problem, history, nodes=81, slip_sums=True))
+    assert_balance(random_states(seed))
 
 
 def test_the_sums_do_not_depend_on_the_states_that_are_kept() -> None:
-    problem, history, options = CASES["unlike bodies"]
-    whole = solve(problem, history, slip_sums=True, **options)
+    whole = solved("unlike bodies")
     for between in (1, [0.1, 0.35, 0.7]):
-        parts = solve(problem, history, slip_sums=True, between=between, **options)
+        parts = solve(whole.problem, whole.history, slip_sums=True, between=between, grid=whole.grid)
         size = len(parts) // len(whole)
         for place, state in enumerate(whole):
             mine = parts[place * size : (place + 1) * size]
@@ -106,7 +113,8 @@ def held() -> Problem:
 def test_what_repeats_has_the_bits_of_what_is_solved_again(held: Problem, program: str, keep: str, tmp_path) -> None:
     history = PROGRAMS[program]
     keep = keep if history.longest_cycle or keep != "cycles" else "every 7"
-    options: dict[str, Any] = {"nodes": 61, "keep": keep, "between": 1 if keep == "all" else 0, "slip_sums": True}
+    options: dict[str, Any] = {"keep": keep, "between": 1 if keep == "all" else 0, "slip_sums": True}
+    options["grid"] = grid_of(held, program)
     short = solve(held, history, **options)
     whole = solve(held, history, shortcut=False, **options)
     assert_same(short, whole)
@@ -130,7 +138,7 @@ def test_repeated_states_share_their_sums(held: Problem) -> None:
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_split_history_has_the_sums_of_the_whole(held: Problem, program: str) -> None:
     history = PROGRAMS[program]
-    whole = solve(held, history, nodes=61, slip_sums=True)
+    whole = solve(held, history, grid=grid_of(held, program), slip_sums=True)
     for cut in (3, 8, len(history) - 2):
         first = solve(held, history[:cut], grid=whole.grid, slip_sums=True)
         second = solve(held, history[cut:], start=first, slip_sums=True)

@@ -50,14 +50,14 @@ def solved(name: str = "forces", cycles: int = 6, **options: Any) -> Result:
     return solve(problem, history, **{**nodes, "slip_sums": True, **options})
 
 
-def again(found: Result, between: int) -> LoadCycle:
-    """The last cycle of a result, solved again with stops inside its steps."""
+def again(found: Result, *stops: int) -> list[LoadCycle]:
+    """The last cycle of a result, solved again with each of these numbers of stops inside its steps."""
     history = found.history
     first = len(history) - history.longest_cycle - 1  # the cycle begins at the end of this step
     begun = solve(found.problem, history[:first], grid=found.grid, slip_sums=True)
-    return solve(found.problem, history[first:], start=begun, slip_sums=True, between=between).cycle(
-        first=1, last=len(history) - first
-    )
+    options: dict[str, Any] = {"start": begun, "slip_sums": True}
+    results = [solve(found.problem, history[first:], between=between, **options) for between in stops]
+    return [result.cycle(first=1, last=len(history) - first) for result in results]
 
 
 @pytest.fixture(scope="module")
@@ -135,14 +135,14 @@ def test_the_friction_energy_is_the_dissipation(name: str, options: dict[str, An
 def test_the_loops_enclose_the_work_of_the_loads(name: str) -> None:
     """The polygon through the states converges to the work of the solver, with the square of their number."""
     errors, size = [], 0.0
-    for between in (7, 511):
+    for between in (7, 255):
         found = solved(name, cycles=1, between=between)
         cycle = found.cycle(first=1, last=len(found.history))
         work = sum(loop.work for loop in cycle.loops.values())
         exact = cycle.states[-1].work - cycle.states[0].work
         size = sum(abs(loop.work) for loop in cycle.loops.values())
         errors.append(abs(work - exact) / size)
-    assert errors[1] < 1e-5
+    assert errors[1] < 4e-5
     assert errors[1] < 0.02 * errors[0] or errors[0] < 1e-6
 
 
@@ -166,7 +166,7 @@ def test_closed_loops_enclose_the_dissipation_up_to_the_discretisation(name: str
         stored = after.energy - before.energy
         errors.append(abs((after.work - before.work - stored) / cycle.dissipation - 1.0))
     assert errors[1] < 0.3 * errors[0]
-    fine = again(solved(name), 255)
+    (fine,) = again(solved(name), 255)
     assert sum(loop.work for loop in fine.loops.values()) == pytest.approx(fine.dissipation, rel=2e-3)
 
 
@@ -211,8 +211,7 @@ def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
     assert exact.has_exact_slip_range
     assert len(exact.states) == 2
     missed = []
-    for between in (7, 63, 511):
-        fine = again(found, between)
+    for fine in again(found, 3, 31, 255):
         assert np.abs(fine.slip_range - exact.slip_range).max() <= 1e-13 * size
         read = bare(fine)
         assert not read.has_exact_slip_range
@@ -225,7 +224,7 @@ def test_the_slip_range_is_exact_whatever_is_kept(name: str) -> None:
         return
     assert missed[1] < 0.3 * missed[0]
     assert missed[2] < 0.3 * missed[1]
-    assert missed[2] < 2e-3
+    assert missed[2] < 4e-3
 
 
 def test_moving_contact_edges_leave_no_staircase() -> None:
@@ -239,7 +238,7 @@ def test_moving_contact_edges_leave_no_staircase() -> None:
         return np.diff(cycle.slip_range, 2)[inner] / exact.largest_slip_range
 
     found = solve(HELD, history, nodes=201, arc=(-3.0, -0.14), slip_sums=True)
-    exact, few, many = found.cycle(), again(found, 7), again(found, 1023)
+    exact, (few, many) = found.cycle(), again(found, 7, 511)
     assert bends(exact).size > 20
     assert np.abs(bends(exact) - bends(bare(many))).max() < 5e-3
     assert np.abs(bends(bare(few)) - bends(bare(many))).max() > 5e-2

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
+from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
+from fastpin.model.problem import Problem
 from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
 
 CYCLE = [{"Q": 0.275}, {"Q": -0.275}]
 FIELDS = ("pressure", "shear", "gap", "slip", "status")
@@ -34,6 +39,12 @@ PROGRAMS = {
     "minus zero": P + q(*[0.2, 0.0] * 6, -0.0, 0.2, -0.0),
     "pressed again and again": LoadHistory([{"P": 1.0}, {"Q": 0.2}, {"P": 0.0, "Q": 0.0}]).repeated(8),
 }
+
+
+@functools.cache
+def grid_of(problem: Problem, program: str) -> Grid:
+    """The grid that the solver chooses for a program with 61 nodes. The choice takes as long as the run."""
+    return solve(problem, PROGRAMS[program], nodes=61, keep="every 100").grid
 
 
 def assert_same(one: Result, other: Result) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 from fastpin.model.grid import Grid
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
+from fastpin.solver.result import Result
+from fastpin.solver.solving import solve
+from scripts.histories import random_case
 from tests.support.snap_cases import GRIPPED, TURNED
 
 LIKE = MaterialPair(Material(100e9, 0.3), Material(100e9, 0.3))
@@ -40,3 +44,19 @@ CASES: dict[str, tuple[Problem, Any, dict[str, Any]]] = {
     "much friction": (unitless(LIKE, 0.3, 2.0, "centre", "fixed"), FRETTING, {"nodes": 101}),
 }
 METHODS: dict[str, dict[str, Any]] = {"path": {}, "increment": {"method": "increment", "increments": 12}}
+
+
+@functools.cache
+def solved(name: str, between: int = 0, method: str = "path") -> Result:
+    """A case with slip sums, solved once. With states inside its steps it is on the grid of the case without them."""
+    problem, history, options = CASES[name]
+    if between or method != "path":
+        options = {"grid": solved(name).grid, **METHODS[method]}
+    return solve(problem, history, slip_sums=True, between=between, **options)
+
+
+@functools.cache
+def random_states(seed: int) -> Result:
+    """A random history with slip sums, and with states inside its steps, solved once."""
+    problem, history = random_case(seed)
+    return solve(problem, history, nodes=81, slip_sums=True, between=2)
