@@ -17,6 +17,7 @@ import pytest
 
 from fastpin.kernels import exchange, influence
 from fastpin.runtime import compiler, jit, machine
+from tests.support.marks import first_quick
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
 KERNEL = """
@@ -100,7 +101,7 @@ print(small.doubled(1.5))
 
 
 @keeps
-@pytest.mark.parametrize("file", ["kernels/small.py", *jit.SHARED])
+@pytest.mark.parametrize("file", first_quick(1, ["kernels/small.py", *jit.SHARED]))
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file

@@ -31,6 +31,7 @@ from fastpin.solver.window import Window
 from fastpin.storage.recording import record, resume
 from fastpin.storage.store import load
 from scripts.histories import generate
+from tests.support.marks import first_quick
 
 BOTTOM = -0.5 * np.pi
 PAIR = MaterialPair(Material(9.0, 0.2), Material(7.0, 0.3))
@@ -120,7 +121,7 @@ def test_a_survey_ends_where_the_pin_snaps_and_snaps(monkeypatch):
 
 
 @pytest.mark.parametrize("corners", [SMALL_FIRST, TRAVELLING], ids=["small first", "travelling"])
-@pytest.mark.parametrize("nodes", [61, 101])
+@pytest.mark.parametrize("nodes", first_quick(1, [61, 101]))
 def test_narrow_contacts_are_solved_with_few_nodes(corners, nodes):
     case = problem(200.0)
     result = solve(case, corners, nodes=nodes)

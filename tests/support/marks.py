@@ -9,8 +9,9 @@ import pytest
 
 
 def slow(*values: Any) -> list[Any]:
-    """Parameters of slow tests."""
-    return [pytest.param(value, marks=pytest.mark.slow) for value in values]
+    """Parameters of slow tests. A tuple is a row of several parameters."""
+    rows = (value if isinstance(value, tuple) else (value,) for value in values)
+    return [pytest.param(*row, marks=pytest.mark.slow) for row in rows]
 
 
 def first_quick(count: int, values: Iterable[Any]) -> list[Any]:

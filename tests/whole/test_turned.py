@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import cmath
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -23,6 +24,7 @@ from fastpin.report.case import load_columns
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 from tests.support.bodies import joint_problem
+from tests.support.once import solve_once
 
 HISTORY = [
     {"P": 1.0, "Q": 0.1, "sxx": 0.02},
@@ -33,6 +35,14 @@ HISTORY = [
 ]
 ANGLES = [0.3, 1.0, -2.2, 0.5 * math.pi, math.pi]
 KINDS = [("centre", "free"), ("centre", "fixed"), ("body", "free")]
+ARC = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 141)
+SHORT = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121)
+WIDE = Grid.arc(BOTTOM - 2.3, BOTTOM + 2.3, 121)
+
+
+@functools.cache
+def round_joint(name):
+    return joint_problem(name, 0.3, 0.4)
 
 
 def turned(history, angle):
@@ -88,9 +98,8 @@ def test_any_angle_on_an_arc(titanium_in_aluminium, pin_load, rotation, angle):
         history[2]["rotation"] = 0.02
     elif pin_load == "centre":
         history[1]["M"] = 0.05
-    grid = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 141)
-    one = solve(problem, history, grid=grid, between=1)
-    two = solve(problem, turned(history, angle), grid=turned_grid(grid, angle), between=1)
+    one = solve_once(problem, history, grid=ARC, between=1)
+    two = solve(problem, turned(history, angle), grid=turned_grid(ARC, angle), between=1)
     assert_turned(one, two, angle, 1e-10)
 
 
@@ -107,21 +116,20 @@ def test_any_angle_on_the_circle(titanium_in_aluminium, parameter):
 @pytest.mark.parametrize("name", ["tube", "tube in a ring", "tube, bush, ring", "ring, compliance"])
 def test_any_angle_with_round_bodies(name, angle):
     """The bodies, and the stresses on their rims, know no direction: also through the matrix of a compliance."""
-    problem, grid = joint_problem(name, 0.3, 0.4), Grid.arc(BOTTOM - 2.3, BOTTOM + 2.3, 121)
-    one = solve(problem, HISTORY, grid=grid)
-    two = solve(problem, turned(HISTORY, angle), grid=turned_grid(grid, angle))
+    one = solve_once(round_joint(name), HISTORY, grid=WIDE)
+    two = solve(round_joint(name), turned(HISTORY, angle), grid=turned_grid(WIDE, angle))
     assert_turned(one, two, angle, 1e-9)
 
 
 @pytest.mark.parametrize("angle", ANGLES[:3])
 def test_a_reaction_turns_with_its_point(titanium_in_aluminium, angle):
-    grid, place = Grid.arc(BOTTOM - 1.6, BOTTOM + 1.6, 121), complex(0.7, 2.5)
+    place = complex(0.7, 2.5)
     points = [(place.real, place.imag)]
     moved = place * cmath.exp(1j * angle)
     points.append((moved.real, moved.imag))
     first, second = (Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, plate_body=Plate(p)) for p in points)
-    one = solve(first, HISTORY, grid=grid)
-    two = solve(second, turned(HISTORY, angle), grid=turned_grid(grid, angle))
+    one = solve_once(first, HISTORY, grid=SHORT)
+    two = solve(second, turned(HISTORY, angle), grid=turned_grid(SHORT, angle))
     assert_turned(one, two, angle, 1e-10)
 
 
@@ -134,12 +142,18 @@ def test_any_angle_in_increments(titanium_in_aluminium, angle):
     assert_turned(one, two, angle, 1e-10)
 
 
-@pytest.mark.parametrize("angle", ANGLES)
-def test_any_angle_in_full_sliding(titanium_in_aluminium, angle):
+@pytest.fixture(scope="module")
+def slid(titanium_in_aluminium):
+    """A problem, and its contact in full sliding."""
     problem = Problem.from_load_parameter(titanium_in_aluminium, 0.3, 0.4, "centre", "fixed")
-    load = {"P": 1.0, "Q": 0.3, "sxx": 0.05, "syy": 0.02, "sxy": 0.1}
-    (other,) = turned([load], angle)
-    one, two = solve_sliding(problem, load, 1), solve_sliding(problem, other, 1)
+    return problem, solve_sliding(problem, {"P": 1.0, "Q": 0.3, "sxx": 0.05, "syy": 0.02, "sxy": 0.1}, 1)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_any_angle_in_full_sliding(slid, angle):
+    problem, sliding = slid
+    (other,) = turned([sliding.load], angle)
+    one, two = sliding, solve_sliding(problem, other, 1)
     away = np.array(two.contact) - angle - one.contact
     assert away - 2.0 * math.pi * np.round(away / (2.0 * math.pi)) == pytest.approx([0.0, 0.0], abs=1e-11)
     assert (two.peak_pressure, two.moment) == pytest.approx((one.peak_pressure, one.moment), rel=1e-11)
