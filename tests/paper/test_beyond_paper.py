@@ -13,7 +13,7 @@ from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.sliding import solve_sliding
 
-NODES = 81
+NODES = 61
 
 
 def held(load_parameter: float, friction: float) -> Problem:
@@ -94,7 +94,7 @@ def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "SHOWN_FRICTION", (0.1, 0.3))
     monkeypatch.setattr(sliding_onset, "SHOWN_LOAD_PARAMETERS", (1.0,))
     script = catalog.script(name)
-    curves = remembered if name == "memory" else script.compute(61)
+    curves = remembered if name == "memory" else script.compute(41)
     figure = script.draw(curves)
     figure.draw_without_rendering()
     assert len(figure.axes) == 2

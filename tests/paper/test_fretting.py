@@ -41,7 +41,7 @@ def test_fretting_changes_more_at_low_load_parameter(ratio):
     """5.3, figures 11 and 12: change in peak pressure, shift of the contact and difference between the peak shears are
     significantly greater at L_p = 0.05 than at 0.5. The first two are, 2.5 to 3.1 and 2.1 to 2.4 times. The third is
     only at eta = 0.5 (2 against 1 %, of opposite sign); at eta = 1 it is 3 against 8 %."""
-    low, high = (fretting("Ti/Ti", lp, ratio, "fixed", nodes=201) for lp in (0.05, 0.5))
+    low, high = (fretting("Ti/Ti", lp, ratio, "fixed") for lp in (0.05, 0.5))
     for step, least in ((1, 2.3), (2, 2.6)):
         rise = [result[step].peak_pressure / result[0].peak_pressure - 1.0 for result in (low, high)]
         assert rise[0] > least * rise[1]
@@ -147,7 +147,7 @@ def test_asymmetry_persists():
     """5.3, 6, abstract: forward and reverse shear keep different shapes: the reverse one is 5.9 % of its integral from
     the mirror image of the forward one (L_p = 0.5, eta = 0.5), 12 % at eta = 0.9, cycle after cycle."""
     for ratio, expected in ((0.5, 0.059), (0.9, 0.123)):
-        result = fretting("Ti/Ti", 0.5, ratio, "fixed", 8, nodes=201)
+        result = fretting("Ti/Ti", 0.5, ratio, "fixed", 8)
         found = [difference(result[k], result[k - 1], mirror=True) for k in (4, 6, 8)]
         assert found == pytest.approx([expected] * 3, abs=0.004)
 
@@ -171,10 +171,10 @@ def test_envelope_of_contact_arcs_leans_to_the_first_side(load_parameter, ratio,
     """5.3: the envelope of the contact arcs is the same whichever way the sequence begins. Not quite: it is mirrored
     too, and the steady envelope reaches up to half a degree further on the side of the first excursion. With free
     rotation the two envelopes agree."""
-    result = fretting("Ti/Ti", load_parameter, ratio, "fixed", 6, nodes=401)
+    result = fretting("Ti/Ti", load_parameter, ratio, "fixed", 6, nodes=201)
     left, right = min(edges(state)[0] for state in result[5:]), max(edges(state)[1] for state in result[5:])
     assert left + right == pytest.approx(offset, abs=0.05)
-    free = fretting("Ti/Ti", load_parameter, ratio, "free", 6, nodes=401)
+    free = fretting("Ti/Ti", load_parameter, ratio, "free", 6, nodes=201)
     left, right = min(edges(state)[0] for state in free[5:]), max(edges(state)[1] for state in free[5:])
     assert left + right == pytest.approx(0.0, abs=0.01)
 
@@ -185,7 +185,7 @@ def test_memory_of_like_materials_fades_towards_half_planes():
     parameters = np.array([1.0, 5.0, 30.0, 100.0])
     memory = []
     for value in parameters:
-        result = fretting("Ti/Ti", value, 0.9, "fixed", 6, nodes=201)
+        result = fretting("Ti/Ti", value, 0.9, "fixed", 6)
         memory.append(difference(result[6], result[5], mirror=True))
     assert memory == pytest.approx([0.075, 0.016, 0.0020, 0.00045], rel=0.15)
     slope = np.polyfit(np.log(parameters[1:]), np.log(memory[1:]), 1)[0]
@@ -195,7 +195,7 @@ def test_memory_of_like_materials_fades_towards_half_planes():
 @pytest.mark.parametrize(("pair", "expected"), [("Ti/Al", 0.0066), ("Al/Ti", 0.0078)])
 def test_memory_of_unlike_materials_stays_in_half_planes(pair, expected):
     """5.3: in dissimilar contacts a little memory is left as L_p grows: 0.7 % of the shear at L_p = 1e4."""
-    result = fretting(pair, 1e4, 0.9, "fixed", 6, nodes=201)
+    result = fretting(pair, 1e4, 0.9, "fixed", 6)
     assert difference(result[6], result[5], mirror=True) == pytest.approx(expected, abs=6e-4)
 
 
@@ -205,7 +205,7 @@ def test_memory_of_unlike_materials_stays_in_half_planes(pair, expected):
 def test_free_rotation_has_similar_pressures_and_smaller_shears():
     """5.4, figure 14: asymmetry of the peak pressures similar to that with constrained rotation, of roughly similar
     magnitude; peak shears somewhat smaller (L_p = 0.05, eta = 1): 14 % in both, and shears 8 to 15 % smaller."""
-    held, free = (fretting("Ti/Ti", 0.05, 1.0, rotation, nodes=201) for rotation in ("fixed", "free"))
+    held, free = (fretting("Ti/Ti", 0.05, 1.0, rotation) for rotation in ("fixed", "free"))
     ratios = [result[2].peak_pressure / result[1].peak_pressure - 1.0 for result in (held, free)]
     assert ratios == pytest.approx([0.140, 0.135], abs=0.005)
     smaller = [largest(free[step]) / largest(held[step]) - 1.0 for step in (1, 2)]
@@ -217,7 +217,7 @@ def test_free_rotation_has_similar_pressures_and_smaller_shears():
 def test_free_rotation_slips_on_one_side(pair, load_parameter):
     """5.4: the slip zone in the direction of contact growth is very small in both forward and reverse cases, the other
     one quite large. None at all in steps two and three; but in later forward states no slip zone is large."""
-    result = fretting(pair, load_parameter, 1.0, "free", 6, nodes=201)
+    result = fretting(pair, load_parameter, 1.0, "free", 6)
     for step, side in ((1, 1), (2, -1)):
         ((start, stop),) = result[step].contact
         sticks = result[step].stick
@@ -233,7 +233,7 @@ def test_free_rotation_slips_on_one_side(pair, load_parameter):
 @pytest.mark.parametrize("load_parameter", [0.25, 0.5])
 def test_peak_shear_of_a_free_pin_is_at_the_edge_of_the_slip_zone(pair, load_parameter):
     """Abstract: with free rotation one slip zone is dominant and the peak shear occurs at its edge (steps 2 and 3)."""
-    result = fretting(pair, load_parameter, 1.0, "free", 6, nodes=201)
+    result = fretting(pair, load_parameter, 1.0, "free", 6)
     forward = result[1]
     assert math.degrees(forward.peak_shear_angle - forward.stick[0][0]) == pytest.approx(0.0, abs=0.5)
     if (pair, load_parameter) != ("Ti/Al", 0.5):  # two peaks of a height there
@@ -277,7 +277,7 @@ def test_contact_of_a_free_pin_turns_with_the_load_at_any_load_parameter(pair, r
     moment the contact turns to the direction of the load, arctan(Q/P), at every L_p."""
     turned = math.degrees(math.atan(ratio * MU))
     for load_parameter in (0.01, 0.05, 0.25, 0.5, 1.0):
-        result = fretting(pair, load_parameter, ratio, "free", nodes=201)
+        result = fretting(pair, load_parameter, ratio, "free")
         for step, side in ((1, 1.0), (2, -1.0)):
             assert side * shift(result[step]) == pytest.approx(turned, abs=0.08 if pair == "Ti/Ti" else 0.25)
 
@@ -285,7 +285,7 @@ def test_contact_of_a_free_pin_turns_with_the_load_at_any_load_parameter(pair, r
 def test_peak_shear_of_a_free_pin_rises_with_the_load_parameter():
     """5.4: higher peak shear at higher L_p. In units of F/R, for the first +Bx, up to L_p = 1; not at 2, not for -Bx
     beyond 0.5, and at a given clearance, where F falls with L_p, the shear falls."""
-    results = {lp: fretting("Al/Ti", lp, 1.0, "free", nodes=201) for lp in (0.05, 0.25, 0.5, 1.0, 2.0)}
+    results = {lp: fretting("Al/Ti", lp, 1.0, "free") for lp in (0.05, 0.25, 0.5, 1.0, 2.0)}
     forward = np.array([largest(result[1]) for result in results.values()])
     reverse = [largest(result[2]) for result in results.values()]
     assert forward == pytest.approx([0.251, 0.309, 0.352, 0.387, 0.351], abs=0.004)
@@ -310,7 +310,7 @@ def test_contacts_of_a_free_pin_hardly_overlap_at_load_parameter_1(pair):
     the contact, against 80 % with held rotation; 61 and 31 % at L_p = 0.05 and 0.5, none at 2."""
     expected = {0.05: 0.612, 0.5: 0.309, 1.0: 0.088, 2.0: 0.0}
     for load_parameter, part in expected.items():
-        result = fretting(pair, load_parameter, 1.0, "free", nodes=201)
+        result = fretting(pair, load_parameter, 1.0, "free")
         assert overlap(result[1], result[2]) == pytest.approx(part, abs=0.01)
     held = fretting(pair, 1.0, 1.0, "fixed")
     assert 0.76 < overlap(held[1], held[2]) < 0.84
@@ -342,7 +342,7 @@ def test_rotation_of_a_free_pin_is_very_small(pair):
     6e-4 R from L_p = 0.05 to 1 at eta = 1."""
     degrees = []
     for load_parameter in (0.05, 0.25, 0.5, 1.0):
-        result = fretting(pair, load_parameter, 1.0, "free", nodes=201)
+        result = fretting(pair, load_parameter, 1.0, "free")
         degrees += [math.degrees(abs(state.rotation)) * 6e-4 / load_parameter for state in result[1:3]]
         assert result[1].rotation < 0.0 < result[2].rotation
     assert min(degrees) == pytest.approx(0.0184, abs=3e-4)
@@ -369,7 +369,7 @@ def test_strongly_conforming_contacts_shift_and_grow():
     degrees at eta = 1, 12 at 3.6); at 0.01 they shift as far and first shrink, by 1.2 degrees."""
     for load_parameter, widths in ((0.05, [147.4, 148.8, 159.8]), (0.01, [170.0, 168.8, 172.1])):
         problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, MU, "centre", "fixed")
-        result = solve(problem, [{"P": 1.0}, {"Q": MU}, {"Q": 2.0}], nodes=201)
+        result = solve(problem, [{"P": 1.0}, {"Q": MU}, {"Q": 2.0}], nodes=121)
         assert [2.0 * half_contact(state) for state in result] == pytest.approx(widths, abs=0.4)
         assert shift(result[1]) > 22.0
         assert shift(result[2]) > 55.0
