@@ -13,7 +13,7 @@ from fastpin.elasticity.plates import COARSE, KEPT, hole_compliance, plate_compl
 from fastpin.errors import InputError
 from fastpin.kernels import harmonics
 from fastpin.model.lug import Hole, Lug, Part, PartLoad, rectangle
-from tests.support.lugs import disc, make_coarse, plate
+from tests.support.lugs import disc, make_coarse, make_rough, plate
 
 ORDER = 8
 
@@ -65,8 +65,9 @@ def test_a_held_ring_agrees_with_its_closed_form(plane):
     assert np.abs(made - expected).max() < 1e-9  # measured: 3e-10
 
 
-def test_a_free_ring_agrees_with_its_closed_form():
+def test_a_free_ring_agrees_with_its_closed_form(monkeypatch):
     """The ring is held on a tiny arc. It takes up no force while the tractions are in equilibrium."""
+    make_rough(monkeypatch)
     lug = Lug(0.3, "strain", 1.0, disc(2.0, gap=1e-4), {"gap": "both"})
     made = plate_compliance(lug, ORDER).compliance.matrix
     a, b, d = harmonics.ring(np.arange(2.0, ORDER + 1.0), 2.0, lug.kolosov, "free")
@@ -174,13 +175,15 @@ def test_a_turned_plate_turns_its_matrix():
     assert np.abs(other - turn @ one @ turn.T).max() < 1e-8
 
 
-def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole():
+def test_an_incompressible_plate_that_is_held_all_round_keeps_its_hole(monkeypatch):
+    make_rough(monkeypatch)
     made = plate_compliance(plate(nu=0.5, supports=dict.fromkeys(("top", "left", "right", "bottom"), "both")), 6)
     assert made.compliance.matrix[0, 0] == pytest.approx(-0.5, abs=1e-6)
-    assert made.error < 1e-6  # measured: 4e-9
+    assert made.error < 1e-5  # measured: 5e-7; 4e-9 with all nodes
 
 
-def test_harmonics_are_taken_until_they_have_decayed():
+def test_harmonics_are_taken_until_they_have_decayed(monkeypatch):
+    monkeypatch.setattr(plates, "FINE", COARSE)
     lug = plate((-4.0, 4.0), (-4.0, 4.0))
     made = plate_compliance(lug)
     sizes = plates.harmonic_sizes(made.compliance.matrix)

@@ -3,19 +3,16 @@
 import pytest
 
 from fastpin import MATERIALS, Material, MaterialPair, Problem, solve
-from fastpin.elasticity import plates
-from fastpin.elasticity.panels import Fineness
+from fastpin.elasticity.plates import plate_compliance
 from fastpin.model import Ring
 from fastpin.model.lug import Lug
-from tests.support.lugs import disc, plate
+from tests.support.lugs import disc, make_rough, plate
 
 
 def rough_compliance(lug, order):
-    """A compliance with errors of 2e-9, in a third of the time."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plates, "FINE", plates.COARSE)
-        patch.setattr(plates, "COARSE", Fineness(4, 6))
-        return plates.plate_compliance(lug, order).compliance
+        make_rough(patch)
+        return plate_compliance(lug, order).compliance
 
 
 @pytest.fixture(scope="module")
