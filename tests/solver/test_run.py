@@ -79,7 +79,7 @@ def test_progress_grows_from_corner_to_corner(held, method, between):
         assert total == 3
         seen.append(done)
 
-    grid = fastpin.Grid.arc(-3.0, -0.14, 161)
+    grid = fastpin.Grid.arc(-3.0, -0.14, 61)
     fastpin.solve(held, [{"P": 1.0}, {"Q": 0.2}, {"Q": -0.2}], grid=grid, between=between, progress=progress, **method)
     assert np.all(np.diff(seen) >= 0.0)
     assert seen[-1] == 3.0
