@@ -135,7 +135,7 @@ def test_extremes_do_not_depend_on_the_states_between(name: str) -> None:
 def test_increments_converge_to_the_extremes_of_the_path(name: str) -> None:
     path = solved(name)
     exact, errors = extremes(path), []
-    for increments in (10, 160):
+    for increments in (10, 80):
         options = {"method": "increment", "increments": increments, "grid": path.grid}
         found = extremes(solve(path.problem, path.history, slip_sums=True, **options))
         errors.append(float(np.nanmax(np.abs(found - exact))) / size_of(path))
