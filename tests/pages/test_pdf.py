@@ -131,11 +131,12 @@ def test_every_kind_of_part_is_printed(tmp_path: Path) -> None:
 def test_a_long_history_has_a_short_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     draw_roughly(monkeypatch)
     problem = sample_result().problem
-    many = fastpin.solve(problem, [{"P": 1e6}, *({"Q": 1e5 * (-1) ** k * (1 + k % 7)} for k in range(50))], nodes=61)
+    many = fastpin.solve(problem, [{"P": 1e6}, *({"Q": 1e5 * (-1) ** k * (1 + k % 7)} for k in range(70))], nodes=61)
     many.report(tmp_path / "many.pdf")
     texts, _ = read(tmp_path / "many.pdf")
     assert len(texts) <= 10
-    assert "51 states are kept" in texts[0]
+    assert "71 states are kept" in texts[0]
+    assert re.search(r"… \d+ more …", " ".join(texts))
 
 
 def test_without_the_package_one_sentence_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
