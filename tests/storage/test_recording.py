@@ -135,7 +135,7 @@ def test_an_interrupted_run_goes_on(problem, denser, path, corner):
     assert sorted(entry.name for entry in path.parent.iterdir()) == [path.name]
 
 
-@pytest.mark.parametrize("stops", first_quick(1, [1.25, 6.0]))
+@pytest.mark.parametrize("stops", first_quick(1, [1.75, 6.0]))
 @pytest.mark.parametrize("program", list(PROGRAMS))
 def test_a_run_interrupted_again_and_again(problem, path, program, stops):
     history, corner = PROGRAMS[program][: 12 * int(stops)], 3.0
