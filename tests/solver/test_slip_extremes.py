@@ -74,7 +74,7 @@ def test_extremes_of_random_histories_contain_the_states(seed: int) -> None:
 @pytest.fixture(scope="module")
 def finer(request: pytest.FixtureRequest) -> list[list[State]]:
     """The states of a case with more and more stops inside its steps."""
-    return [stopped(request.param, between) for between in (3, 31, 255)]
+    return [stopped(request.param, between) for between in (7, 63, 255)]
 
 
 @pytest.mark.parametrize("finer", first_quick(3, PATHS), indirect=True)
