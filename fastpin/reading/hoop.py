@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.elasticity.tractions import RefinedTractions
@@ -47,7 +46,7 @@ UNRESOLVED = 0.13
 Straight lines between 101 nodes or more miss at most this part of the hoop stress at an edge.
 """
 
-Hoop = Callable[[ArrayLike], np.ndarray]
+Hoop = Callable[[np.ndarray], np.ndarray]
 """Gives the hoop stress at angles on the edge of a body, Pa."""
 
 
@@ -91,7 +90,7 @@ def _net_section(problem: Problem, body: Body) -> float:
 def _highest(hoop: Hoop, angles: np.ndarray, top: int) -> tuple[float, float]:
     """The largest hoop stress between the neighbours of the angle `top`, and its place."""
     angle = float(angles[top])
-    value = float(hoop([angle])[0])
+    value = float(hoop(np.array([angle]))[0])
     low, high = (float(angle_between(angles[(top + side) % angles.size], angle)) for side in (-1, 1))
     for _ in range(ZOOMS):
         tried = angle + np.linspace(low, high, ZOOMED)

@@ -1,79 +1,63 @@
 """The compiler: Numba, and the machine code that it makes of a kernel.
 
-This is the only file that imports Numba. It is imported when a kernel has no machine code on disk.
+Numba is imported when a kernel has no machine code on disk. Its private parts are used in :func:`compile_kernel`, and
+in :mod:`fastpin.runtime.machine`, to store machine code. Where they have changed, Numba keeps the code itself.
 """
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 from collections.abc import Callable
 from typing import Any
 
-import numba
-from numba.core import intrinsics, types
-
-from fastpin.runtime.jit import CACHED, SETTINGS, Kernel
-from fastpin.runtime.machine import CAN_LOAD, Code, helpers, load
+from fastpin.runtime.extensions import numba
+from fastpin.runtime.machine import Code, helpers, load
+from fastpin.runtime.source import CACHED, SETTINGS, KernelSource
 
 
 @functools.cache
-def dispatcher(kernel: Kernel, alone: bool) -> Any:
+def dispatcher(source: KernelSource, alone: bool = True, kept: bool = False) -> Any:
     """Numba's function for a kernel: `alone` for calls from Python, else without a wrapper for these.
 
-    Code of fastpin's own store is not kept by Numba a second time. Code of a text that was replaced is not kept.
+    Numba keeps the code of a `kept` function beside the package, else in the user's cache directory, else nowhere. Code
+    of a text that was replaced is not kept.
     """
-    settings = dict(SETTINGS) if alone else {**SETTINGS, "no_cpython_wrapper": True}
-    if CACHED and kernel.is_current() and not (alone and CAN_LOAD):
-        return _kept_by_numba(kernel, settings)
-    return numba.njit(**settings)(kernel.py_func)
+    settings = {**SETTINGS, "no_cpython_wrapper": not alone}
+    if kept and CACHED and source.is_current():
+        with contextlib.suppress(RuntimeError):  # no directory can be written
+            return numba.njit(cache=True, **settings)(source.py_func)
+    return numba.njit(**settings)(source.py_func)
 
 
-@functools.cache
-def kept(kernel: Kernel) -> Any:
-    """Numba's function for a kernel whose machine code can't be stored. Numba keeps it on disk."""
-    return _kept_by_numba(kernel, SETTINGS)
-
-
-def _kept_by_numba(kernel: Kernel, settings: dict[str, Any]) -> Any:
-    """A function that Numba keeps beside the package, else in the user's cache directory, else nowhere."""
-    try:
-        return numba.njit(cache=True, **settings)(kernel.py_func)
-    except RuntimeError:  # no directory can be written
-        return numba.njit(**settings)(kernel.py_func)
-
-
-def callee(kernel: Kernel) -> Any:
+def callee(source: KernelSource) -> Any:
     """The type of a kernel that another kernel calls."""
-    return types.Dispatcher(dispatcher(kernel, alone=False))
+    return numba.typeof(dispatcher(source, alone=False, kept=True))
 
 
-def compile_kernel(kernel: Kernel, arguments: tuple[Any, ...]) -> tuple[Callable[..., Any], Code | None]:
+def compile_kernel(
+    source: KernelSource, arguments: tuple[Any, ...], stores: bool
+) -> tuple[Callable[..., Any], Code | None]:
     """Compile a kernel for arguments of these types.
 
     Returns
     -------
     entry : callable
-        The compiled function, which does not check the types of its arguments.
+        The compiled function, which need not check the types of its arguments.
     code : Code or None
-        Its machine code. None if it can't be loaded by a process without Numba.
+        Its machine code, if the caller `stores` it. None if it can't be loaded by a process without Numba.
     """
-    function = dispatcher(kernel, alone=True)
-    kinds = tuple(function.typeof_pyval(value) for value in arguments)
+    function = dispatcher(source, kept=not stores)
+    kinds = tuple(map(numba.typeof, arguments))
     entry = function.compile(kinds)
-    result = function.overloads[kinds]
-    return entry, _machine_code(result) if CACHED and CAN_LOAD else None
-
-
-def _machine_code(result: Any) -> Code | None:
-    """The machine code of a compiled function; None if a process without Numba can't load it."""
-    try:
-        code = _object_code(result)
+    with contextlib.suppress(Exception):  # these parts of Numba may change with any version: Numba keeps the code then
+        result = function.overloads[kinds]
+        code = _object_code(result) if stores else None
         if code is not None:
             load(code, result.fndesc.qualname, result.fndesc.modname)
-    except Exception:  # these parts of Numba may change with any version: Numba keeps the code then
-        return None
-    return code
+        return entry, code
+    return entry, None
 
 
 def _object_code(result: Any) -> Code | None:
@@ -91,10 +75,5 @@ def _object_code(result: Any) -> Code | None:
         library._get_compiled_object(),
         description.llvm_cpython_wrapper_name,
         description.env_name,
-        tuple(sorted(intrinsics.INTR_MATH)),
+        tuple(sorted(numba.core.intrinsics.INTR_MATH)),
     )
-
-
-def read_environment() -> None:
-    """Let Numba read the variables of the environment again."""
-    numba.config.reload_config()

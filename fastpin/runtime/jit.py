@@ -1,4 +1,4 @@
-"""The settings of compiled code, and the functions that are compiled with them.
+"""Compiled functions.
 
 A kernel is compiled when it is first called, once for each combination of types of its arguments. The machine code is
 kept on disk (:mod:`fastpin.runtime.stored`). Later processes load it without Numba, whose import takes several times
@@ -9,29 +9,22 @@ as plain Python.
 from __future__ import annotations
 
 import functools
-import importlib
 import logging
 import os
 import sys
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy import ndarray
 
-CACHED = os.environ.get("FASTPIN_CACHE", "1") != "0"
-"""Whether compiled code is stored on disk."""
+from fastpin.runtime import compiler, stored
+from fastpin.runtime.extensions import numba
+from fastpin.runtime.source import CACHED, KernelSource
 
 PLAIN = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """Whether kernels run as plain Python."""
-
-SETTINGS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
-"""Settings of every kernel: no fastmath and no parallel sums.
-
-Division by zero gives inf or nan. C calls no kernel, so the wrapper for C is left out, which saves compiling.
-"""
 
 SCALARS: dict[type, str] = {
     bool: "?", np.bool_: "?", int: "q", np.int64: "q", float: "d", np.float64: "d", complex: "D", np.complex128: "D",
@@ -42,65 +35,40 @@ C_ORDER, F_ORDER, ALIGNED, WRITEABLE = 0x1, 0x2, 0x100, 0x400
 LAYOUT = C_ORDER | F_ORDER | ALIGNED | WRITEABLE
 """Bits of ``ndarray.flags.num`` on which compiled code depends."""
 
-SHARED = ("kernels/arrays.py", "kernels/status.py")
-"""Files of constants and of records of arrays that kernels take from other files. Code depends on them, too."""
-
 logger = logging.getLogger("fastpin.compiler")
 
 _lock = threading.RLock()
 
 
-def stamp(file: str) -> tuple[int, int] | None:
-    """Time and size of a file, which change with its text. None if there is no such file."""
-    try:
-        found = os.stat(file)  # noqa: PTH116  every process does it for each kernel, and paths take three times as long
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size
-
-
-_shared = tuple((file, stamp(file)) for file in (str(Path(__file__).parents[1] / name) for name in SHARED))
-
-
-class Kernel:
+class Kernel(KernelSource):
     """A compiled function.
 
     Attributes
     ----------
-    py_func : callable
-        The function as plain Python.
     inner : bool
         Whether only kernels call it. The wrapper for calls from Python is then never compiled.
-    texts : tuple
-        The files of its text, and their stamps at its import. An upgrade may replace the files in a running process.
     """
 
     def __init__(self, function: Callable[..., Any], inner: bool) -> None:
+        super().__init__(function)
         functools.update_wrapper(self, function)
-        self.py_func = function
         self.inner = inner
-        file = function.__code__.co_filename
-        self.texts = ((file, stamp(file)), *_shared)
         self._entries: dict[tuple[Any, ...], Callable[..., Any]] = {}
 
     def __call__(self, *arguments: Any) -> Any:
         try:
             types = argument_types(arguments)
         except KeyError:  # types that no kernel of fastpin takes: the compiler decides
-            return _compiler().dispatcher(self, alone=True)(*arguments)
+            return compiler.dispatcher(self)(*arguments)
         entry = self._entries.get(types)
         if entry is None:
             entry = self._find(types, arguments)
         return entry(*arguments)
 
-    def is_current(self) -> bool:
-        """Whether the files of its text are still those that were imported."""
-        return all(stamp(file) == imported for file, imported in self.texts)
-
     @functools.cached_property
     def _numba_type_(self) -> Any:
         """The type of the kernel in other kernels. The compiler asks for it by this name."""
-        return _compiler().callee(self)
+        return compiler.callee(self)
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""
@@ -108,13 +76,11 @@ class Kernel:
             raise TypeError(f"{self.py_func.__qualname__} is called by kernels only")
         with _lock:
             if types not in self._entries:
-                place: Any = None
-                if CACHED:
-                    place = importlib.import_module("fastpin.runtime.stored").place_of(self, signature(types))
+                place = stored.place_of(self, signature(types)) if CACHED else None
                 entry: Any = place and place.load()
                 if entry is None:
                     _announce()
-                    entry, code = _compiler().compile_kernel(self, arguments)
+                    entry, code = compiler.compile_kernel(self, arguments, stores=place is not None)
                     if place:
                         place.save(code)
                 self._entries[types] = entry
@@ -181,9 +147,4 @@ def limit_to_one_thread() -> None:
     """Limit compiled code to one thread, in this process and in the processes that it starts."""
     os.environ["NUMBA_NUM_THREADS"] = "1"
     if "numba" in sys.modules:
-        _compiler().read_environment()
-
-
-def _compiler() -> Any:
-    """The module that imports Numba. Nothing that is loaded from disk needs it."""
-    return importlib.import_module("fastpin.runtime.compiler")
+        numba.config.reload_config()

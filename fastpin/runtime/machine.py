@@ -13,9 +13,7 @@ import sys
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from llvmlite import binding as llvm
-
-from fastpin.runtime.extensions import folder, library
+from fastpin.runtime.extensions import folder, library, llvm
 
 CAN_LOAD = sys.platform == "linux" and platform.machine() == "x86_64"
 """Whether machine code is loaded in this way: on the processors on which it is tested."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import importlib
 import marshal
 import os
 import sys
@@ -20,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.runtime import machine
-from fastpin.runtime.jit import SETTINGS, Kernel
+from fastpin.runtime import compiler, machine
+from fastpin.runtime.source import SETTINGS, KernelSource
 
 SUFFIX = ".machine"
 
@@ -32,7 +31,7 @@ UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 class Place:
     """The files of a kernel for arguments of some types."""
 
-    def __init__(self, kernel: Kernel, signature: str) -> None:
+    def __init__(self, kernel: KernelSource, signature: str) -> None:
         self.kernel, function = kernel, kernel.py_func
         self.source = function.__code__.co_filename
         texts = tuple(Path(file).read_bytes() for file, _ in kernel.texts)
@@ -60,9 +59,10 @@ class Place:
             key, code = marshal.loads(body)
             if key == self.key:
                 if not code:
-                    kept: Callable[..., Any] = importlib.import_module("fastpin.runtime.compiler").kept(self.kernel)
+                    kept: Callable[..., Any] = compiler.dispatcher(self.kernel, kept=True)
                     return kept
-                return machine.load(machine.Code(*code), self.name, self.module)
+                with contextlib.suppress(Exception):  # parts of Numba that it needs may change
+                    return machine.load(machine.Code(*code), self.name, self.module)
         return None
 
     def save(self, code: machine.Code | None) -> None:
@@ -119,7 +119,7 @@ def _replace(file: Path, content: bytes) -> None:
         raise
 
 
-def place_of(kernel: Kernel, signature: str) -> Place | None:
+def place_of(kernel: KernelSource, signature: str) -> Place | None:
     """The place of a kernel's code; None if code can't be loaded, or its text is not in a file any more."""
     if not machine.CAN_LOAD:
         return None

@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from fastpin.model.angles import angle_between
 from fastpin.model.checks import numbers
@@ -29,6 +29,9 @@ from fastpin.states.curves import traction_patches, tractions_at
 from fastpin.states.error_bars import ORDER, bars, pair_bar, size_floor
 from fastpin.states.quantities import QUANTITIES, quantity, sizes
 from fastpin.states.state import ErrorBars, State
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 AROUND = np.linspace(-2.0, 2.0, 17)
 """Places round an angle at which the curves are compared, in node distances. They reach to the next coarse nodes.

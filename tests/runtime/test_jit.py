@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from fastpin.kernels import exchange, influence
-from fastpin.runtime import compiler, jit, machine
+from fastpin.runtime import compiler, jit, machine, source
 from tests.support.marks import first_quick
 
 PACKAGE = Path(__file__).resolve().parents[2] / "fastpin"
@@ -101,7 +101,7 @@ print(small.doubled(1.5))
 
 
 @keeps
-@pytest.mark.parametrize("file", first_quick(1, ["kernels/small.py", *jit.SHARED]))
+@pytest.mark.parametrize("file", first_quick(1, ["kernels/small.py", *source.SHARED]))
 def test_a_process_whose_files_are_replaced_stores_no_code(installed: Path, file: str) -> None:
     """The text on disk is not the text that it has imported, as after an upgrade while it runs."""
     path = installed / "fastpin" / file
@@ -146,7 +146,7 @@ def arguments_of_columns(rng: np.random.Generator) -> tuple[object, ...]:
 @keeps
 def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
     arguments = arguments_of_columns(np.random.default_rng(1))
-    entry, code = compiler.compile_kernel(influence._columns, arguments)
+    entry, code = compiler.compile_kernel(influence._columns, arguments, stores=True)
     assert code is not None
     loaded = machine.load(code, "_columns", "fastpin.kernels.influence")
     entry(*arguments)
@@ -166,7 +166,7 @@ def test_loaded_code_gives_the_same_bits_and_holds_nothing() -> None:
 def test_code_depends_on_the_files_that_are_stored_with_it(file: str) -> None:
     """Stored code is compared with the text of its own file and of the shared files only."""
     module = importlib.import_module(f"fastpin.kernels.{file}")
-    shared = [f"fastpin.kernels.{Path(name).stem}" for name in jit.SHARED]
+    shared = [f"fastpin.kernels.{Path(name).stem}" for name in source.SHARED]
     imports = [node for node in ast.parse(inspect.getsource(module)).body if isinstance(node, ast.ImportFrom)]
     others = [node for node in imports if str(node.module).startswith("fastpin") and node.module not in shared]
     foreign = {alias.asname or alias.name for node in others for alias in node.names}
@@ -200,6 +200,7 @@ def test_other_types_are_left_to_the_compiler() -> None:
 
 def test_compiling_is_announced_once(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     monkeypatch.setattr(jit, "CACHED", False)
+    monkeypatch.setattr(compiler, "CACHED", False)
     jit._announce.cache_clear()
     kernel = jit.compiled(lambda x: x + x)
     with caplog.at_level("INFO", "fastpin.compiler"):

@@ -63,6 +63,9 @@ OUTPUTS = ("report", "figures", "pages", "live", "cli")
 OPTIONAL = ("xarray", "pandas", "pylife", "distributed", "shtab", "typst")
 """Packages that may be missing. They are imported inside functions."""
 
+BY_NAME = ("import_module", "__import__", "Later")
+"""Functions that import a module whose name is a text."""
+
 MOST_LINES = 600
 MOST_FUNCTION_LINES = 50
 MOST_PARAMETERS = 8
@@ -120,6 +123,15 @@ class Source:
             elif isinstance(node, ast.ImportFrom):
                 module = "." * node.level + (node.module or "")
                 self.imports += [(node.lineno, module, alias.name, id(node) in inside) for alias in node.names]
+        calls = [node for node in nodes if isinstance(node, ast.Call) and node.args]
+        self.named = [
+            (node.lineno, text.value, text is node.args[0])
+            for node in calls
+            if ast.unparse(node.func).rpartition(".")[2] in BY_NAME
+            for text in ast.walk(node.args[0])
+            if isinstance(text, ast.Constant) and isinstance(text.value, str)
+        ]
+        """Line, text and whether it is the whole name, of each import by a name in a text."""
         self.prints = [
             node.lineno for node in nodes if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "print"
         ]
@@ -185,12 +197,25 @@ class Tree:
 
     @cached_property
     def imports(self) -> list[Import]:
-        """All imports, those under TYPE_CHECKING and inside functions too."""
-        return [
+        """All imports, those under TYPE_CHECKING and inside functions too.
+
+        An import by a name whose end is not written down counts as an import of all files that it may name.
+        """
+        written = [
             Import(file, *one)
             for file, source in self.sources.items()
             if not file.endswith(".pyi")
             for one in source.imports
+        ]
+        files = [file for file in self.sources if file.endswith(".py") and not file.endswith("__init__.py")]
+        modules = {file: f"fastpin.{file.removesuffix('.py').replace('/', '.')}" for file in files}
+        return written + [
+            Import(file, line, module, "", inside=False)
+            for file, source in self.sources.items()
+            for line, text, _ in source.named
+            if text.startswith("fastpin")
+            for other, module in modules.items()
+            if other != file and module.startswith(text)
         ]
 
     def target(self, one: Import) -> str | None:
@@ -281,6 +306,19 @@ def no_circles(tree: Tree) -> Iterator[str]:
     yield from (f"{file} imports itself through others" for file in sorted(edges) if file in reached(file))
 
 
+def nothing_hidden(tree: Tree) -> Iterator[str]:
+    """No import hides its file: behind the face of the own folder, behind dots, or behind a name in a text."""
+    for one in tree.imports:
+        if "/" in one.file and tree.target(one) == f"{_folder(one.file)}/__init__.py":
+            yield f"{one.file}:{one.line} imports the face of its own folder"
+        if one.module.startswith("."):
+            yield f"{one.file}:{one.line} imports by a relative path"
+    for file, source in tree.sources.items():
+        for line, text, is_whole in source.named:
+            if is_whole and text.startswith("fastpin"):
+                yield f"{file}:{line} imports {text} by its name"
+
+
 def kernels_alone(tree: Tree) -> Iterator[str]:
     """Kernels import kernels and their runtime only; compiled functions call compiled functions of their own file."""
     for one in tree.imports:
@@ -297,10 +335,11 @@ def kernels_alone(tree: Tree) -> Iterator[str]:
 
 def one_home(tree: Tree) -> Iterator[str]:
     """Some packages are imported in one place only, and ``print`` is called by the commands' ``say`` only."""
-    for one in tree.imports:
-        homes = HOMES.get(one.module.split(".")[0])
-        if homes is not None and _folder(one.file) not in homes:
-            yield f"{one.file}:{one.line} imports {one.module}, whose home is {' and '.join(homes)}"
+    named = [(file, line, text) for file, source in tree.sources.items() for line, text, _ in source.named]
+    for file, line, module in [(one.file, one.line, one.module) for one in tree.imports] + named:
+        homes = HOMES.get(module.split(".")[0])
+        if homes is not None and _folder(file) not in homes:
+            yield f"{file}:{line} imports {module}, whose home is {' and '.join(homes)}"
     for file, source in tree.sources.items():
         if file != PRINTS:
             yield from (f"{file}:{line} prints" for line in source.prints)
@@ -389,6 +428,7 @@ RULES: tuple[Callable[[Tree], Iterator[str]], ...] = (
     known_folders,
     one_direction,
     no_circles,
+    nothing_hidden,
     kernels_alone,
     one_home,
     units_with_thickness,

@@ -1,0 +1,121 @@
+"""Kernels where the private parts of Numba that load stored code have changed: Numba keeps the code, the same bits."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numba
+import pytest
+from numba.core import intrinsics
+
+from fastpin.kernels import influence
+from fastpin.runtime import compiler, extensions, jit, machine, stored
+
+pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="Numba keeps the code")
+
+
+def without(name: str, *attributes: str) -> Any:
+    """The loader of extension modules when one of them is missing, or lacks these attributes."""
+
+    def library(asked: str) -> Any:
+        module = extensions.library(asked)
+        if asked != name:
+            return module
+        if not attributes:
+            raise ImportError(f"{name} is missing")
+        return SimpleNamespace(**{key: value for key, value in vars(module).items() if key not in attributes})
+
+    return library
+
+
+def refuse(*_: object) -> Any:
+    raise AttributeError("no such part")
+
+
+CHANGES: dict[str, tuple[object, str, object]] = {
+    "no maker of functions": (machine, "library", without("numba._dynfunc")),
+    "a maker without environments": (machine, "library", without("numba._dynfunc", "Environment")),
+    "a maker of something else": (machine, "library", without("numba._dynfunc", "make_function")),
+    "no helpers": (machine, "library", without("numba._helperlib")),
+    "helpers without a list": (machine, "library", without("numba._helperlib", "c_helpers")),
+    "no memory": (machine, "library", without("numba.core.runtime._nrt_python")),
+    "memory with another call": (
+        machine,
+        "library",
+        without("numba.core.runtime._nrt_python", "memsys_use_cpython_allocator"),
+    ),
+    "no list of mathematics": (intrinsics, "INTR_MATH", None),
+    "no object code": (compiler, "_object_code", refuse),
+    "no engine": (machine, "_engine", refuse),
+    "no versions": (machine, "folder", lambda name: Path(os.devnull, name)),
+}
+
+
+@pytest.fixture
+def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The only directory of stored code."""
+    monkeypatch.setattr(stored.Place, "_directories", lambda self: iter([tmp_path]))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    yield tmp_path
+    forget()
+
+
+def forget() -> None:
+    """Ask Numba for its parts once more."""
+    for remembered in (machine.helpers, machine._name_symbols, stored._environment, compiler.dispatcher):
+        remembered.cache_clear()
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_numba_keeps_the_code_when_a_part_changes(
+    change: str, directory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def value() -> float:
+        """The value of a kernel in a new process, so to say."""
+        forget()
+        return float(jit.Kernel(influence.clausen.py_func, inner=False)(1.0))
+
+    before = value()
+    (file,) = directory.glob("*.machine")
+    monkeypatch.setattr(*CHANGES[change])
+    assert value() == before
+    file.unlink()
+    assert value() == before  # there is no way to store the code
+    assert value() == before  # Numba keeps it
+    assert list(directory.rglob("*.nbc"))
+
+
+SOLVE = """
+import hashlib, sys
+import fastpin
+from fastpin.runtime import machine
+if len(sys.argv) > 1:
+    def refuse(name):
+        raise ImportError(name)
+    machine.library = refuse
+pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
+problem = fastpin.Problem.from_load_parameter(pair, 0.5, friction=0.4)
+result = fastpin.solve(problem, [{"P": 1.0}, {"Q": 0.3}, {"Q": -0.1}], nodes=101, error_bars=True)
+numbers = repr([[state.peak_hoop_stress(), state.contact, state.stick, dict(state.error_bars)] for state in result])
+arrays = b"".join(state.pressure.tobytes() + state.shear.tobytes() for state in result)
+print(hashlib.sha256(arrays + numbers.encode()).hexdigest())
+"""
+
+
+@pytest.mark.slow
+def test_a_history_has_the_same_bits_without_any_part(tmp_path: Path) -> None:
+    def run(*arguments: str, **more: str) -> str:
+        variables = {name: value for name, value in os.environ.items() if name != "FASTPIN_CACHE"} | more
+        words = [sys.executable, "-c", SOLVE, *arguments]
+        return subprocess.run(words, env=variables, capture_output=True, text=True, check=True).stdout
+
+    expected = run()
+    assert run("without", NUMBA_CACHE_DIR=str(tmp_path)) == expected
+    assert run("without", NUMBA_CACHE_DIR=str(tmp_path)) == expected
+    assert list(tmp_path.rglob("*.nbc"))
