@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from fastpin import states
 from fastpin.errors import InputError
 from fastpin.model.checks import whole_number
 from fastpin.model.grid import Grid
@@ -23,7 +24,6 @@ from fastpin.states.cycles import Cycle
 from fastpin.states.load_cycle import LoadCycle
 from fastpin.states.quantities import load_point
 from fastpin.states.state import State
-from fastpin.states.traction_bars import PairBars
 
 if TYPE_CHECKING:
     import pandas
@@ -185,12 +185,9 @@ class Result(Sequence[State]):
         InputError
             If the states are on different grids.
         """
-        import fastpin
-
         if any(not np.array_equal(state.theta, self.grid.theta) for state in self):
             raise InputError("result", "all states must be on the grid of the result")
-        extremes = fastpin.states.extremes
-        return extremes.all_extremes(extremes.KeptStates(self.states)) if self.states else {}
+        return states.extremes.all_extremes(states.extremes.KeptStates(self.states)) if self.states else {}
 
     def plot(self, path: str | Path | None = None, states: StateChoice = None, **options: Any) -> Any:
         """Draw the tractions, and return the matplotlib figure.
@@ -308,8 +305,8 @@ def without_restart(result: Result) -> Result:
 
 def with_error_bars(result: Result, coarse: Result) -> Result:
     """A result with error bars, from the states of the same history on a coarser grid."""
-    states = []
+    fine = []
     for state, coarse_state in zip(result, coarse, strict=True):
         assert (state.step, state.fraction) == (coarse_state.step, coarse_state.fraction)
-        states.append(replace(state, error_bars=PairBars(state, coarse_state)))
-    return replace(result, states=states, coarse=coarse)
+        fine.append(replace(state, error_bars=states.traction_bars.PairBars(state, coarse_state)))
+    return replace(result, states=fine, coarse=coarse)
