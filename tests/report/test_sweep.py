@@ -104,6 +104,7 @@ def test_rounding_is_no_number_of_a_figure(plan: Plan, rows: list[dict[str, Any]
         ("plate_body.outer_radius", "outer radius of the plate"),
         ("load.2.Q", "force Q in load 2"),
         ("load.1.amplitude.sxx", "amplitude of the remote stress sxx in load 1"),
+        ("load.2.rotation", "rotation of the pin in load 2"),
         ("load.3.repeat", "repeat in load 3"),
         ("solve.nodes", "number of nodes"),
     ],
