@@ -31,9 +31,6 @@ SMALLEST = 1e-18
 SERIES_BELOW, SERIES_TERMS = 0.2, 12
 """Radius, in parts of the rim's, below which the half cosine is summed by its series, and the terms of the series."""
 
-REMEMBERED = 80
-"""Tractions whose harmonics and fields are remembered: the hat functions of :mod:`fastpin.states.reading_bounds`."""
-
 LEAST_BORE = 1e-30
 """Least bore of the series, in parts of the radius: powers of smaller ones are no numbers."""
 
@@ -123,7 +120,7 @@ def _trimmed(series: np.ndarray) -> np.ndarray:
 # -- harmonics of the tractions -------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
 def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
     """Harmonics (t_n, conj t_-n) of t = s_rr + i s_rtheta on the contact rim, n = 0 to `highest`; (highest + 1, 2)."""
     found = np.zeros((highest + 1, 2), dtype=complex)
@@ -140,7 +137,7 @@ def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
 # -- the pin --------------------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
 def pin_wall(problem: Problem, tractions: Tractions) -> Wall | None:
     """The field of a hollow pin beyond that of a solid pin under a force at its centre; None for a solid pin."""
     body, joint = problem.pin_body, problem.joint
@@ -199,7 +196,7 @@ class PlateWalls(NamedTuple):
     lug: Wall | None
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
 def plate_walls(problem: Problem, tractions: Tractions, remote: tuple[float, ...]) -> PlateWalls | None:
     """The smooth fields of a plate under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
     joint = problem.joint

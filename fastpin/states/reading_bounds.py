@@ -53,9 +53,6 @@ The refined shear has a step there. Its hoop stress was up to 19 steps higher in
 MAPPED = 40
 """Different states from which on the stresses of straight lines are computed by matrices. Fewer are all read."""
 
-AT_ONCE = 32
-"""Nodes whose hat functions are looked at together. :mod:`fastpin.elasticity.walls` remembers their fields."""
-
 COARSER, THICK = 4, 0.1
 """Every so many points of the interface of a bush are taken, if its wall is thicker than this part of the hole radius.
 
@@ -259,8 +256,7 @@ class Hats:
     """
 
     def __init__(self, problem: Problem, grid: Grid) -> None:
-        self._grid, self.known = grid, np.zeros(grid.size, dtype=bool)
-        self.unit = problem.press_fit_pressure or 1.0
+        self._grid, self.known, self.unit = grid, np.zeros(grid.size, dtype=bool), problem.press_fit_pressure or 1.0
 
     def blocks(self, pressure: np.ndarray, shear: np.ndarray) -> Iterator[tuple[np.ndarray, list[Tractions]]]:
         """Give all nodes (k,) that these tractions (m, n) load and that are not known yet, and then know them.
@@ -269,15 +265,12 @@ class Hats:
         """
         loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
         new, (before, after) = np.flatnonzero(loaded & ~self.known), _spacings(self._grid)
-        for begin in range(0, new.size, AT_ONCE):
-            nodes, hats = new[begin : begin + AT_ONCE], []
-            for column in (1, 2):
-                for node in nodes.tolist():
-                    hat = np.zeros((3, 3))
-                    hat[:, 0] = self._grid.theta[node] + np.array([-before[node], 0.0, after[node]])
-                    hat[1, column] = self.unit
-                    hats.append(Tractions((hat,)))
-            yield nodes, hats
+        for begin in range(0, new.size, 32):  # elasticity/walls.py remembers the fields of so many nodes
+            nodes = new[begin : begin + 32]
+            hats = np.zeros((2, nodes.size, 3, 3))
+            hats[..., 0] = self._grid.theta[nodes, None] + np.array([-before[nodes], 0.0 * nodes, after[nodes]]).T
+            hats[0, :, 1, 1] = hats[1, :, 1, 2] = self.unit
+            yield nodes, [Tractions((hat,)) for hat in hats.reshape(-1, 3, 3)]
         self.known[new] = True
 
 
