@@ -13,6 +13,7 @@ import io
 import json
 import re
 import subprocess
+import sys
 import tempfile
 import token
 import tokenize
@@ -211,7 +212,8 @@ def entered(checkout: Path) -> dict[str, int]:
     """Files of the package that warm calls enter, and the depth of its own frames, in the environment of a checkout."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "case.toml").write_text((checkout / "fastpin/casefile/example.toml").read_text("utf-8"), "utf-8")
-        command = [str(checkout / ".venv/bin/python"), "-c", CALLS]
+        python = sys.executable if checkout == HERE else str(checkout / ".venv/bin/python")
+        command = [python, "-c", CALLS]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
     counted = json.loads(done.stdout.splitlines()[-1])
     names = {"solve": "a warm solve", "run": "a warm fastpin run"}

@@ -18,7 +18,7 @@ MOST = {
     "drive is None, or not": 30,
     "classes defined twice": 21,
     "small private functions used once": 162,
-    "constants of modules": 1_399,
+    "constants of modules": 1_397,
     "hidden imports": 0,
     "lines of code": 34_689,
 }
