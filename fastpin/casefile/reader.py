@@ -101,7 +101,7 @@ def parse_case(text: str, name: str = "case file", folder: str | Path = ".") -> 
     return parse_text(text, name, "case file", lambda source: case_from(source, place))
 
 
-class Shared:
+class SharedParts:
     """Parts of the last case that had no fault. The next case of a plan shares them if their input is equal."""
 
     def __init__(self) -> None:
@@ -119,7 +119,7 @@ class Shared:
         return made
 
 
-def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> Case | None:
+def case_from(source: CaseText, folder: Path, shared: SharedParts | None = None) -> Case | None:
     """Build the case from the tables of a text, and report all faults to the text.
 
     Parameters
@@ -136,7 +136,7 @@ def case_from(source: CaseText, folder: Path, shared: Shared | None = None) -> C
     Case or None
         None if the problem or the history is unusable.
     """
-    shared, tables = shared or Shared(), source.root.table
+    shared, tables = shared or SharedParts(), source.root.table
     shared.part("keys", source, _keys_of(tables), lambda: _check_keys(source))
     title = source.root.checked("title", string) or ""
     about = _about(source.section("about"))

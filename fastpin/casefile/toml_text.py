@@ -51,7 +51,7 @@ KINDS = {
 }
 """The sections that only one kind of file has, and the command for such a file."""
 
-Place = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 """The keys and indices that lead to a value: ("load", 0, "P")."""
 
 T = TypeVar("T")
@@ -142,7 +142,7 @@ class CaseText:
 
     def __init__(self, text: str) -> None:
         self.faults: list[tuple[int, str]] = []
-        self.placed: list[tuple[Place, str]] = []
+        self.placed: list[tuple[KeyPath, str]] = []
         self.readable = True
         if not isinstance(text, str):
             raise InputError("text", f"must be TOML text, not {as_toml(text)}")
@@ -158,7 +158,7 @@ class CaseText:
 
     def _parse(self, lines: list[str]) -> dict[str, Any]:
         """Parse the lines. Blank a faulty ``key = value`` line and parse again, to report the other faults as well."""
-        faulty: list[Place] = []
+        faulty: list[KeyPath] = []
         size = sum(map(len, lines)) + len(lines)
         while True:
             try:
@@ -253,7 +253,7 @@ class Section:
         Whether the text has this section.
     """
 
-    def __init__(self, text: CaseText, place: Place, table: dict[str, Any], present: bool = True) -> None:
+    def __init__(self, text: CaseText, place: KeyPath, table: dict[str, Any], present: bool = True) -> None:
         self.table = table
         self.present = present
         self._text = text
@@ -378,7 +378,7 @@ class _Lines:
         self._all = lines
 
     @cached_property
-    def located(self) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
+    def located(self) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
         """The lines of all headers and keys, see :func:`_locate`."""
         with _uncollected():
             return _locate(self._all)
@@ -390,7 +390,7 @@ def _has_long_key(text: str, lines: list[str]) -> bool:
     return most_points >= MOST_PARTS and bool(_LONG_KEY.search(_STRING_OR_COMMENT.sub('""', text)))
 
 
-def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[int, int]]:
+def _locate(lines: list[str]) -> tuple[dict[KeyPath, int], dict[int, KeyPath], dict[int, int]]:
     """The lines of all headers and keys.
 
     Returns
@@ -402,11 +402,11 @@ def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[
     starts : dict
         For every line after the first of a value of several lines: the line on which the value begins.
     """
-    places: dict[Place, int] = {}
-    keys: dict[int, Place] = {}
+    places: dict[KeyPath, int] = {}
+    keys: dict[int, KeyPath] = {}
     starts: dict[int, int] = {}
     counts: dict[str, int] = {}
-    section: Place = ()
+    section: KeyPath = ()
     begin, depth = 0, 0
     for line_number, (line, change) in enumerate(zip(lines, _nesting(lines), strict=True), start=1):
         header = _HEADER.match(line)
@@ -428,7 +428,7 @@ def _locate(lines: list[str]) -> tuple[dict[Place, int], dict[int, Place], dict[
     return places, keys, starts
 
 
-def _parts(dotted: str) -> Place:
+def _parts(dotted: str) -> KeyPath:
     if '"' not in dotted and "'" not in dotted:
         return tuple(map(str.strip, dotted.split(".")))
     return tuple(part[0].strip("\"'") for part in re.finditer(_KEY, dotted))
@@ -441,7 +441,7 @@ def _nesting(lines: list[str]) -> list[int]:
     return [len(re.findall(r"[\[{]", line)) - len(re.findall(r"[\]}]", line)) for line in bare.split("\n")]
 
 
-def _mark_faulty(tables: dict[str, Any], place: Place) -> None:
+def _mark_faulty(tables: dict[str, Any], place: KeyPath) -> None:
     """Put the mark of a faulty value at its place in the tables, so that its key does not count as missing."""
     table: Any = tables
     for part in place[:-1]:

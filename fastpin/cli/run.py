@@ -237,11 +237,11 @@ def _write_stored(case: Case, options: argparse.Namespace, ended: solver.SolveEr
         places |= set(last)  # the fatigue over the last cycle is printed
     if options.record is not None:
         places |= set(live.recorded_places(points.size))
-    part = Part(rows, sorted(places), list(peaks))
+    part = ShownPart(rows, sorted(places), list(peaks))
     return _write_result(case, options, storage.load(options.output, states=sorted(places)), ended, part)
 
 
-class Part(NamedTuple):
+class ShownPart(NamedTuple):
     """The part of a stored result that was read.
 
     Attributes
@@ -264,7 +264,7 @@ def _write_result(
     options: argparse.Namespace,
     result: solver.Result | None,
     ended: solver.SolveError | solver.Interrupted | None,
-    part: Part | None = None,
+    part: ShownPart | None = None,
 ) -> int:
     """Write the files, then print the states, and return the exit code.
 
@@ -311,7 +311,7 @@ def _yield_doubts(case: Case, options: argparse.Namespace, result: solver.Result
     return storage.stored_yield_doubts(options.output, case.problem, case.history)
 
 
-def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: Part | None, path: Path) -> None:
+def _plot(case: Case, options: argparse.Namespace, result: solver.Result, part: ShownPart | None, path: Path) -> None:
     """Draw the tractions. States that were left out of `result` are read from its file."""
     try:
         if part is not None:
@@ -352,7 +352,7 @@ def _report_end(
     return code, error
 
 
-def _last_cycle(options: argparse.Namespace, result: solver.Result | None, part: Part | None) -> LoadCycle:
+def _last_cycle(options: argparse.Namespace, result: solver.Result | None, part: ShownPart | None) -> LoadCycle:
     """Return the last cycle of a result. :class:`InputError` says why there is none."""
     if result is None:
         raise InputError("cycle", "no state was reached")
@@ -368,7 +368,7 @@ def _places(options: argparse.Namespace, cycle: Cycle) -> slice:
 
 
 def _known_cycle(
-    case: Case, options: argparse.Namespace, result: solver.Result | None, part: Part | None
+    case: Case, options: argparse.Namespace, result: solver.Result | None, part: ShownPart | None
 ) -> LoadCycle | None:
     """Return the last cycle if its slip sums are counted, for the summary; None if there is none."""
     with contextlib.suppress(InputError):
@@ -381,7 +381,7 @@ def _reached(result: solver.Result) -> int:
     return 0 if result.restart is None else result.restart.corner
 
 
-def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, part: Part | None) -> None:
+def _print_states(case: Case, result: solver.Result | None, cycle: LoadCycle | None, part: ShownPart | None) -> None:
     if case.title:
         say(case.title)
     if result is None or not len(result):

@@ -23,7 +23,7 @@ from fastpin.model.points import Body, Points, near_rim, owner_of
 from fastpin.reading.stress import check_body
 from fastpin.states.state import State
 
-Method = Literal["point", "line", "area"]
+DistanceMethod = Literal["point", "line", "area"]
 
 METHODS = ("point", "line", "area")
 """The methods of the theory of critical distances."""
@@ -63,7 +63,7 @@ def critical_distance(threshold_range: float, limit_range: float) -> float:
 def fatigue_at_distance(
     states: Sequence[State],
     criterion: Criterion,
-    method: Method = "point",
+    method: DistanceMethod = "point",
     body: Body = "plate",
     *,
     theta: ArrayLike | None = None,
@@ -124,7 +124,9 @@ def fatigue_at_distance(
     return evaluated(np.einsum("tpqc,q->tpc", history, weights), stops[0], criterion, body, place, constants)
 
 
-def _places(method: Method, length: float, edge: float, body: Body) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _places(
+    method: DistanceMethod, length: float, edge: float, body: Body
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Depths and angles of the points of a mean, counted from a point on the edge, and their weights, each (q,).
 
     Depths, `length` and the radius `edge` of the body's edge are in units of the hole's radius. The points crowd

@@ -60,7 +60,7 @@ class Fineness(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Loop:
+class Boundary:
     """A closed edge: its parts in order, the plate to the left.
 
     Attributes
@@ -110,7 +110,7 @@ class Edges:
         If more than :data:`MOST_NODES` nodes are needed.
     """
 
-    def __init__(self, loops: Sequence[Loop], fineness: Fineness) -> None:
+    def __init__(self, loops: Sequence[Boundary], fineness: Fineness) -> None:
         self.parts = [part for loop in loops for part in loop.parts]
         self.points = fineness.points
         panels = _panels(loops, self.parts, fineness)
@@ -160,7 +160,7 @@ class Edges:
         return found
 
 
-def _panels(loops: Sequence[Loop], parts: list[Part], fineness: Fineness) -> list[tuple[int, float, float]]:
+def _panels(loops: Sequence[Boundary], parts: list[Part], fineness: Fineness) -> list[tuple[int, float, float]]:
     """Part, middle and width (in shares of the part's length) of each panel."""
     found: list[tuple[int, float, float]] = []
     for loop in loops:

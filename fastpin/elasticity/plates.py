@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 from threadpoolctl import threadpool_limits
 
-from fastpin.elasticity.panels import Edges, Fineness, Loop, matrices
+from fastpin.elasticity.panels import Boundary, Edges, Fineness, matrices
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, instance, string, whole_number
 from fastpin.model.compliance import LEAST_ORDER, MOST_ORDER, Compliance
@@ -246,7 +246,7 @@ def _dot(along: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def _loops(lug: Lug, order: int) -> list[Loop]:
+def _loops(lug: Lug, order: int) -> list[Boundary]:
     """All edges in hole radii; the first one is the edge of the pin's hole."""
 
     def marks(name: str) -> object:
@@ -255,10 +255,10 @@ def _loops(lug: Lug, order: int) -> list[Loop]:
     def scaled(parts: tuple[Part, ...]) -> tuple[Part, ...]:
         return tuple(part.scaled(1.0 / lug.hole_radius) for part in parts)
 
-    hole = Loop(scaled(lug.contact_edge), (None,) * len(lug.contact_edge), min(Loop.turn, PHASE / order))
-    loops = [hole, Loop(scaled(lug.outline), tuple(marks(part.name) for part in lug.outline))]
+    hole = Boundary(scaled(lug.contact_edge), (None,) * len(lug.contact_edge), min(Boundary.turn, PHASE / order))
+    loops = [hole, Boundary(scaled(lug.outline), tuple(marks(part.name) for part in lug.outline))]
     for other in lug.holes:
-        loops.append(Loop(scaled(other.parts), (marks(other.name),) * len(other.parts)))
+        loops.append(Boundary(scaled(other.parts), (marks(other.name),) * len(other.parts)))
     return loops
 
 

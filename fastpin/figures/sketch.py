@@ -27,7 +27,7 @@ from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.states.state import State
 
-Range = tuple[float, float]
+LoadRange = tuple[float, float]
 """Smallest and largest value of a load."""
 
 GAP = 0.07
@@ -122,7 +122,7 @@ def plot_sketch(
     raise InputError("joint", f"must be a Problem, Case, Result or State, not {as_toml(joint)}")
 
 
-def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, Range]:
+def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, LoadRange]:
     """The smallest and the largest value of each load at the corners of a history, or in some states.
 
     Loads that are always 0 are left out.
@@ -137,7 +137,7 @@ def load_ranges(loads: LoadHistory | Sequence[State]) -> dict[str, Range]:
 
 def draw_sketch(
     problem: Problem,
-    ranges: Mapping[str, Range],
+    ranges: Mapping[str, LoadRange],
     look: Look,
     state: State | None = None,
     words: bool = True,
@@ -203,7 +203,7 @@ def _draw_support(panel: Axes, outside: float, support: str) -> None:
         panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
 
 
-def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, Range]) -> None:
+def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) -> None:
     """Draw the pin where the force presses it against the hole, and the bore of a hollow pin."""
     gap = GAP if problem.assembled_clearance > 0.0 else 0.0
     push = complex(_middle(ranges.get("Q")), -_middle(ranges.get("P")))
@@ -222,7 +222,7 @@ def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, Range]) -> Non
         )
 
 
-def _middle(span: Range | None) -> float:
+def _middle(span: LoadRange | None) -> float:
     return 0.0 if span is None else 0.5 * (span[0] + span[1])
 
 
@@ -238,12 +238,12 @@ def _draw_contact(panel: Axes, state: State) -> None:
         )  # fmt: skip
 
 
-def _scale(ranges: Mapping[str, Range], outside: float, largest: float) -> Scale:
+def _scale(ranges: Mapping[str, LoadRange], outside: float, largest: float) -> Scale:
     found = max((_size(ranges[name]) for name in ("P", "Q") if name in ranges), default=0.0)
     return Scale(outside, "sxy" in ranges, largest or found, -1.0 if ranges.get("P", (0.0, 0.0))[0] < 0.0 else 1.0)
 
 
-def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], scale: Scale) -> None:
+def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange], scale: Scale) -> None:
     """Draw an arrow for each load, with its value."""
     largest = {kind: max((_size(ranges[name]) for name in ranges if LOAD_KIND[name] == kind), default=0.0)
                for kind in set(LOAD_KIND.values())}  # fmt: skip
@@ -263,11 +263,11 @@ def _draw_loads(panel: Axes, problem: Problem, ranges: Mapping[str, Range], scal
             below += 1
 
 
-def _size(span: Range) -> float:
+def _size(span: LoadRange) -> float:
     return max(abs(span[0]), abs(span[1]))
 
 
-def _words(problem: Problem, name: str, span: Range) -> str:
+def _words(problem: Problem, name: str, span: LoadRange) -> str:
     """The value of a load, or the range of its values, with the unit."""
     if span[0] == span[1]:
         return f"{name} = {short_load(problem, name, span[0])}"
@@ -276,7 +276,7 @@ def _words(problem: Problem, name: str, span: Range) -> str:
     return f"{name}: {low} to {high}\N{NO-BREAK SPACE}{shown_unit(unit)}"
 
 
-def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) -> None:
+def _arrow(panel: Axes, tail: complex, head: complex, span: LoadRange, colour: str) -> None:
     """Draw an arrow from `tail` to `head` for a positive load, turned round for a negative one, two heads for both."""
     if span[1] <= 0.0:
         tail, head = head, tail
@@ -286,7 +286,7 @@ def _arrow(panel: Axes, tail: complex, head: complex, span: Range, colour: str) 
     )
 
 
-def _draw_force(panel: Axes, name: str, span: Range, words: str, scale: Scale) -> None:
+def _draw_force(panel: Axes, name: str, span: LoadRange, words: str, scale: Scale) -> None:
     """Draw a force on the pin: from its centre, through it if the force changes its sign."""
     length = LONG * max(_size(span) / scale.force, SHORTEST)
     along = -1j if name == "P" else 1.0
@@ -298,7 +298,7 @@ def _draw_force(panel: Axes, name: str, span: Range, words: str, scale: Scale) -
     panel.text(place.real, place.imag, words, color=FORCE, bbox=BOX, **LETTERS)
 
 
-def _draw_moment(panel: Axes, span: Range, words: str) -> None:
+def _draw_moment(panel: Axes, span: LoadRange, words: str) -> None:
     """Draw a moment as a turned arrow round the centre, counter-clockwise if positive."""
     ends = 0.55 * np.exp(1j * np.radians([200.0, 100.0] if span[1] <= 0.0 else [100.0, 200.0]))
     style = "<|-|>" if span[0] < 0.0 < span[1] else "-|>"
@@ -308,7 +308,7 @@ def _draw_moment(panel: Axes, span: Range, words: str) -> None:
     panel.text(-0.1, 0.74, words, color=FORCE, bbox=BOX, **LETTERS)
 
 
-def _draw_remote(panel: Axes, name: str, span: Range, words: str, scale: Scale) -> None:
+def _draw_remote(panel: Axes, name: str, span: LoadRange, words: str, scale: Scale) -> None:
     """Draw a remote stress as arrows on two sides: outwards for tension, along the sides for shear."""
     half, out = scale.half, scale.half + 0.12 + (0.22 if scale.sheared else 0.0)
     shift = (0.55 * half * np.array([-1.0, 0.0, 1.0])).tolist()

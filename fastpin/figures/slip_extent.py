@@ -30,7 +30,7 @@ MIXED = ("one cycle, or one state outside of cycles", "cycles, or states outside
 """Words for the parts if some states lie in cycles."""
 
 
-class Column(NamedTuple):
+class MapColumn(NamedTuple):
     """A column of the map.
 
     Attributes
@@ -56,7 +56,7 @@ class ExtentBox(NamedTuple):
     extent: int
 
 
-def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[list[Column], str]:
+def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[list[MapColumn], str]:
     """Return the columns of a map, and words on what a column joins.
 
     A column joins the states of one load cycle or of several, so that no column shows a part of a cycle. States outside
@@ -83,7 +83,7 @@ def columns_of(points: np.ndarray, cycles: Sequence[Cycle], most: int) -> tuple[
     for places in np.split(np.arange(points.size), starts[1:]):
         first = float(points[places[0]])
         near = first - right <= GAP * max(usual, 1.0)
-        columns.append(Column(right if near else max(first - usual, 0.0), float(points[places[-1]]), places))
+        columns.append(MapColumn(right if near else max(first - usual, 0.0), float(points[places[-1]]), places))
         right = columns[-1].right
     single, several = KINDS.get(float(np.mean(units % 1.0 == 0.0)), MIXED)
     return columns, f"each column is {single}" if joined == 1 else f"each column joins {joined} {several}"
@@ -122,7 +122,7 @@ def extents(states: Sequence[State], before: State | None) -> np.ndarray:
     return np.select([up & down, up, down, closed], [BOTH_WAYS, SLIP_POSITIVE, SLIP_NEGATIVE, STICK], OPEN)
 
 
-def extent_boxes(states: Sequence[State], columns: Sequence[Column], frame: Frame) -> Iterator[ExtentBox]:
+def extent_boxes(states: Sequence[State], columns: Sequence[MapColumn], frame: Frame) -> Iterator[ExtentBox]:
     """Yield the rectangles of all columns, without open nodes. A node reaches halfway to the nodes beside it."""
     middles = 0.5 * (frame.angle[1:] + frame.angle[:-1])
     ends = np.r_[frame.angle[0], middles, frame.angle[-1]]
@@ -135,7 +135,7 @@ def extent_boxes(states: Sequence[State], columns: Sequence[Column], frame: Fram
                 yield ExtentBox(column.left, column.right, float(ends[begin]), float(ends[end]), int(found[begin]))
 
 
-def load_ranges(states: Sequence[State], columns: Sequence[Column], name: str) -> tuple[np.ndarray, np.ndarray]:
+def load_ranges(states: Sequence[State], columns: Sequence[MapColumn], name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the smallest and the largest value of a load in each column."""
     values = np.array([state.load[name] for state in states])
     parts = [values[column.places] for column in columns]

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from fastpin.figures.sheet import Look, Sheet
-from fastpin.figures.slip_extent import BOTH_WAYS, Column, ExtentBox, columns_of, extent_boxes, load_ranges
+from fastpin.figures.slip_extent import BOTH_WAYS, ExtentBox, MapColumn, columns_of, extent_boxes, load_ranges
 from fastpin.figures.states import DrawnStates, Frame, drawn_states
 from fastpin.figures.style import line
 from fastpin.figures.words import LOAD_POINT, caption, load_text, loads_by_change, short_load
@@ -187,7 +187,7 @@ def _draw_long(states: DrawnStates, look: Look) -> Sheet:
     return sheet
 
 
-def long_columns(states: DrawnStates) -> tuple[list[Column], str]:
+def long_columns(states: DrawnStates) -> tuple[list[MapColumn], str]:
     """Return the columns in which many states are drawn, and words on what a column joins."""
     points = np.array([load_point(state) for state in states])
     return columns_of(points, states.cycles, MOST_COLUMNS)
@@ -262,7 +262,7 @@ def _draw_marks(panel: Axes, boxes: Sequence[ZoneBox], columns: int, limits: tup
     return bool(narrow)
 
 
-def _draw_load_ranges(panel: Axes, states: DrawnStates, columns: Sequence[Column], names: Sequence[str]) -> None:
+def _draw_load_ranges(panel: Axes, states: DrawnStates, columns: Sequence[MapColumn], names: Sequence[str]) -> None:
     """Draw the range of each load that changes in each column, over its largest value."""
     ends = np.array([[column.left, column.right] for column in columns]).ravel()
     for k, name in enumerate(names):

@@ -41,7 +41,7 @@ class ColumnChoice:
 
 
 @dataclass(frozen=True)
-class Column:
+class CsvColumn:
     """A column that is read.
 
     Attributes
@@ -114,7 +114,7 @@ def column_choices(field: str, given: object) -> dict[str, ColumnChoice]:
     return {LOADS[load_index(load, field)]: column_choice(load, value) for load, value in given.items()}
 
 
-def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) -> list[Column]:
+def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) -> list[CsvColumn]:
     """Return the columns of a header that hold the chosen loads. An :class:`InputError` names a missing column."""
     titles = [cell.strip() for cell in cells]
     parts = [_title_and_unit(title) for title in titles]
@@ -133,11 +133,11 @@ def chosen_columns(cells: Sequence[str], choices: Mapping[str, ColumnChoice]) ->
             raise InputError(load, f"{fault} {as_toml(wanted)}; its columns are {shown}{hint}")
         place = places[0]
         unit = _one_unit(load, choice.unit, parts[place][1], "the header says")
-        found.append(Column(place, load, titles[place], choice.scale, unit))
+        found.append(CsvColumn(place, load, titles[place], choice.scale, unit))
     return found
 
 
-def named_columns(cells: Sequence[str]) -> list[Column]:
+def named_columns(cells: Sequence[str]) -> list[CsvColumn]:
     """Return the columns of a header that consists of loads, each with a unit or without.
 
     Raises
@@ -156,20 +156,20 @@ def named_columns(cells: Sequence[str]) -> list[Column]:
             if unit:
                 remedy = f"; a [[load]] block reads it with P = {{ column = {as_toml(title)} }}"
             raise InputError(error.field, f"{error.reason}{remedy}") from None
-        found.append(Column(place, load, title, 1.0, unit))
+        found.append(CsvColumn(place, load, title, 1.0, unit))
     if len({column.load for column in found}) < len(found):
         raise InputError("", "a load is named twice")
     return found
 
 
-def with_unit_row(columns: Sequence[Column], cells: Sequence[str]) -> list[Column]:
+def with_unit_row(columns: Sequence[CsvColumn], cells: Sequence[str]) -> list[CsvColumn]:
     """Return the columns with the units of the line below the header. An :class:`InputError` says what is wrong."""
     found = []
     for column in columns:
         written = unit_name(cells[column.place])
         unit = "" if written in ("", "-") else written
         unit = _one_unit(column.load, column.unit, unit, "the line below the header says")
-        found.append(Column(column.place, column.load, column.title, column.scale, unit))
+        found.append(CsvColumn(column.place, column.load, column.title, column.scale, unit))
     return found
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.checks import as_toml, number, why_unreadable
-from fastpin.model.csv_columns import Column, ColumnChoice, chosen_columns, named_columns, with_unit_row
+from fastpin.model.csv_columns import ColumnChoice, CsvColumn, chosen_columns, named_columns, with_unit_row
 from fastpin.model.inputs import open_input
 from fastpin.model.load_units import Basis, is_unit, unit_name
 from fastpin.model.loads import LOADS
@@ -97,7 +97,7 @@ class _Rows:
         self.faults: list[tuple[int, str]] = []
         self._name = name
         self._basis = basis
-        self._columns: list[Column] = []
+        self._columns: list[CsvColumn] = []
         self._read: list[tuple[int, int, int, float]] = []  # cell, load, power of ten and factor of each column
         self._empty_row = array("d", [math.nan] * len(LOADS))
         self._width = 0
@@ -179,7 +179,7 @@ class _Rows:
             self._refuse(0, "holds no load corners")
         return np.frombuffer(self.numbers).reshape(-1, len(LOADS))
 
-    def _set_columns(self, columns: list[Column]) -> None:
+    def _set_columns(self, columns: list[CsvColumn]) -> None:
         self._columns = columns
         self._read = []
         for column in columns:

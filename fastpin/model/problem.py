@@ -39,7 +39,7 @@ MOST_GAUGE = 1e30
 NO_THICKNESS = "has no meaning in a dimensionless problem, whose loads are in units of F"
 """Why a dimensionless problem refuses a thickness."""
 
-Drive = Literal["force", "ux", "uy", "both"]
+DriveKind = Literal["force", "ux", "uy", "both"]
 """Ways to drive the pin: by the forces P and Q, or by displacements in place of Q (ux), of P (uy) or of both."""
 
 
@@ -115,7 +115,7 @@ class Problem:
     hub_radius: float | None = None
     dimensionless: bool = False
     hub_stiffness: float | None = field(default=None, kw_only=True)
-    drive: Drive = field(default="force", kw_only=True)
+    drive: DriveKind = field(default="force", kw_only=True)
     gauge_radius: float | None = field(default=None, kw_only=True)
     pin_body: PinBody = field(default=Disk(), kw_only=True)
     plate_body: PlateBody = field(default=Plate(), kw_only=True)
@@ -273,7 +273,7 @@ class Problem:
         hub_radius: float | None = None,
         *,
         hub_stiffness: float | None = None,
-        drive: Drive = "force",
+        drive: DriveKind = "force",
         gauge_radius: float | None = None,
         pin_body: PinBody = Disk(),  # noqa: B008 - frozen
         plate_body: PlateBody = Plate(),  # noqa: B008 - frozen

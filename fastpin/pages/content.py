@@ -133,12 +133,12 @@ class Listing:
     kind: str = field(default="listing", init=False)
 
 
-Part = Text | Items | Facts | Table | Picture | Listing
+SectionPart = Text | Items | Facts | Table | Picture | Listing
 """A part of a section."""
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A section with a heading and an entry in the contents.
 
     Attributes
@@ -151,7 +151,7 @@ class Section:
 
     name: str
     title: str
-    parts: Sequence[Part]
+    parts: Sequence[SectionPart]
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class Page:
 
     title: str
     lead: str
-    sections: Sequence[Section]
+    sections: Sequence[PageSection]
     made: str
     about: About = field(default_factory=About)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from fastpin.errors import InputError
 from fastpin.figures.style import FONTS
-from fastpin.pages.content import Page, Part, Table, shown
+from fastpin.pages.content import Page, SectionPart, Table, shown
 from fastpin.pages.html import FOLDER
 
 
@@ -43,7 +43,7 @@ def _document(page: Page) -> dict[str, Any]:
     }
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: SectionPart) -> dict[str, Any]:
     if not isinstance(part, Table):
         return asdict(part)
     heads = [(name, unit) for name, unit, _ in part.columns]

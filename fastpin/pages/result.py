@@ -14,7 +14,7 @@ from fastpin.model.case import About, Case
 from fastpin.model.checks import check_callable, file_path, instance, string
 from fastpin.pages.album import Album
 from fastpin.pages.content import Page
-from fastpin.pages.sections import SECTIONS, Shared
+from fastpin.pages.sections import SECTIONS, PageParts
 from fastpin.pages.source import Source, now
 from fastpin.pages.writing import check_page, write_page
 from fastpin.solver.result import Result
@@ -22,7 +22,7 @@ from fastpin.studies.convergence import Convergence
 from fastpin.studies.identity import canonical
 from fastpin.version import __version__
 
-Progress = Callable[[float, float], None]
+PageProgress = Callable[[float, float], None]
 """Receives the number of finished sections and the number of all sections."""
 
 
@@ -34,7 +34,7 @@ def write_report(
     about: About | None = None,
     case: str | Path | None = None,
     convergence: Convergence | None = None,
-    progress: Progress | None = None,
+    progress: PageProgress | None = None,
 ) -> None:
     """Write the report of a result: one HTML page or a PDF, with all figures inside. It needs no other file.
 
@@ -93,11 +93,11 @@ def write_source(
     source: Source,
     path: Path,
     convergence: Convergence | None = None,
-    progress: Progress | None = None,
+    progress: PageProgress | None = None,
 ) -> None:
     """Write the page of a source, see :func:`write_report`."""
     report = progress or (lambda done, total: None)
-    page, sections = Shared(source, Album(), convergence), []
+    page, sections = PageParts(source, Album(), convergence), []
     for number, make in enumerate(SECTIONS):
         report(number, len(SECTIONS))
         sections.append(make(page))

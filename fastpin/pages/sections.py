@@ -21,7 +21,7 @@ from fastpin.model.points import EDGES
 from fastpin.model.units import PASCAL, Unit, acting_loads, named_loads, units
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
-from fastpin.pages.content import Facts, Items, Listing, Part, Section, Table, Text
+from fastpin.pages.content import Facts, Items, Listing, PageSection, SectionPart, Table, Text
 from fastpin.pages.source import Source
 from fastpin.reading.zones import is_all_round
 from fastpin.report.case import case_rows, corner_columns, edge_body
@@ -67,7 +67,7 @@ NO_STATE = "There is no state: the run ended before its first corner, or its sta
 
 
 @dataclass(frozen=True)
-class Shared:
+class PageParts:
     """What the sections of one page share.
 
     Attributes
@@ -82,14 +82,14 @@ class Shared:
     convergence: Convergence | None = None
 
 
-def overview(page: Shared) -> Section:
+def overview(page: PageParts) -> PageSection:
     """Return the most important sentences on the result."""
     source, problem = page.source, page.source.case.problem
     cycle = source.cycle
     warnings = [*doubts(problem, source.case.history, source.case.options)]
     warnings += pressure_doubts(problem, source.case.history, [np.array([source.pressure])])
     warnings += yield_doubts(problem, source.case.history, lambda: source.found, source.read)
-    parts: list[Part] = [_status(source)]
+    parts: list[SectionPart] = [_status(source)]
     parts += [Text(f"Warning: {warning}.", "note") for warning in warnings]
     parts += [Text(f"Note: {note}.", "note") for note in note_lines(source.case, source.result)]
     if source.peaks:
@@ -106,7 +106,7 @@ def overview(page: Shared) -> Section:
         sentences += [hot_spot_line(found, source.peaks) for found in known]
         parts.append(Items([_sentence(line) for line in sentences if line]))
     parts.append(Text("Angles are in degrees from the bottom of the hole, counter-clockwise positive, towards +x."))
-    return Section("overview", "Overview", parts)
+    return PageSection("overview", "Overview", parts)
 
 
 def _sentence(line: str) -> str:
@@ -133,7 +133,7 @@ def _count(source: Source) -> str:
     return "1 state is kept" if source.points.size == 1 else f"{source.points.size:,} states are kept"
 
 
-def margins(page: Shared) -> Section:
+def margins(page: PageParts) -> PageSection:
     """Return the margins of yield, of the bush and of fatigue, each with the state that governs it."""
     source, problem = page.source, page.source.case.problem
     found = static_margins(problem, source.found, source.read)
@@ -144,10 +144,10 @@ def margins(page: Shared) -> Section:
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
     rows = margin_rows(problem, found)
-    return Section("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
+    return PageSection("margins", "Margins", [Facts(words, rows, HEADS), Text(remarks)])
 
 
-def case(page: Shared) -> Section:
+def case(page: PageParts) -> PageSection:
     """Return every parameter of the case in words, and the options of the solver."""
     found = page.source.case
     problem, unit = found.problem, units(found.problem)
@@ -162,7 +162,7 @@ def case(page: Shared) -> Section:
     known = page.source.knows_options
     options = {name: value for name, value in found.options.keywords().items() if known or name in _IN_RESULTS}
     solver = [(name, as_toml(value), OPTIONS[name]["words"]) for name, value in options.items() if value is not None]
-    return Section(
+    return PageSection(
         "case",
         "Case",
         [
@@ -177,7 +177,7 @@ _IN_RESULTS = ("nodes", "method", "error_bars")
 """Options that a result tells without its run."""
 
 
-def materials(page: Shared) -> Section:
+def materials(page: PageParts) -> PageSection:
     """Return the constants of all materials."""
     problem = page.source.case.problem
     found = {"pin": problem.pair.pin, "plate": problem.pair.plate}
@@ -186,7 +186,7 @@ def materials(page: Shared) -> Section:
     modulus = Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL
     columns: list[Column] = [("constant", "", _CONSTANTS)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]
-    parts: list[Part] = [Table("Elastic constants and yield strength", columns)]
+    parts: list[SectionPart] = [Table("Elastic constants and yield strength", columns)]
     fatigue = {
         name: material.fatigue.given() for name, material in found.items() if material.fatigue and not material.is_rigid
     }
@@ -200,7 +200,7 @@ def materials(page: Shared) -> Section:
         parts += [Text(f"Source of the constants of the {body}: {text}.") for body, text in sources.items() if text]
     else:
         parts.append(Text("No material has fatigue constants: see the key fatigue of a case file.", "missing"))
-    return Section("materials", "Materials", parts)
+    return PageSection("materials", "Materials", parts)
 
 
 _CONSTANTS = ["material", "Young's modulus E", "Poisson's ratio nu", "shear modulus G", "yield strength"]
@@ -219,7 +219,7 @@ def _cell(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def loads(page: Shared) -> Section:
+def loads(page: PageParts) -> PageSection:
     """Return the figure and the table of the corners."""
     found = page.source.case
     history = found.history
@@ -234,20 +234,20 @@ def loads(page: Shared) -> Section:
         columns = [(name, unit, cells[:half] + cells[-half:]) for name, unit, cells in columns]
         gaps = {half: f"{hidden + count - MAX_ROWS:,} corners not shown here"}
     remarks = [Text("L_p is the load parameter (R - R_D)/(F beta*) of the force F on the pin.")]
-    parts: list[Part] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found, initial)]
+    parts: list[SectionPart] = [Facts("Loads", rows, ("load", "meaning")), drawings.history(page.album, found, initial)]
     if initial.any():
         kept = named_loads(found.problem, named_load(initial))
         remarks.append(Text(f"The run continues another result. It begins with its loads: {kept}.", "note"))
-    return Section("loads", "Loads", [*parts, Table("Corners of the load history", columns, gaps), *remarks])
+    return PageSection("loads", "Loads", [*parts, Table("Corners of the load history", columns, gaps), *remarks])
 
 
-def key_figures(page: Shared) -> Section:
+def key_figures(page: PageParts) -> PageSection:
     """Return the table of states, and all quantities of the states that are drawn."""
     source, problem = page.source, page.source.case.problem
     states, gaps = source.rows
     if not states:
-        return Section("figures", "Key figures", [Text(NO_STATE, "missing")])
-    parts: list[Part] = [Table("States", state_columns(problem, states), gaps)]
+        return PageSection("figures", "Key figures", [Text(NO_STATE, "missing")])
+    parts: list[SectionPart] = [Table("States", state_columns(problem, states), gaps)]
     drawn = source.drawn
     natural = {name: max(size(name, state) for state in drawn) for name in QUANTITIES}
     cells = [quantity_column(problem, drawn, name, natural=natural[name]) for name in QUANTITIES]
@@ -269,31 +269,33 @@ def key_figures(page: Shared) -> Section:
     else:
         words = "Error bars stand behind ±. The true value lies within the bar in some 95 of 100 cases."
         parts.append(Text(f"{words} A ? stands for a bar that is not known."))
-    return Section("figures", "Key figures", parts)
+    return PageSection("figures", "Key figures", parts)
 
 
-def tractions(page: Shared) -> Section:
+def tractions(page: PageParts) -> PageSection:
     """Return the figure of the tractions."""
     if not page.source.drawn:
-        return Section("tractions", "Tractions", [Text(NO_STATE, "missing")])
+        return PageSection("tractions", "Tractions", [Text(NO_STATE, "missing")])
     if not any(state.in_contact for state in page.source.drawn):
-        return Section("tractions", "Tractions", [Text("Pin and hole do not touch in the drawn states.", "missing")])
-    return Section("tractions", "Tractions", [drawings.tractions(page.album, page.source.drawn)])
+        return PageSection(
+            "tractions", "Tractions", [Text("Pin and hole do not touch in the drawn states.", "missing")]
+        )
+    return PageSection("tractions", "Tractions", [drawings.tractions(page.album, page.source.drawn)])
 
 
-def zones(page: Shared) -> Section:
+def zones(page: PageParts) -> PageSection:
     """Return the zones of contact, stick and slip."""
     drawn = page.source.drawn
     if not drawn:
-        return Section("zones", "Stick and slip", [Text(NO_STATE, "missing")])
+        return PageSection("zones", "Stick and slip", [Text(NO_STATE, "missing")])
     rows = [row for state in drawn for row in _zone_rows(state)]
     heads = ("load point", "zone", "from", "to", "direction of the pin")
     units_ = ("", "", "deg", "deg", "")
     columns = [(heads[k], units_[k], [row[k] for row in rows]) for k in range(len(heads))]
-    parts: list[Part] = [Table("Zones of contact, stick and slip", columns)]
+    parts: list[SectionPart] = [Table("Zones of contact, stick and slip", columns)]
     if len(page.source.mapped) > 1:
         parts = [*_drawn(lambda: drawings.stick_slip(page.album, page.source.mapped)), *parts]
-    return Section("zones", "Stick and slip", parts)
+    return PageSection("zones", "Stick and slip", parts)
 
 
 def _zone_rows(state: State) -> list[tuple[str, ...]]:
@@ -316,9 +318,9 @@ def _ends(start: float, stop: float) -> tuple[str, str]:
     return f"{first:z.2f}", f"{last:z.2f}"
 
 
-def hysteresis(page: Shared) -> Section:
+def hysteresis(page: PageParts) -> PageSection:
     """Return loops and slip of the last cycle, and the changes of all cycles."""
-    source, cycle, parts = page.source, page.source.cycle, list[Part]()
+    source, cycle, parts = page.source, page.source.cycle, list[SectionPart]()
     if cycle is None:
         how = "A load block with repeat = 2, or a history that ends with the loads of an earlier corner, has a cycle."
         parts.append(Text(f"There are no loops: {source.why_no_cycle}. {how}", "missing"))
@@ -338,7 +340,7 @@ def hysteresis(page: Shared) -> Section:
         lines = cycle_lines(source.case.problem, source.result.cycles, source.peaks)
         if len(lines) > MOST_BLOCKS:
             parts.append(Items([_sentence(line) for line in lines]))
-    return Section("hysteresis", "Hysteresis and slip", parts)
+    return PageSection("hysteresis", "Hysteresis and slip", parts)
 
 
 def _slips(cycle: LoadCycle) -> bool:
@@ -347,7 +349,7 @@ def _slips(cycle: LoadCycle) -> bool:
     return cycle.largest_slip_range > NEGLIGIBLE * natural
 
 
-def _drawn(draw: Callable[[], Part]) -> list[Part]:
+def _drawn(draw: Callable[[], SectionPart]) -> list[SectionPart]:
     """Return a picture, or the reason why there is none."""
     try:
         return [draw()]
@@ -355,11 +357,11 @@ def _drawn(draw: Callable[[], Part]) -> list[Part]:
         return [Text(f"There is no figure: {error.field} {error.reason}.", "missing")]
 
 
-def stresses(page: Shared) -> Section:
+def stresses(page: PageParts) -> PageSection:
     """Return the hoop stress round the hole, and a map of the state with the largest one."""
     drawn, problem = page.source.drawn, page.source.case.problem
     if not drawn:
-        return Section("stresses", "Stresses", [Text(NO_STATE, "missing")])
+        return PageSection("stresses", "Stresses", [Text(NO_STATE, "missing")])
     parts = _drawn(lambda: drawings.hoop(page.album, drawn))
     peaks = page.source.peaks
     lines = [hoop_line(problem, peaks, body) for body in EDGES]
@@ -369,49 +371,49 @@ def stresses(page: Shared) -> Section:
     else:
         largest = max(peaks, key=lambda state: state.peak_hoop_stress().value)
     parts += _drawn(lambda: drawings.stress_map(page.album, largest))
-    return Section("stresses", "Stresses", parts)
+    return PageSection("stresses", "Stresses", parts)
 
 
-def fatigue(page: Shared) -> Section:
+def fatigue(page: PageParts) -> PageSection:
     """Return the hot spot over the last cycle, with the life if the material has constants for it."""
     found = page.source.fatigue
     if isinstance(found, str):
-        return Section("fatigue", "Fatigue", [Text(found, "missing")])
-    parts: list[Part] = [drawings.fatigue(page.album, found)]
+        return PageSection("fatigue", "Fatigue", [Text(found, "missing")])
+    parts: list[SectionPart] = [drawings.fatigue(page.album, found)]
     for one in found:
         parts.append(Text(_sentence(hot_spot_line(one, page.source.peaks))))
         if one.life is None:
             words = f"There is no life: the material of the {edge_body(one.problem, one.body).split(' at ')[0]}"
             words += " lacks constants for it. The key fatigue of a case file gives them; see docs/fatigue.md."
             parts.append(Text(words, "missing"))
-    return Section("fatigue", "Fatigue", parts)
+    return PageSection("fatigue", "Fatigue", parts)
 
 
-def convergence(page: Shared) -> Section:
+def convergence(page: PageParts) -> PageSection:
     """Return a convergence study, if there is one."""
     study = page.convergence
     if study is None:
         words = "There is no convergence study on this page: result files hold none."
         words += " fastpin converge CASE.toml makes one; in Python, result.report(path, convergence=...) shows it."
-        return Section("convergence", "Convergence", [Text(words, "missing")])
-    parts: list[Part] = []
+        return PageSection("convergence", "Convergence", [Text(words, "missing")])
+    parts: list[SectionPart] = []
     for corner in study.loads:
         for one in study.studies:
             rows = reported_series(one, study.problem, corner)
             words = f"Corner {corner:,}, {heading(one, study).removesuffix(':')}"
             parts.append(Table(words, series_columns(one, rows)))
     parts.append(drawings.convergence(page.album, study))
-    return Section("convergence", "Convergence", parts)
+    return PageSection("convergence", "Convergence", parts)
 
 
-def checks(page: Shared) -> Section:
+def checks(page: PageParts) -> PageSection:
     """Return the residuals of all states, and the counts of the solver."""
     source = page.source
     rows = [
         (name, f"{value:.1e}", "met" if value <= MAX_RESIDUAL else "not met", RESIDUAL_WORDS.get(name, ""))
         for name, value in source.residuals.items()
     ]
-    parts: list[Part] = []
+    parts: list[SectionPart] = []
     if rows:
         count = source.points.size
         states = "the state" if count == 1 else f"all {count:,} states"
@@ -421,10 +423,10 @@ def checks(page: Shared) -> Section:
     else:
         parts.append(Text(NO_STATE, "missing"))
     parts.append(Text(_sentence(solver_line(source.result))))
-    return Section("checks", "Checks", parts)
+    return PageSection("checks", "Checks", parts)
 
 
-def provenance(page: Shared) -> Section:
+def provenance(page: PageParts) -> PageSection:
     """Return the versions, the place and time of the run, its id, and its input."""
     source = page.source
     document = canonical(source.case)
@@ -434,14 +436,14 @@ def provenance(page: Shared) -> Section:
     else:
         del document["solve"]
         listing = "Input of the run without the options of the solver, which are not known (JSON, SI units)"
-    parts: list[Part] = [Facts("Origin", rows, ("subject", "value"))]
+    parts: list[SectionPart] = [Facts("Origin", rows, ("subject", "value"))]
     if source.case_text:
         parts.append(Listing("Case file", _shortened(source.case_text)))
     elif source.path is not None:
         words = "The text of the case file is not in a result file: fastpin report --case CASE.toml shows it."
         parts.append(Text(words, "missing"))
     parts.append(Listing(listing, _shortened(json.dumps(document, indent=1))))
-    return Section("provenance", "Versions and provenance", parts)
+    return PageSection("provenance", "Versions and provenance", parts)
 
 
 def _shortened(text: str) -> str:
@@ -451,7 +453,7 @@ def _shortened(text: str) -> str:
     return f"{text[:MOST_CHARACTERS]}\n... {len(text) - MOST_CHARACTERS:,} more characters"
 
 
-SECTIONS: Sequence[Callable[[Shared], Section]] = (
+SECTIONS: Sequence[Callable[[PageParts], PageSection]] = (
     overview, margins, case, materials, loads, key_figures, tractions, zones, hysteresis, stresses, fatigue,
     convergence, checks, provenance,
 )  # fmt: skip

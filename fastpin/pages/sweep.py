@@ -14,7 +14,7 @@ from fastpin.model.case import About
 from fastpin.model.checks import check_callable, file_path, instance
 from fastpin.pages import drawings
 from fastpin.pages.album import Album
-from fastpin.pages.content import Facts, Listing, Page, Part, Section, Table, Text
+from fastpin.pages.content import Facts, Listing, Page, PageSection, SectionPart, Table, Text
 from fastpin.pages.result import merged
 from fastpin.pages.source import now
 from fastpin.pages.writing import check_page, write_page
@@ -90,7 +90,7 @@ def write_sweep_report(
     report(len(SECTIONS), len(SECTIONS))
     if found.digest != digest:
         words = "The sweep was last run with another plan than this one; runs that it lacks are waiting."
-        sections[0] = Section("overview", "Overview", [*sections[0].parts, Text(words, "note")])
+        sections[0] = PageSection("overview", "Overview", [*sections[0].parts, Text(words, "note")])
     lead = "A parameter sweep of the frictional contact of an elastic pin in the hole of an elastic plate."
     made = f"Made by fastpin {__version__} on {now()} from {folder.resolve().name}/{INDEX}."
     named = merged(found.case(found.points[0]).about, about)
@@ -117,51 +117,51 @@ def _plan_of(folder: Path, digest: str | None) -> Plan:
     raise InputError(str(folder), f"its plan can't be read from here; name the plan. The first fault: {fault}")
 
 
-def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _overview(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     counts = Counter(run["status"] for run in runs)
     words = ", ".join(f"{counts[status]:,} {status}" for status in (DONE, FAILED, WAITING))
     seconds = sum(run.get("seconds") or 0.0 for run in runs)
-    parts: list[Part] = [Text(f"{len(runs):,} points: {words}. The solver took {seconds:.3g} s in all.")]
+    parts: list[SectionPart] = [Text(f"{len(runs):,} points: {words}. The solver took {seconds:.3g} s in all.")]
     if counts[WAITING]:
         how = "fastpin sweep with the plan continues the sweep"
         parts.append(Text(f"The sweep is not finished: {counts[WAITING]:,} points are waiting; {how}.", "note"))
     same = len(plan.points) - len(plan.runs)
     if same:
         parts.append(Text(f"{same:,} points have the same input as another one, and share its run."))
-    return Section("overview", "Overview", parts)
+    return PageSection("overview", "Overview", parts)
 
 
-def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _plan(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     fields = []
     for name, spacing in plan.fields.items():
         values = list(dict.fromkeys(brief(point.values[name]) for point in plan.points if name in point.values))
         shown = values if len(values) <= 12 else [*values[:3], "...", *values[-3:]]
         fields.append((name, f"{len(values):,}", ", ".join(shown), spacing))
-    parts: list[Part] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]
+    parts: list[SectionPart] = [Facts("Varied fields", fields, ("field", "values", "which", "spacing"))]
     if plan.outcomes:
         outcomes = [(name, outcome.definition) for name, outcome in plan.outcomes.items()]
         parts.append(Facts("Outcomes", outcomes, ("name", "definition")))
     parts.append(Listing("The plan", plan.text))
-    return Section("plan", "Plan", parts)
+    return PageSection("plan", "Plan", parts)
 
 
-def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _first_case(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     point = plan.points[0]
     case = plan.case(point)
     columns, hidden = corner_columns(case.problem, case.history)
     note = f" ({hidden:,} corners not shown here)" if hidden else ""
     words = f"The first run, {point.id}: {describe_values(point.values)}."
-    parts: list[Part] = [
+    parts: list[SectionPart] = [
         Text(words),
         Facts("The problem", case_rows(case), ("subject", "in words")),
         Table(f"Corners of the load history{note}", columns),
     ]
-    return Section("case", "The first case", parts)
+    return PageSection("case", "The first case", parts)
 
 
-def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     names = [*plan.outcomes] or list(KEY_CHARTS)
-    parts: list[Part] = []
+    parts: list[SectionPart] = []
     try:
         check_axes(plan, names[0], None, None)
     except InputError as error:
@@ -176,35 +176,35 @@ def _charts(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section
     if len(names) > MOST_CHARTS:
         others = ", ".join(names[MOST_CHARTS:])
         parts.append(Text(f"Not drawn here: {others}. fastpin sweep --plot FILE --value NAME draws one.", "missing"))
-    return Section("results", "Results", parts)
+    return PageSection("results", "Results", parts)
 
 
-def _table(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _table(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     columns, gaps, half = run_columns(plan, runs), {}, MOST_RUNS // 2
-    parts: list[Part] = []
+    parts: list[SectionPart] = []
     if len(runs) > MOST_RUNS:
         columns = [(name, unit, [*cells[:half], *cells[-half:]]) for name, unit, cells in columns]
         gaps = {half: f"{len(runs) - MOST_RUNS:,} runs not shown here"}
         parts.append(Text("The table lacks its middle. fastpin sweep --table FILE writes all rows.", "missing"))
-    return Section("runs", "Runs", [Table("Runs with their fields and values", columns, gaps), *parts])
+    return PageSection("runs", "Runs", [Table("Runs with their fields and values", columns, gaps), *parts])
 
 
-def _failed(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _failed(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     failed = [(run, point) for run, point in zip(runs, plan.points, strict=True) if run["status"] == FAILED]
     if not failed:
-        return Section("failed", "Failed runs", [Text("No run has failed.")])
+        return PageSection("failed", "Failed runs", [Text("No run has failed.")])
     listed = [
         (run["id"], describe_values(point.values), run["reason"] or "no reason is known")
         for run, point in failed[:MOST_FAILED]
     ]
-    parts: list[Part] = [Facts(f"{len(failed):,} failed runs", listed, ("run", "values", "reason"))]
+    parts: list[SectionPart] = [Facts(f"{len(failed):,} failed runs", listed, ("run", "values", "reason"))]
     if len(failed) > MOST_FAILED:
         parts.append(Text(f"{len(failed) - MOST_FAILED:,} more have failed.", "missing"))
     parts.append(Text("fastpin sweep --retry runs what failed again."))
-    return Section("failed", "Failed runs", parts)
+    return PageSection("failed", "Failed runs", parts)
 
 
-def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Section:
+def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> PageSection:
     ended = [run for run in runs if run.get("versions")]
     names = sorted({", ".join(f"{name} {value}" for name, value in run["versions"].items()) for run in ended})
     started = sorted(run["started"] for run in ended if run.get("started"))
@@ -214,7 +214,7 @@ def _provenance(plan: Plan, runs: Sequence[dict[str, Any]], album: Album) -> Sec
     found += [("first run begun", started[0]), ("last run begun", started[-1])] if started else []
     found += [("SHA-256 of fields and runs", plan.digest)]
     found += [("largest residual of all runs", f"{max(residuals):.1e}")] if residuals else []
-    return Section("provenance", "Versions and provenance", [Facts("Origin", found, ("subject", "value"))])
+    return PageSection("provenance", "Versions and provenance", [Facts("Origin", found, ("subject", "value"))])
 
 
 SECTIONS = (_overview, _plan, _first_case, _charts, _table, _failed, _provenance)

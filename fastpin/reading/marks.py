@@ -27,7 +27,7 @@ read with the places of older borders nearby.
 """
 
 
-class Place:
+class MarkedPlace:
     """The place of a border in node distances inwards from its outermost node; NaN where no fit is good enough.
 
     Parameters
@@ -69,7 +69,9 @@ class Marks:
 
     __slots__ = ("_bits", "_places")
 
-    def __init__(self, bits: dict[int, int] | None = None, places: dict[int, Place | float] | None = None) -> None:
+    def __init__(
+        self, bits: dict[int, int] | None = None, places: dict[int, MarkedPlace | float] | None = None
+    ) -> None:
         self._bits, self._places = bits or {}, places or {}
 
     @classmethod
@@ -115,13 +117,13 @@ class Marks:
         `tractions` are the pressure and the shear (n,), `status` (n,) tells the zones.
         """
         fresh: dict[int, int] = {}
-        places: dict[int, Place | float] = {}
+        places: dict[int, MarkedPlace | float] = {}
         corner: _Corner | None = None
         for node, inwards, sign in present_borders(status, grid.closed):
             fresh[node] = fresh.get(node, 0) | BITS[inwards, sign]
             if sign:
                 corner = corner or _Corner(problem, grid.closed, tractions, status, self)
-                place = Place(corner, node, inwards)
+                place = MarkedPlace(corner, node, inwards)
                 places[node] = place.read() if corner.depth > DEEPEST else place
         if not fresh:
             return self
@@ -132,7 +134,7 @@ class Marks:
     @property
     def depth(self) -> int:
         """Largest number of corners whose nodal values are kept for a place."""
-        return max((place.depth for place in self._places.values() if isinstance(place, Place)), default=0)
+        return max((place.depth for place in self._places.values() if isinstance(place, MarkedPlace)), default=0)
 
     def near(self, nodes: list[int], inwards: int) -> list[OldBorder]:
         """The marked borders at some neighbouring `nodes`, which lie `inwards` from the first one, in their order.
@@ -157,9 +159,9 @@ class Marks:
         return Marks, (dict(self._bits), places)
 
 
-def _known(place: Place | float) -> float | None:
+def _known(place: MarkedPlace | float) -> float | None:
     """A place as a number; None if it is unknown."""
-    value = place.read() if isinstance(place, Place) else place
+    value = place.read() if isinstance(place, MarkedPlace) else place
     return None if math.isnan(value) else value
 
 

@@ -22,7 +22,7 @@ from fastpin.report.case import ROUNDING, edge_body, load_columns
 from fastpin.report.table import (
     MAX_ROWS,
     Column,
-    Line,
+    TableLine,
     cut_lines,
     folded_lines,
     line_words,
@@ -64,7 +64,7 @@ class TableRows:
         Load points of all rows.
     """
 
-    lines: list[Line]
+    lines: list[TableLine]
     points: np.ndarray
 
     @property

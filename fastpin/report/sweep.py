@@ -27,7 +27,7 @@ from fastpin.studies.plan import Plan
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.version import __version__
 
-Row = dict[str, Any]
+TableRow = dict[str, Any]
 """One point of a plan with its key figures, see :func:`fastpin.studies.sweep.rows`."""
 
 MOST_PANELS = 12
@@ -60,12 +60,12 @@ _SHOWN = {
 """Key figures of the text table and their headings, unless the plan has outcomes. The CSV file has all key figures."""
 
 
-def text(plan: Plan, rows: Sequence[Row]) -> str:
+def text(plan: Plan, rows: Sequence[TableRow]) -> str:
     """Return the table of :func:`run_columns` as text. A long table lacks its middle."""
     return table(run_columns(plan, rows))
 
 
-def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
+def run_columns(plan: Plan, rows: Sequence[TableRow]) -> list[Column]:
     """Return the columns of the table of runs: varied fields, outcomes of the plan, status.
 
     A plan without outcomes has the most important key figures in their place. Error bars stand behind +-, if the runs
@@ -86,7 +86,7 @@ def run_columns(plan: Plan, rows: Sequence[Row]) -> list[Column]:
     return columns
 
 
-def write_csv(plan: Plan, rows: Sequence[Row], path: Path) -> None:
+def write_csv(plan: Plan, rows: Sequence[TableRow], path: Path) -> None:
     """Write all varied fields, outcomes and key figures as CSV, with a comment line that names the units.
 
     Classes are words. Units are SI, with the thickness of each run if all runs have one, or the paper's for
@@ -223,7 +223,7 @@ def check_axes(plan: Plan, value: str, x: str | None, y: str | None) -> tuple[st
     return x, y, others
 
 
-def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: str | None = None) -> Chart:
+def chart(plan: Plan, rows: Sequence[TableRow], value: str, x: str | None = None, y: str | None = None) -> Chart:
     """Return the numbers of a figure of one outcome or key figure over one or two fields.
 
     Other fields that vary make several maps or curves.
@@ -278,7 +278,7 @@ def chart(plan: Plan, rows: Sequence[Row], value: str, x: str | None = None, y: 
     )
 
 
-def _axis(plan: Plan, rows: Sequence[Row], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
+def _axis(plan: Plan, rows: Sequence[TableRow], name: str, unit: dict[str, str]) -> tuple[Axis, dict[Any, int]]:
     """Return an axis, and the index of each value on it."""
     values = sorted({row[name] for row in rows})
     factor, label = scaled(values, unit.get(field_kind(name), ""))
@@ -297,7 +297,7 @@ def _label(words: str, unit: str) -> str:
     return f"{words} ({unit})" if unit else words
 
 
-def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
+def _value_words(plan: Plan, rows: Sequence[TableRow], field: str, unit: dict[str, str]) -> Callable[[Any], str]:
     """Return a function that gives words for a value of a field, in the unit that suits all its values."""
     words, given = plan.labels.get(field, field_words(field)), [row[field] for row in rows if row[field] is not None]
     if not all(map(_is_number, given)):
@@ -306,7 +306,7 @@ def _value_words(plan: Plan, rows: Sequence[Row], field: str, unit: dict[str, st
     return lambda value: f"{words} = {factor * value:.4g} {label}".strip()
 
 
-def _rounding(plan: Plan, rows: Sequence[Row], value: str, unit: dict[str, str]) -> float:
+def _rounding(plan: Plan, rows: Sequence[TableRow], value: str, unit: dict[str, str]) -> float:
     """Return the size below which values of a figure are rounding.
 
     It is a part of the largest value, and of the largest key figure of the same kind: a motion that is zero by symmetry
@@ -341,7 +341,7 @@ def _bar_words(factor: float, bar: float | None) -> str:
     return f" +-{factor * bar:.2g}" if math.isfinite(bar) else " +-?"
 
 
-def printed_rows(plan: Plan, rows: Sequence[Row]) -> tuple[Sequence[Row], dict[str, str]]:
+def printed_rows(plan: Plan, rows: Sequence[TableRow]) -> tuple[Sequence[TableRow], dict[str, str]]:
     """Return rows with the outcomes, key figures and error bars in printed units, and the units by kind.
 
     Each run counts with its own thickness. There are no units if only some of the runs are dimensionless.

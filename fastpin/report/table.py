@@ -39,7 +39,7 @@ class LeftOut(NamedTuple):
     rows: int
 
 
-Line = int | Repeat | LeftOut
+TableLine = int | Repeat | LeftOut
 """A line of a table: the number of a row from 0, or a line for several rows."""
 
 
@@ -48,12 +48,12 @@ def visible_rows(count: int) -> list[int]:
     return printed_rows(cut_lines(count))
 
 
-def printed_rows(lines: Iterable[Line]) -> list[int]:
+def printed_rows(lines: Iterable[TableLine]) -> list[int]:
     """Return the rows that have a line of their own."""
     return [line for line in lines if isinstance(line, int)]
 
 
-def cut_lines(count: int, hidden: int = 0) -> list[Line]:
+def cut_lines(count: int, hidden: int = 0) -> list[TableLine]:
     """Return the lines of a table of `count` rows, and of `hidden` rows that are missing in their middle.
 
     Of more than :data:`MAX_ROWS` rows the first and the last ones are printed.
@@ -65,7 +65,7 @@ def cut_lines(count: int, hidden: int = 0) -> list[Line]:
     return [*range(first), *([LeftOut(left_out)] if left_out else []), *range(count - last, count)]
 
 
-def folded_lines(rows: np.ndarray) -> list[Line]:
+def folded_lines(rows: np.ndarray) -> list[TableLine]:
     """Return the lines of a table whose repeated rows become one line. There are at most :data:`MAX_ROWS` lines.
 
     Parameters
@@ -93,9 +93,9 @@ def _end(line: int | Repeat) -> int:
     return line.end if isinstance(line, Repeat) else line + 1
 
 
-def with_rows(lines: Iterable[Line], rows: Collection[int]) -> list[Line]:
+def with_rows(lines: Iterable[TableLine], rows: Collection[int]) -> list[TableLine]:
     """Return the lines of a table in which these rows are not left out. Repeated rows stay one line."""
-    found: list[Line] = []
+    found: list[TableLine] = []
     at = 0
     for line in lines:
         if isinstance(line, LeftOut):
@@ -134,7 +134,7 @@ def table(columns: Sequence[Column], hidden: int = 0) -> str:
     return table_of_lines(shown, lines, names)
 
 
-def table_of_lines(columns: Sequence[Column], lines: Sequence[Line], names: Sequence[str]) -> str:
+def table_of_lines(columns: Sequence[Column], lines: Sequence[TableLine], names: Sequence[str]) -> str:
     """Return a table as text.
 
     Parameters

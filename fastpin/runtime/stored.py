@@ -28,7 +28,7 @@ UNRELATED = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 """Settings of Numba that do not change the code. All others belong to the code."""
 
 
-class Place:
+class StoredCode:
     """The files of a kernel for arguments of some types."""
 
     def __init__(self, kernel: KernelSource, signature: str) -> None:
@@ -119,12 +119,12 @@ def _replace(file: Path, content: bytes) -> None:
         raise
 
 
-def place_of(kernel: KernelSource, signature: str) -> Place | None:
+def place_of(kernel: KernelSource, signature: str) -> StoredCode | None:
     """The place of a kernel's code; None if code can't be loaded, or its text is not in a file any more."""
     if not machine.CAN_LOAD:
         return None
     try:
-        return Place(kernel, signature)
+        return StoredCode(kernel, signature)
     except (OSError, ImportError, RuntimeError):  # RuntimeError: LLVM does not know the processor
         return None
 

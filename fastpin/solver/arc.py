@@ -22,7 +22,7 @@ from fastpin.model.problem import Problem
 from fastpin.solver.driven import pushes
 from fastpin.solver.errors import ArcError, SolveError
 from fastpin.solver.rest import climb_angle
-from fastpin.solver.run import Progress, Run
+from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.survey import survey
 
 log = logging.getLogger(__name__)
@@ -56,7 +56,7 @@ DIRECTIONS = 16
 
 
 def candidate_grids(
-    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None = None
+    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: RunProgress | None = None
 ) -> Iterator[Grid]:
     """Yield grids of `nodes` nodes, each wider than the grid before. The last grid is the whole circle.
 
@@ -90,7 +90,7 @@ def candidate_grids(
 
 
 def narrow_grids(
-    problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: Progress | None = None
+    problem: Problem, values: np.ndarray, force: float, options: SolveOptions, progress: RunProgress | None = None
 ) -> Iterator[Grid]:
     """Yield graded grids with at least :data:`LEAST_ACROSS` nodes on every contact of a history.
 
@@ -142,7 +142,7 @@ def _distinct_places(places: list[tuple[float, float]]) -> list[tuple[float, flo
 
 
 def _touched_arc(
-    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: Progress | None
+    problem: Problem, values: np.ndarray, force: float, nodes: int, progress: RunProgress | None
 ) -> tuple[float, float] | None:
     """The arc of all places that are ever in contact, with a margin; None for the whole circle.
 
@@ -181,7 +181,7 @@ def _touched_arc(
 
 
 def _quick_arc(
-    problem: Problem, history: LoadHistory, arc: tuple[float, float] | None, force: float, progress: Progress | None
+    problem: Problem, history: LoadHistory, arc: tuple[float, float] | None, force: float, progress: RunProgress | None
 ) -> tuple[float, float] | None:
     """The arc of a quick coarse run on the estimated `arc`; None if it is not sure.
 

@@ -31,7 +31,7 @@ from fastpin.solver.configuration import (
 from fastpin.solver.driven import can_float
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError
 from fastpin.solver.rest import release
-from fastpin.solver.step import Piece, Position, Report
+from fastpin.solver.step import Piece, Position, StepReport
 
 MOST_ITERATIONS = 200
 """Iterations of one increment, at most."""
@@ -161,7 +161,7 @@ class IncrementStepper:
     def leave(self, position: Position) -> None:
         """Do nothing: the position already holds everything."""
 
-    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+    def advance(self, position: Position, piece: Piece, stop: float, report: StepReport) -> None:
         """Go to the fraction `stop` of the step in implicit increments.
 
         Raises

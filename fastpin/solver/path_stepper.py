@@ -22,7 +22,7 @@ from fastpin.solver.errors import (
 from fastpin.solver.path import PathStep, StepLostError
 from fastpin.solver.rest import release
 from fastpin.solver.snap import find_state_beyond
-from fastpin.solver.step import Piece, Position, Report, force_of
+from fastpin.solver.step import Piece, Position, StepReport, force_of
 from fastpin.solver.tableau import TableauMemory
 
 FEW_CLOSED = 8
@@ -73,7 +73,7 @@ class PathStepper:
         """Prepare for the next straight piece."""
         self._releases = self._jumps = 0
 
-    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+    def advance(self, position: Position, piece: Piece, stop: float, report: StepReport) -> None:
         """Follow a piece exactly, up to the fraction `stop` of the step or until the contact is lost.
 
         A contact that has become too small for the grid, or carries nothing, is released without an error.

@@ -44,7 +44,7 @@ from fastpin.states.state import SlipFields, State
 
 log = logging.getLogger(__name__)
 
-Progress = Callable[[float, int], None]
+RunProgress = Callable[[float, int], None]
 """Called with the number of steps that are done, parts included, and the number of all steps."""
 
 COUNTED = ("events", "exchanges", "rebuilds", "increments", "repeated", "resettled", "jumps", "released")
@@ -134,7 +134,7 @@ class Run:
         system: System,
         options: SolveOptions,
         recorder: Recorder | None = None,
-        progress: Progress | None = None,
+        progress: RunProgress | None = None,
         start: Restart | None = None,
         stops: Collection[int] = (),
         strict: bool = False,

@@ -23,7 +23,7 @@ from fastpin.model.synonyms import explains_keywords
 from fastpin.solver.arc import first_direction
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.result import Result, with_error_bars
-from fastpin.solver.run import Progress, Run
+from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.states.cycles import Cycle
 from fastpin.states.error_bars import check_nodes
@@ -53,7 +53,7 @@ def solve(
     slip_sums: bool = DEFAULTS.slip_sums,
     grid: Grid | None = None,
     start: Result | None = None,
-    progress: Progress | None = None,
+    progress: RunProgress | None = None,
 ) -> Result:
     """Follow a load history and return the states of the contact at its corners.
 

@@ -15,7 +15,7 @@ import numpy as np
 from fastpin.model.loads import P, Q
 from fastpin.solver.configuration import Configuration
 
-Report = Callable[[float], None]
+StepReport = Callable[[float], None]
 """Called with the fraction of the step that is done."""
 
 
@@ -95,7 +95,7 @@ class Stepper(Protocol):
     def begin_piece(self) -> None:
         """Prepare for the next straight piece."""
 
-    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+    def advance(self, position: Position, piece: Piece, stop: float, report: StepReport) -> None:
         """Follow a piece up to the fraction `stop` of the step, or until the contact is lost; change `position`.
 
         Raises

@@ -33,12 +33,12 @@ from fastpin.solver.increment import implicit_step
 from fastpin.solver.repeats import Repeats
 from fastpin.solver.rest import climb_angle, hole_gap, release
 from fastpin.solver.result import Restart
-from fastpin.solver.run import LEAST_CLOSED, Progress, Run
+from fastpin.solver.run import LEAST_CLOSED, Run, RunProgress
 from fastpin.solver.settling import FiniteStep
 
 log = logging.getLogger(__name__)
 
-Place = tuple[float, float]
+GapPlace = tuple[float, float]
 """Angle of the middle and width of a contact, rad."""
 
 ACROSS = 24
@@ -76,8 +76,8 @@ LEAST_WIDTH = 1e-6
 
 
 def survey(
-    problem: Problem, values: np.ndarray, force: float, first_part: float = 1.0, progress: Progress | None = None
-) -> list[Place] | None:
+    problem: Problem, values: np.ndarray, force: float, first_part: float = 1.0, progress: RunProgress | None = None
+) -> list[GapPlace] | None:
     """Find all places where the contact is on the way through a history.
 
     Parameters
@@ -114,8 +114,8 @@ class _Survey:
     """The contact on its present grid, and the places where it was."""
 
     def __init__(self, problem: Problem, force: float, first_part: float) -> None:
-        self.places: list[Place] = []
-        self._last: Place | None = None
+        self.places: list[GapPlace] = []
+        self._last: GapPlace | None = None
         self._failures = self._jumps = 0
         self._first_part = first_part
         self._problem, self._force = problem, force
@@ -176,7 +176,7 @@ class _Survey:
             self._look_at_contact(1.0)
         return True
 
-    def _note(self, places: list[Place]) -> None:
+    def _note(self, places: list[GapPlace]) -> None:
         """Note the present places, and the way of a single contact from its last place."""
         if len(places) == 1 and self._last is not None:
             (angle, width), (before, last_width) = places[0], self._last
@@ -193,7 +193,7 @@ class _Survey:
         self._load[[P, Q, M]] = 0.0
         self._now = release(self._system, self._now, self._load / self._system.scales.loads)
 
-    def _place(self, patch: np.ndarray) -> Place:
+    def _place(self, patch: np.ndarray) -> GapPlace:
         """Middle and width of a patch of closed nodes."""
         left, right = self._system.grid.knots()
         theta = self._system.grid.theta
@@ -230,7 +230,7 @@ class _Survey:
         half = min(math.sqrt(square), 0.7)
         self._change_grid([(angle, finer * 2.0 * half)])
 
-    def _change_grid(self, places: Sequence[Place]) -> None:
+    def _change_grid(self, places: Sequence[GapPlace]) -> None:
         """Go to a graded grid and carry the present contact to it. Without success everything stays."""
         nodes = min(max(graded_size(places, ACROSS), 4 * ACROSS), 40 * ACROSS)
         grid = Grid.graded(places, nodes, places[0][0])

@@ -29,7 +29,7 @@ from fastpin.solver.driven import pushes
 from fastpin.solver.errors import CUT_OFF, ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.interrupt import StopRequest, deferred_interrupts
 from fastpin.solver.result import Restart, Result
-from fastpin.solver.run import Progress, Recorder, Run
+from fastpin.solver.run import Recorder, Run, RunProgress
 
 log = logging.getLogger(__name__)
 
@@ -63,7 +63,7 @@ class Task:
     history: LoadHistory
     options: SolveOptions = field(default_factory=SolveOptions)
     grid: Grid | None = None
-    progress: Progress | None = None
+    progress: RunProgress | None = None
     stops: frozenset[int] = frozenset()
 
     def __post_init__(self) -> None:
@@ -111,7 +111,7 @@ class Task:
                     )
 
     def _follow_narrow(
-        self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None, error: ConvergenceError
+        self, recorder: Recorder, progress: RunProgress, unfit: tuple[Grid, SolveError] | None, error: ConvergenceError
     ) -> bool:
         """Follow the history on a graded grid, after an `error` on others. Returns whether its end was reached."""
         if self.grid is not None or self.options.arc is not None:
@@ -133,7 +133,7 @@ class Task:
         return False
 
     def _follow_candidates(
-        self, recorder: Recorder, progress: Progress, unfit: tuple[Grid, SolveError] | None, strict: bool
+        self, recorder: Recorder, progress: RunProgress, unfit: tuple[Grid, SolveError] | None, strict: bool
     ) -> Run:
         """Follow the history on the candidates one after the other, until one is wide enough. Returns that run."""
         if unfit is not None and not isinstance(unfit[1], ArcError):
@@ -153,7 +153,7 @@ class Task:
                 log.info("the contact reaches an end of the arc: once more on a wider one")
         raise ArcError(CUT_OFF)  # the grid of `unfit` is none of the present candidates
 
-    def grids(self, progress: Progress | None = None) -> Iterator[Grid]:
+    def grids(self, progress: RunProgress | None = None) -> Iterator[Grid]:
         """Yield the given grid, or candidates to try until the contact keeps clear of the ends of the arc."""
         nodes, arc = self.options.nodes, self.options.arc
         if self.grid is not None:
@@ -211,7 +211,7 @@ class Task:
             return self._continue(None, start, grid, self._stoppable_progress(request)).restart()
 
     def _continue(
-        self, recorder: Recorder | None, start: Restart, grid: Grid, progress: Progress, strict: bool = False
+        self, recorder: Recorder | None, start: Restart, grid: Grid, progress: RunProgress, strict: bool = False
     ) -> Run:
         """Follow the history from a corner; not `strict`, once more with narrow contacts let go."""
         try:
@@ -222,7 +222,7 @@ class Task:
             return self._follow_on(grid, recorder, progress, start, strict=False)
 
     def _follow_on(
-        self, grid: Grid, recorder: Recorder | None, progress: Progress, start: Restart | None = None,
+        self, grid: Grid, recorder: Recorder | None, progress: RunProgress, start: Restart | None = None,
         strict: bool = True,
     ) -> Run:  # fmt: skip
         """Follow the history on one grid, from `start` or from no load; see :class:`Run` for `strict`."""
@@ -234,7 +234,7 @@ class Task:
         run.follow()
         return run
 
-    def _stoppable_progress(self, request: StopRequest) -> Progress:
+    def _stoppable_progress(self, request: StopRequest) -> RunProgress:
         """The progress callable of a run. After Ctrl-C it raises Interrupted, which stops the run."""
 
         def progress(done: float, total: int) -> None:

@@ -18,7 +18,7 @@ from fastpin.solver.configuration import Configuration
 from fastpin.solver.errors import ArcError, ResolutionError
 from fastpin.solver.path_stepper import PathStepper
 from fastpin.solver.rest import release
-from fastpin.solver.step import Piece, Position, Report
+from fastpin.solver.step import Piece, Position, StepReport
 
 MARGIN = 48
 """Open nodes of a window on either side of the contact, at least; more for a contact of more nodes."""
@@ -133,7 +133,7 @@ class WindowStepper:
         if self._stepper is not None:
             self._stepper.begin_piece()
 
-    def advance(self, position: Position, piece: Piece, stop: float, report: Report) -> None:
+    def advance(self, position: Position, piece: Piece, stop: float, report: StepReport) -> None:
         """Follow a piece as :meth:`PathStepper.advance` does, from window to window.
 
         Raises

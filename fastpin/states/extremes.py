@@ -20,7 +20,7 @@ from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
 from fastpin.states.quantities import QUANTITIES, Quantity, load_point
-from fastpin.states.reading_bounds import NUMBERS, Block, Bounds
+from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
 from fastpin.states.yielding import OWNERS, PREFIX, strength_of, von_mises_peak, yielding_owners
 
@@ -119,7 +119,7 @@ class Kept(Protocol):
     grid: Grid
     points: np.ndarray
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
 
     def read(self, places: Sequence[int]) -> list[State]:
@@ -134,13 +134,13 @@ class KeptStates:
         self.points = np.array([load_point(state) for state in states])
         self._states = states
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         for begin in range(0, len(self._states), AT_ONCE):
             some = self._states[begin : begin + AT_ONCE]
             marks = [(state.marks or Marks()).arrays(self.grid.size) for state in some]
             pressure, shear, status = (np.array([getattr(state, name) for state in some]) for name in NODE_VALUES)
-            yield Block(
+            yield StateBlock(
                 pressure,
                 shear,
                 status,
@@ -275,7 +275,7 @@ class Different:
         return None if place < 0 else Extreme(found, place, float(self._kept.points[place]))
 
 
-def _keys(block: Block) -> Iterator[bytes]:
+def _keys(block: StateBlock) -> Iterator[bytes]:
     """Return a digest of the parts of each state that its readings depend on."""
     parts = [block.pressure, block.shear, block.status, block.loads, *block.marks]
     parts += [block.numbers[name] for name in ("dx", "dy", "rotation")]

@@ -72,7 +72,7 @@ Pair = tuple[np.ndarray, np.ndarray]
 """Lower and upper bounds, shape (k,) each."""
 
 
-class Block(NamedTuple):
+class StateBlock(NamedTuple):
     """Nodal values and numbers of some states.
 
     Attributes
@@ -111,7 +111,7 @@ class Bounds:
         self._waiting: list[tuple[np.ndarray, ...]] = []  # until so many states make the matrices worth while
         self._count = 0
 
-    def add(self, block: Block, rows: list[int]) -> None:
+    def add(self, block: StateBlock, rows: list[int]) -> None:
         """Take these rows of a block."""
         pressure, shear, status = (part[rows] for part in (block.pressure, block.shear, block.status))
         coupled = self._problem.friction * self._problem.surfaces.dundurs()[1] != 0.0

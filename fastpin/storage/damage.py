@@ -59,7 +59,7 @@ def dataset_of(group: h5py.Group, name: str, dtype: type, shape: tuple[int, ...]
     """
     dataset = group.get(name)
     label = f"{group.name}/{name}".strip("/")
-    if not isinstance(dataset, (h5py.Dataset, hdf5.Array, packed.Array)):
+    if not isinstance(dataset, (h5py.Dataset, hdf5.Array, packed.PackedArray)):
         raise ValueError(f"there is no array {label}")
     if dataset.dtype != np.dtype(dtype):
         raise ValueError(f"{label} has numbers of the type {dataset.dtype}, not {np.dtype(dtype)}")

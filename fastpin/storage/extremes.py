@@ -13,7 +13,7 @@ import numpy as np
 
 from fastpin.states import extremes
 from fastpin.states.extremes import AT_ONCE, MARKS, READINGS, Extreme, Found, Kept
-from fastpin.states.reading_bounds import NUMBERS, Block
+from fastpin.states.reading_bounds import NUMBERS, StateBlock
 from fastpin.states.state import State
 from fastpin.storage import hdf5
 from fastpin.storage.damage import check_finite, dataset_of, text_of
@@ -47,7 +47,7 @@ class StoredStates:
         rows = read_rows(file["states"], ("step", "fraction"), slice(None))
         self.points = rows["step"] + rows["fraction"]
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[StateBlock]:
         """Give the nodal values of all states, in order."""
         group = self._file["states"]
         marks = [name for name in BORDER_FIELDS if name in node_fields(group)]
@@ -56,7 +56,7 @@ class StoredStates:
             rows = read_rows(group, names, slice(begin, begin + AT_ONCE))
             for name in ("pressure", "shear", "loads", *NUMBERS):
                 check_finite(f"states/{name}", rows[name])
-            yield Block(
+            yield StateBlock(
                 rows["pressure"], rows["shear"], rows["status"], all_loads(rows["loads"], 0.0),
                 tuple(rows[name] for name in marks), {name: rows[name] for name in NUMBERS},
             )  # fmt: skip

@@ -1,8 +1,8 @@
 """Results of sweeps in a few bytes: the content of an HDF5 file without HDF5.
 
 A small HDF5 file takes longer than the solution of a small contact: 14 ms and 100 kB. A packed result has the same
-groups, arrays and attributes (layout.py), and takes 0.2 ms and 19 kB. :class:`Group` and :class:`Array` have the part
-of h5py's interface that layout.py needs. So the same code writes and reads both.
+groups, arrays and attributes (layout.py), and takes 0.2 ms and 19 kB. :class:`PackedGroup` and :class:`PackedArray`
+have the part of h5py's interface that layout.py needs. So the same code writes and reads both.
 
 A packed result is a head in JSON and the numbers of its arrays. It begins with a checksum of all its bytes. A sweep
 keeps its packed results in a table of its index, an SQLite file.
@@ -41,11 +41,11 @@ _KINDS = ("<f8", "<i8", "|i1", "|b1")  # types of the entries of all arrays but 
 class _Scale:
     """The dimension of an array. Packed results leave out the links to the scales: reading does not need them."""
 
-    def attach_scale(self, scale: Array) -> None:
+    def attach_scale(self, scale: PackedArray) -> None:
         """Do nothing."""
 
 
-class Array:
+class PackedArray:
     """An array of a group, with the interface of ``h5py.Dataset``."""
 
     def __init__(self, name: str, values: np.ndarray) -> None:
@@ -83,7 +83,7 @@ class Array:
         grown[: len(self)] = self.values[:size]
         self.values = grown
 
-    def asstr(self) -> Array:
+    def asstr(self) -> PackedArray:
         """The array: its texts are ``str`` already."""
         return self
 
@@ -91,24 +91,24 @@ class Array:
         """Do nothing, see :class:`_Scale`."""
 
 
-class Group:
+class PackedGroup:
     """A group with attributes, arrays and groups, with the interface of ``h5py.Group``."""
 
     def __init__(self, name: str = "/") -> None:
         self.name = name
         self.attrs: dict[str, Any] = {}
-        self._parts: dict[str, Array | Group] = {}
+        self._parts: dict[str, PackedArray | PackedGroup] = {}
 
-    def create_group(self, name: str) -> Group:
+    def create_group(self, name: str) -> PackedGroup:
         """Add a group."""
-        return self._add(name, Group(self._path(name)))
+        return self._add(name, PackedGroup(self._path(name)))
 
     def create_dataset(
         self, name: str, shape: tuple[int, ...] | None = None, dtype: Any = None, data: Any = None, **_: Any
-    ) -> Array:
+    ) -> PackedArray:
         """Add an array: zeros of a shape, or `data`. How HDF5 is to store the array has no effect."""
         values = np.zeros(shape or (), dtype) if data is None else np.array(data, dtype)
-        return self._add(name, Array(self._path(name), values))
+        return self._add(name, PackedArray(self._path(name), values))
 
     def __getitem__(self, name: str) -> Any:
         part: Any = self
@@ -116,10 +116,12 @@ class Group:
             part = part._parts[each]
         return part
 
-    def __setitem__(self, name: str, values: Array | np.ndarray) -> None:
+    def __setitem__(self, name: str, values: PackedArray | np.ndarray) -> None:
         path, _, last = name.rpartition("/")
         group = self[path] if path else self
-        group._add(last, values if isinstance(values, Array) else Array(group._path(last), np.asarray(values)))
+        group._add(
+            last, values if isinstance(values, PackedArray) else PackedArray(group._path(last), np.asarray(values))
+        )
 
     def __contains__(self, name: str) -> bool:
         return name in self._parts
@@ -134,7 +136,7 @@ class Group:
         """A part of the group, or `default` if there is none of this name."""
         return self._parts.get(name, default)
 
-    def items(self) -> Iterator[tuple[str, Array | Group]]:
+    def items(self) -> Iterator[tuple[str, PackedArray | PackedGroup]]:
         """Names and parts."""
         yield from self._parts.items()
 
@@ -146,7 +148,7 @@ class Group:
         return part
 
 
-def to_bytes(root: Group) -> bytes:
+def to_bytes(root: PackedGroup) -> bytes:
     """Pack a file: a group with everything below it."""
     blocks: list[bytes] = []
     head = json.dumps(_described(root, blocks), default=_as_json, separators=(",", ":")).encode()
@@ -154,7 +156,7 @@ def to_bytes(root: Group) -> bytes:
     return _HEAD.pack(_SIGNATURE, zlib.crc32(body), len(head)) + body
 
 
-def from_bytes(content: bytes) -> Group:
+def from_bytes(content: bytes) -> PackedGroup:
     """Unpack a file.
 
     Raises
@@ -168,7 +170,7 @@ def from_bytes(content: bytes) -> Group:
     body = memoryview(content)[_HEAD.size :]
     if zlib.crc32(body) != checksum:
         raise ValueError("its checksum is wrong")
-    root = Group()
+    root = PackedGroup()
     _fill(root, json.loads(bytes(body[:length])), body[length:], 0)
     return root
 
@@ -196,20 +198,20 @@ def packed_result(path: Path) -> bytes | None:
     return None if row is None else row[0]
 
 
-def _described(group: Group, blocks: list[bytes]) -> dict[str, Any]:
+def _described(group: PackedGroup, blocks: list[bytes]) -> dict[str, Any]:
     """A group for JSON. The numbers of its arrays are added to `blocks`: its own arrays first, then its groups'."""
     arrays: dict[str, list[Any]] = {}
     for name, part in group.items():
-        if isinstance(part, Array) and part.dtype == object:
+        if isinstance(part, PackedArray) and part.dtype == object:
             arrays[name] = ["text", part.shape, part.attrs, part.values.tolist()]
-        elif isinstance(part, Array):
+        elif isinstance(part, PackedArray):
             arrays[name] = [part.dtype.str, part.shape, part.attrs]
             blocks.append(part.values.tobytes())
-    groups = {name: _described(part, blocks) for name, part in group.items() if isinstance(part, Group)}
+    groups = {name: _described(part, blocks) for name, part in group.items() if isinstance(part, PackedGroup)}
     return {"attrs": group.attrs, "arrays": arrays, "groups": groups}
 
 
-def _fill(group: Group, described: dict[str, Any], data: memoryview, at: int) -> int:
+def _fill(group: PackedGroup, described: dict[str, Any], data: memoryview, at: int) -> int:
     """Fill a group with its parts, whose numbers begin at the byte `at` of `data`. Return the byte after them."""
     group.attrs.update(described["attrs"])
     for name, (kind, shape, attrs, *text) in described["arrays"].items():

@@ -29,7 +29,7 @@ from fastpin.model.problem import Problem
 from fastpin.model.synonyms import unknown_keyword
 from fastpin.solver.errors import ArcError, ConvergenceError, Interrupted, SolveError
 from fastpin.solver.result import Result
-from fastpin.solver.run import Progress
+from fastpin.solver.run import RunProgress
 from fastpin.solver.solving import check_halves, coarse_task, words_for_coarse
 from fastpin.solver.task import Task, as_history, check_options, check_start
 from fastpin.storage.damage import text_of
@@ -52,7 +52,7 @@ def record(
     overwrite: bool = False,
     grid: Grid | None = None,
     start: Result | None = None,
-    progress: Progress | None = None,
+    progress: RunProgress | None = None,
     **options: Unpack[OptionValues],
 ) -> None:
     """Follow a load history as :func:`fastpin.solve`, and write the states to an HDF5 file.
@@ -166,7 +166,7 @@ def _title_of(path: Path) -> str:
         return ""
 
 
-def resume(path: str | Path, progress: Progress | None = None) -> None:
+def resume(path: str | Path, progress: RunProgress | None = None) -> None:
     """Continue the run of a file after a kill, an interrupt or an error.
 
     States and cycles equal those of an uninterrupted run to the last bit, and error bars to rounding. Only `solved`,

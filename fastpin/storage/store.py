@@ -112,7 +112,7 @@ def save(result: Result, path: str | Path, error: str | None = None, restart: bo
             write_restart(file.create_group("coarse/restart/latest"), result.coarse.restart)
 
 
-def _write(file: h5py.File | packed.Group, result: Result, error: str | None) -> None:
+def _write(file: h5py.File | packed.PackedGroup, result: Result, error: str | None) -> None:
     """Write a result into an empty file, all but its restart."""
     options = {"method": result.method, "slip_sums": has_slip_sums(result.states) or None}
     options["error_bars"] = result.coarse is not None or None
@@ -137,7 +137,7 @@ def pack(result: Result, error: str | None, most: int) -> bytes | None:
     """
     if len(result) * result.grid.size > most:  # a byte of status each, and more
         return None
-    file = packed.Group()
+    file = packed.PackedGroup()
     _write(file, result, error)
     content = packed.to_bytes(file)
     return content if len(content) <= most else None
@@ -156,7 +156,7 @@ def unpack(content: bytes, path: Path) -> Result:
 
 
 @contextmanager
-def _opened(content: bytes, path: Path, *arguments: str) -> Iterator[packed.Group]:
+def _opened(content: bytes, path: Path, *arguments: str) -> Iterator[packed.PackedGroup]:
     """Open a packed result for reading. `path` names it in errors."""
     with reading(path, *arguments):
         file = packed.from_bytes(content)
@@ -204,7 +204,7 @@ def load(path: str | Path, states: slice | Sequence[int] = ALL, after: int | Non
 
 
 def _read(
-    file: hdf5.Group | packed.Group, path: Path, states: slice | Sequence[int], after: int | None
+    file: hdf5.Group | packed.PackedGroup, path: Path, states: slice | Sequence[int], after: int | None
 ) -> tuple[Result, Task | None]:
     """Read a result, see :func:`load`. The task leads from its restart to the corner `after`; None without one."""
     problem, grid, history = read_problem(file), read_grid(file), read_history(file)
@@ -242,7 +242,7 @@ def _read(
 
 
 def _read_coarse(
-    file: hdf5.Group | packed.Group, fine: Result, places: Sequence[int], found: int, after: int | None
+    file: hdf5.Group | packed.PackedGroup, fine: Result, places: Sequence[int], found: int, after: int | None
 ) -> Result | None:
     """Read the states of a file that give the states `fine` their error bars, at the same places of the file.
 

@@ -19,7 +19,7 @@ from fastpin.model.case import About
 from fastpin.solver.errors import Interrupted, SolveError
 from fastpin.solver.interrupt import deferred_interrupts
 from fastpin.solver.result import Restart
-from fastpin.solver.run import Progress, Run
+from fastpin.solver.run import Run, RunProgress
 from fastpin.solver.task import Task
 from fastpin.states.cycles import Cycle
 from fastpin.states.state import SlipFields, State
@@ -402,7 +402,7 @@ def _with_first(rows: Rows, values: SlipFields) -> Rows:
     return {**rows, **{name: np.concatenate([[first], rows[name][1:]]) for name, first in values.items()}}
 
 
-def reopen(path: Path, progress: Progress | None) -> tuple[FileRecorder, Restart]:
+def reopen(path: Path, progress: RunProgress | None) -> tuple[FileRecorder, Restart]:
     """Reopen the file of an unfinished run, and return its writer and the restart to continue from.
 
     Raises

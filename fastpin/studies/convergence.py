@@ -29,7 +29,7 @@ from fastpin.states.quantities import QUANTITIES, ZONES, matching_values, quanti
 from fastpin.states.state import State
 from fastpin.studies.extrapolate import Estimate, estimate
 from fastpin.studies.outcome_tables import Outcomes, outcomes_from
-from fastpin.studies.outcomes import Outcome, OutcomeValue, check_loadable, value_of
+from fastpin.studies.outcomes import OutcomeValue, StudyOutcome, check_loadable, value_of
 
 LEAST_GRIDS = 3
 """Fewest grids, or numbers of increments, of a study."""
@@ -58,7 +58,7 @@ LEAST_REFERENCE = 1e-3
 NODES = (101, 201, 401, 801)
 """Default numbers of nodes."""
 
-Progress = Callable[[float, float, str], None]
+StudyProgress = Callable[[float, float, str], None]
 """Receives the work that is done, all the work, and the name of the present run."""
 
 
@@ -94,7 +94,7 @@ class QuantitySeries(NamedTuple):
     size: float
     reference: float
     path: float
-    outcome: Outcome | None = None
+    outcome: StudyOutcome | None = None
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ def converge(
     increment_nodes: int | None = None,
     corner: int | None = None,
     arc: tuple[float, float] | None = None,
-    progress: Progress | None = None,
+    progress: StudyProgress | None = None,
     outcomes: Mapping[str, Any] | None = None,
 ) -> Convergence:
     """Follow a history on several grids, and estimate how its quantities converge.
@@ -281,7 +281,7 @@ class _Work:
         increments: tuple[int, ...],
         increment_nodes: int,
         corner: int | None,
-        progress: Progress | None,
+        progress: StudyProgress | None,
         outcomes: Outcomes,
     ) -> None:
         self.outcomes = outcomes

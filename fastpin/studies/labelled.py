@@ -24,7 +24,7 @@ LISTED = "run"
 TEXTS = ("status", "reason", "id")
 """Variables that are text."""
 
-Attributes = dict[str, Any]
+NamedAttributes = dict[str, Any]
 
 
 def dataset(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> xarray.Dataset:
@@ -69,18 +69,18 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
     return np.array(texts, dtype=str)
 
 
-def _field_attributes(plan: Plan, name: str) -> Attributes:
+def _field_attributes(plan: Plan, name: str) -> NamedAttributes:
     """Unit and words of a varied field. Its values are in the units of the case file."""
     unit = units(plan.case(plan.points[0]).problem).get(field_kind(name))
     return {"units": unit.name if unit else "", "long_name": plan.labels.get(name, field_words(name))}
 
 
-def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> Attributes:
+def _attributes(plan: Plan, rows: Sequence[Mapping[str, Any]], name: str) -> NamedAttributes:
     """Unit and words of an outcome or a key figure, per metre of thickness as in :func:`fastpin.studies.sweep.load`."""
     names = units_per_thickness(plan.case(plan.points[0]).problem) | {"angle": "deg"}
     if len({row["dimensionless"] for row in rows if "dimensionless" in row}) > 1:
         names = {}
-    found: Attributes = {"units": names.get(KEY_FIGURES.get(name, ""), "")}
+    found: NamedAttributes = {"units": names.get(KEY_FIGURES.get(name, ""), "")}
     if name in plan.outcomes:
         outcome = plan.outcomes[name]
         found["units"] = outcome.unit_in({kind: Unit(1.0, unit) for kind, unit in names.items()}).name

@@ -28,7 +28,7 @@ from fastpin.studies.outcomes import (
     SPANS,
     TAKES,
     FunctionOfFile,
-    Outcome,
+    StudyOutcome,
     bar_of_taken,
     digest,
     of_last_cycle,
@@ -36,7 +36,7 @@ from fastpin.studies.outcomes import (
 )
 from fastpin.studies.run_end import KEY_FIGURES, RUN_COLUMNS
 
-Outcomes = dict[str, Outcome]
+Outcomes = dict[str, StudyOutcome]
 """Outcomes by the names that the user chose."""
 
 KEYS = {"quantity": ("quantity", "take", "over"), "cycle": ("cycle",), "function": ("function", "classes")}
@@ -105,7 +105,7 @@ def outcomes_from(given: Mapping[str, Any]) -> Outcomes:
     ----------
     given : mapping of str
         By name: a function of a result, a table as in a plan, such as ``{"quantity": "dx", "take": "largest"}``, or an
-        :class:`Outcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
+        :class:`StudyOutcome` of :func:`read_outcomes`. The attribute ``unit`` of a function is the unit of its value.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def outcomes_in_text(source: CaseText, folder: Path) -> Outcomes:
             section.report(fault, str(name))
             continue
         try:
-            if isinstance(value, Outcome):
+            if isinstance(value, StudyOutcome):
                 found[name] = value
             elif isinstance(value, Mapping):
                 found |= _of_table(name, Section(source, ("outcomes", name), dict(value)), folder)
@@ -214,7 +214,7 @@ def _choice(name: str, section: Section, key: str, allowed: tuple[str, ...]) -> 
     return section.checked(key, lambda _, value: choice(f"{name}: {key}", value, allowed))
 
 
-def _of_quantity(name: str, section: Section) -> Outcome | None:
+def _of_quantity(name: str, section: Section) -> StudyOutcome | None:
     quantity = _choice(name, section, "quantity", tuple(QUANTITIES))
     take, span = _choice(name, section, "take", TAKES), _choice(name, section, "over", SPANS)
     if quantity is None or take is None or span is None:
@@ -233,18 +233,18 @@ def _of_quantity(name: str, section: Section) -> Outcome | None:
     definition = {"quantity": quantity, "take": take, "over": span}
     read = partial(taken, quantity, take, span)
     bar = None if kind == "class" else partial(bar_of_taken, quantity, take, span)
-    return Outcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
+    return StudyOutcome(kind, "", json.dumps(definition), read, dict(QUANTITIES[quantity].classes), bar)
 
 
-def _of_cycle(name: str, section: Section) -> Outcome | None:
+def _of_cycle(name: str, section: Section) -> StudyOutcome | None:
     quantity = _choice(name, section, "cycle", tuple(CYCLE_QUANTITIES))
     if quantity is None:
         return None
     kind, classes = CYCLE_QUANTITIES[quantity].kind, dict(CYCLE_QUANTITIES[quantity].classes)
-    return Outcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
+    return StudyOutcome(kind, "", json.dumps({"cycle": quantity}), partial(of_last_cycle, quantity), classes)
 
 
-def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
+def _of_function(name: str, section: Section, folder: Path) -> StudyOutcome | None:
     """Read a function of a file, ``FILE.py:NAME``."""
     value = section.value("function")
     if value is None:
@@ -277,14 +277,14 @@ def _of_function(name: str, section: Section, folder: Path) -> Outcome | None:
     definition = {"function": function, "file": digest(text)}
     reader = FunctionOfFile(str(path), text, function)
     if "classes" not in section:
-        return Outcome("", functions[function], json.dumps(definition), reader)
+        return StudyOutcome("", functions[function], json.dumps(definition), reader)
     classes = section.checked("classes", lambda _, value: _classes(f"{name}: classes", value))
     if classes is None:
         return None
     if functions[function]:
         section.report(f"{name}: classes: the number of a class has no unit, but {function}.unit is set", "classes")
     # The words of a class change no value.
-    return Outcome("class", "", json.dumps(definition | {"classes": list(classes)}), reader, classes)
+    return StudyOutcome("class", "", json.dumps(definition | {"classes": list(classes)}), reader, classes)
 
 
 def _classes(field: str, value: object) -> dict[int, str]:
@@ -305,7 +305,7 @@ def _classes(field: str, value: object) -> dict[int, str]:
     return dict(sorted(found.items()))
 
 
-def _of_callable(function: Callable[..., Any]) -> Outcome:
+def _of_callable(function: Callable[..., Any]) -> StudyOutcome:
     """An outcome of a function in Python. Its definition changes with its code, and with the text of its module."""
     module, content = "", b""
     code = marshal.dumps(function.__code__) if inspect.isfunction(function) else b""
@@ -315,7 +315,7 @@ def _of_callable(function: Callable[..., Any]) -> Outcome:
     definition = json.dumps(
         {"function": getattr(function, "__qualname__", ""), "file": digest(f"{code!r}{content!r}{module}")}
     )
-    return Outcome("", _unit(function), definition, function)
+    return StudyOutcome("", _unit(function), definition, function)
 
 
 def _unit(function: Callable[..., Any]) -> str:

@@ -120,7 +120,7 @@ spot on the edge of the plate, see :func:`fastpin.damage.fatigue`. Names that en
 
 
 @dataclass(frozen=True)
-class Outcome:
+class StudyOutcome:
     """One number that is read from a complete result.
 
     Attributes
@@ -168,7 +168,7 @@ class OutcomeValue(NamedTuple):
     Attributes
     ----------
     definition : str
-        See :class:`Outcome`.
+        See :class:`StudyOutcome`.
     value : float or None
         None: the result has no such number, or it could not be read.
     reason : str or None
@@ -183,7 +183,7 @@ class OutcomeValue(NamedTuple):
     bar: float | None = None
 
 
-def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
+def value_of(outcome: StudyOutcome, result: Result) -> OutcomeValue:
     """Read an outcome, with angles and widths in rad. Whatever goes wrong becomes the reason of a missing value."""
     try:
         value = outcome.read(result)
@@ -198,7 +198,7 @@ def value_of(outcome: Outcome, result: Result) -> OutcomeValue:
         return OutcomeValue(outcome.definition, None, reason_of(error))
 
 
-def pickled(outcome: Outcome) -> bytes:
+def pickled(outcome: StudyOutcome) -> bytes:
     """An outcome for a worker.
 
     Raises
@@ -235,7 +235,7 @@ def values_in_worker(outcomes: Mapping[str, tuple[str, bytes]], result: Result) 
     return values
 
 
-def bar_of(outcome: Outcome, value: float, result: Result) -> float | None:
+def bar_of(outcome: StudyOutcome, value: float, result: Result) -> float | None:
     """Error bar of a number, with angles and widths in rad; inf if the coarse grid has no number to compare.
 
     None: the result has no error bars, or the number has none.
@@ -365,7 +365,7 @@ class FunctionOfFile:
         return function
 
 
-def check_loadable(outcomes: Mapping[str, Outcome]) -> None:
+def check_loadable(outcomes: Mapping[str, StudyOutcome]) -> None:
     """Run the files of all functions, before the work of which they judge the results.
 
     Raises

@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 
 from fastpin.casefile.reader import EXAMPLE, KEYS, key_hint, sections_with
-from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, Place, Section, parse_text, read_text, written
+from fastpin.casefile.toml_text import MOST_BYTES_OF_PLAN, CaseText, KeyPath, Section, parse_text, read_text, written
 from fastpin.errors import CaseFileError, InputError, InputWarning
 from fastpin.model.case import Case
 from fastpin.model.checks import (
@@ -58,10 +58,10 @@ DIGITS = 12
 Spacing = Literal["linear", "log", "list"]
 """Spacing of the values of a field. "list": the values are listed one by one."""
 
-Row = dict[str, tuple[Place, Any]]
+PlanRow = dict[str, tuple[KeyPath, Any]]
 """Fields of a [[list]] block, each with its place in the text and its value."""
 
-Progress = Callable[[int, int], None]
+SweepProgress = Callable[[int, int], None]
 """A callable ``progress(done, total)`` of numbers of points or runs."""
 
 LONGEST_LABEL = 80
@@ -185,7 +185,7 @@ class Plan:
         return case
 
 
-def read_plan(path: str | Path, progress: Progress | None = None) -> Plan:
+def read_plan(path: str | Path, progress: SweepProgress | None = None) -> Plan:
     """Read a plan file.
 
     Parameters
@@ -236,7 +236,7 @@ def parse_plan(text: str, name: str = "plan", folder: str | Path = ".") -> Plan:
     return plan
 
 
-def _parsed(text: str, name: str, folder: str | Path, progress: Progress | None = None) -> Plan:
+def _parsed(text: str, name: str, folder: str | Path, progress: SweepProgress | None = None) -> Plan:
     """Read a plan from `text`, see :func:`parse_plan`. No warnings are given."""
     place = file_path("folder", folder)
     return parse_text(text, name, "plan", lambda source: _plan(source, text, place, progress))
@@ -250,12 +250,12 @@ def describe_values(values: dict[str, Any]) -> str:
 # -- text of a plan ------------------------------------------------------------------------------------------
 
 
-def _plan(source: CaseText, text: str, folder: Path, progress: Progress | None) -> Plan | None:
+def _plan(source: CaseText, text: str, folder: Path, progress: SweepProgress | None) -> Plan | None:
     """Read the plan. It has no meaning if the text has faults."""
     _check_root(source)
     title = source.root.checked("title", string) or ""
     base = _base(source, folder)
-    places: dict[str, Place] = {}
+    places: dict[str, KeyPath] = {}
     spacings: dict[str, Spacing] = {}
     rows = _rows(source, base)
     for row in rows:
@@ -297,8 +297,8 @@ def _labels(source: CaseText, known: tuple[str, ...]) -> dict[str, str]:
 
 
 def _leaves(
-    source: CaseText, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
-) -> Iterator[tuple[Place, str, Any]]:
+    source: CaseText, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
+) -> Iterator[tuple[KeyPath, str, Any]]:
     """Yield place, dotted name and value of all keys of a table, and of the tables in it."""
     for key in table:
         value = Section(source, place, table).value(key)
@@ -341,7 +341,7 @@ def _base(source: CaseText, folder: Path) -> BaseCase | None:
         return None
 
 
-def _rows(source: CaseText, base: BaseCase | None) -> list[Row]:
+def _rows(source: CaseText, base: BaseCase | None) -> list[PlanRow]:
     """Read places and values of the fields of the [[list]] blocks."""
     value = source.root.value("list")
     blocks = source.blocks("list")
@@ -358,7 +358,7 @@ def _rows(source: CaseText, base: BaseCase | None) -> list[Row]:
 
 
 def _axes(
-    source: CaseText, base: BaseCase | None, places: dict[str, Place], spacings: dict[str, Spacing]
+    source: CaseText, base: BaseCase | None, places: dict[str, KeyPath], spacings: dict[str, Spacing]
 ) -> dict[str, list[Any]]:
     """Read the values of each field of the grid. Add the fields to `places` and `spacings`."""
     axes = {}
@@ -381,8 +381,8 @@ def _axes(
 
 
 def _fields(
-    source: CaseText, base: BaseCase | None, table: dict[str, Any], place: Place, parts: tuple[str, ...] = ()
-) -> Iterator[tuple[Place, str, Any]]:
+    source: CaseText, base: BaseCase | None, table: dict[str, Any], place: KeyPath, parts: tuple[str, ...] = ()
+) -> Iterator[tuple[KeyPath, str, Any]]:
     """Yield place, field and value of all keys of a table.
 
     ``contact.friction`` may be a quoted key, or a table in a table.
@@ -427,7 +427,7 @@ def _field_fault(names: tuple[str, ...], base: BaseCase | None) -> str | None:
     return other_units(base.text.root.table, name) if base else None
 
 
-def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
+def _range(source: CaseText, place: KeyPath, name: str, table: dict[str, Any]) -> tuple[list[Any], Spacing]:
     """Read the values of a range, and their spacing. A range with a fault has no values."""
     section = Section(source, place, table)
     before = len(source.placed)
@@ -462,11 +462,11 @@ def _range(source: CaseText, place: Place, name: str, table: dict[str, Any]) -> 
 def _points(
     source: CaseText,
     base: BaseCase,
-    places: dict[str, Place],
-    rows: list[Row],
+    places: dict[str, KeyPath],
+    rows: list[PlanRow],
     axes: dict[str, list[Any]],
     kept: tuple[dict[str, Case], list[InputWarning]],
-    progress: Progress | None,
+    progress: SweepProgress | None,
 ) -> list[Point]:
     """Make and check all points. A fault of a run is reported on the line of the field, or of the case.
 
@@ -475,7 +475,7 @@ def _points(
     cases, doubtful = kept
     doubted: dict[str, tuple[InputWarning, list[dict[str, Any]]]] = {}
     points: list[Point] = []
-    faults: dict[tuple[Place, str], list[dict[str, Any]]] = {}
+    faults: dict[tuple[KeyPath, str], list[dict[str, Any]]] = {}
     count, total = 0, len(rows) * math.prod(map(len, axes.values()))
     for row, *combination in itertools.product(rows, *axes.values()):
         if progress is not None:
@@ -505,14 +505,14 @@ def _points(
     return points
 
 
-def _sites(places: dict[str, Place], row: Row) -> dict[str, Place]:
+def _sites(places: dict[str, KeyPath], row: PlanRow) -> dict[str, KeyPath]:
     """The places of the fields of a run. `places` are those of the first one of every field."""
     return places | {name: place for name, (place, _) in row.items()}
 
 
 def _locate_fault(
-    base: BaseCase, places: dict[str, Place], values: dict[str, Any], place: Place, message: str
-) -> tuple[Place, str]:
+    base: BaseCase, places: dict[str, KeyPath], values: dict[str, Any], place: KeyPath, message: str
+) -> tuple[KeyPath, str]:
     """Return the place of a run's fault in the plan, and its message there."""
     parts = [str(part + 1) if isinstance(part, int) else part for part in place]
     name = ".".join(parts)

@@ -37,7 +37,7 @@ from fastpin.storage.packed import FOLDER
 from fastpin.studies.index import DONE, FAILED, WAITING, Index, ensure_directory, has_index, lock_directory
 from fastpin.studies.labelled import dataset
 from fastpin.studies.outcomes import OutcomeValue
-from fastpin.studies.plan import Plan, Point, Progress
+from fastpin.studies.plan import Plan, Point, SweepProgress
 from fastpin.studies.run_end import KEY_FIGURES, bar_column
 from fastpin.studies.work import Work, pickled_outcomes
 
@@ -95,7 +95,7 @@ def run(
     workers: int | None = None,
     retry: bool = False,
     shard: tuple[int, int] | None = None,
-    progress: Progress | None = None,
+    progress: SweepProgress | None = None,
     files: bool = False,
 ) -> Summary:
     """Solve all unfinished runs of a plan, and read the outcomes of all runs.
@@ -325,7 +325,7 @@ def _missing_outcomes(index: Index, plan: Plan, points: dict[str, Point], result
 class _Counter:
     """Counts the runs that have ended, and reports each."""
 
-    def __init__(self, report: Progress, total: int) -> None:
+    def __init__(self, report: SweepProgress, total: int) -> None:
         self._report, self._ended, self.total = report, 0, total
         report(0, total)
 

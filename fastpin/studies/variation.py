@@ -14,7 +14,7 @@ from typing import Any
 
 from fastpin.casefile.bodies import BODY_KINDS, Kinds, implied_kind, keys_of
 from fastpin.casefile.material_files import known_materials
-from fastpin.casefile.reader import Shared, case_from
+from fastpin.casefile.reader import SharedParts, case_from
 from fastpin.casefile.toml_text import CaseText, TooManyFaultsError
 from fastpin.errors import CaseFileError, InputError
 from fastpin.model.case import Case
@@ -52,7 +52,7 @@ class BaseCase:
         self._materials: Mapping[str, Material] = MATERIALS
         with contextlib.suppress(TooManyFaultsError):  # every variation reports these faults
             self._materials = known_materials(self.text.with_tables(self.text.root.table), folder)
-        self._shared = Shared()
+        self._shared = SharedParts()
 
     @property
     def load_blocks(self) -> int:

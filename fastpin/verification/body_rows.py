@@ -14,7 +14,7 @@ from fastpin.model.problem import Problem
 from fastpin.verification import body_cases, interference
 from fastpin.verification.comparisons import all_round_difference, event_load
 from fastpin.verification.finite_elements import UNLIKE
-from fastpin.verification.rows import NODES, Row, Rows, Solving, angle_row, half_width, relative_row
+from fastpin.verification.rows import NODES, CheckRow, CheckRows, Solving, angle_row, half_width, relative_row
 from fastpin.verification.sliding import solve_sliding
 
 
@@ -34,14 +34,14 @@ FITS: dict[str, tuple[float, Callable[[Problem], dict[str, float]]]] = {
 """Coefficient of friction, and loads under which the contact stays closed all round and stuck, by the case."""
 
 
-def all_round(pair: MaterialPair, case: str, solving: Solving) -> Rows:
+def all_round(pair: MaterialPair, case: str, solving: Solving) -> CheckRows:
     """An interference fit that stays closed all round, against its closed form."""
     friction, loads = FITS[case]
     problem = Problem.from_load_parameter(pair, -0.3, friction)
-    yield Row("tractions", all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
+    yield CheckRow("tractions", all_round_difference(solving(problem, [loads(problem)])[-1]), "N0")
 
 
-def first_slip(pair: MaterialPair, solving: Solving) -> Rows:
+def first_slip(pair: MaterialPair, solving: Solving) -> CheckRows:
     """The load at which an interference fit slips first."""
     problem = Problem.from_load_parameter(pair, -0.3, 0.3)
     exact = interference.first_slip_load(problem)
@@ -50,7 +50,7 @@ def first_slip(pair: MaterialPair, solving: Solving) -> Rows:
     yield relative_row("slip begins", found, exact)
 
 
-def finite_bodies(name: str, solving: Solving) -> Rows:
+def finite_bodies(name: str, solving: Solving) -> CheckRows:
     """A joint with finite bodies against values of 1,601 nodes, finite elements, and without friction Eq. (58)."""
     case = body_cases.CASES[name]
     state = solving(case.problem, case.history)[-1]
@@ -65,31 +65,31 @@ def finite_bodies(name: str, solving: Solving) -> Rows:
         yield angle_row("half-angle, (58)", half_width(state.contact[0]), half_width(series.contact))
 
 
-def stuck_bodies(solving: Solving) -> Rows:
+def stuck_bodies(solving: Solving) -> CheckRows:
     """A hollow pin pressed into a bush in a ring, under a force below the first slip at P = 0.67."""
     force = 0.1
     (state,) = solving(body_cases.STUCK, [{"P": force}])
     pressure, shear = interference.stuck_tractions(body_cases.STUCK, state.theta, {"P": force})
-    yield Row("N, stuck", float(np.abs(state.pressure - pressure).max()) / force, "P/R")
-    yield Row("T, stuck", float(np.abs(state.shear - shear).max()) / force, "P/R")
+    yield CheckRow("N, stuck", float(np.abs(state.pressure - pressure).max()) / force, "P/R")
+    yield CheckRow("T, stuck", float(np.abs(state.shear - shear).max()) / force, "P/R")
 
 
-def pressed_bodies(solving: Solving) -> Rows:
+def pressed_bodies(solving: Solving) -> CheckRows:
     """The same fit, loaded a little and unloaded."""
     state = solving(body_cases.STUCK, [{"P": 0.01}, {"P": 0.0}])[-1]
     yield relative_row("peak N", state.peak_pressure, interference.uniform_pressure(body_cases.STUCK))
 
 
-def ring_by_compliance(solving: Solving) -> Rows:
+def ring_by_compliance(solving: Solving) -> CheckRows:
     """A ring by its closed forms, and by the compliance between Fourier coefficients."""
     ring = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
     by_matrix = replace(ring, plate_body=body_cases.ring_compliance(ring, 32))
     (one,), (two,) = (solving(problem, [{"P": 1.0, "Q": 0.2, "sxx": 0.05}]) for problem in (ring, by_matrix))
     difference = np.abs([one.pressure - two.pressure, one.shear - two.shear]).max()
-    yield Row("N, T", float(difference) / one.peak_pressure, "peak N")
+    yield CheckRow("N, T", float(difference) / one.peak_pressure, "peak N")
 
 
-def cut_layer(solving: Solving) -> Rows:
+def cut_layer(solving: Solving) -> CheckRows:
     """A bush in a ring, and the same bush cut into two layers."""
     for kind in ("free", "held"):
-        yield Row("compliance", body_cases.cut_layer_difference(kind), "the largest", case=f"cut bush, {kind} rim")
+        yield CheckRow("compliance", body_cases.cut_layer_difference(kind), "the largest", case=f"cut bush, {kind} rim")

@@ -65,7 +65,7 @@ class Solving:
         return result
 
 
-class Row(NamedTuple):
+class CheckRow(NamedTuple):
     """A difference of one quantity, in `unit`, without its tolerance; see :class:`Check`."""
 
     quantity: str
@@ -82,18 +82,18 @@ class Row(NamedTuple):
         return Check(topic, case, self.quantity, self.reference, self.ours, self.difference, tolerance, self.unit)
 
 
-Rows = Iterator[Row]
+CheckRows = Iterator[CheckRow]
 """The rows of one case."""
 
 
-def relative_row(quantity: str, ours: float, reference: float, case: str = "") -> Row:
+def relative_row(quantity: str, ours: float, reference: float, case: str = "") -> CheckRow:
     """The row of a value, relative to its reference."""
-    return Row(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
+    return CheckRow(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
 
 
-def angle_row(quantity: str, ours: float, reference: float) -> Row:
+def angle_row(quantity: str, ours: float, reference: float) -> CheckRow:
     """The row of an angle, rad."""
-    return Row(quantity, abs(ours - reference), "rad", reference, ours)
+    return CheckRow(quantity, abs(ours - reference), "rad", reference, ours)
 
 
 def half_width(interval: tuple[float, float]) -> float:

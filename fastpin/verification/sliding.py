@@ -327,7 +327,7 @@ class _Basis:
 
 
 @dataclass(frozen=True, eq=False)
-class _Patch:
+class _Piece:
     """The solution on a contact with given ends. Its clearance and transverse force may differ from the case."""
 
     coefficients: np.ndarray  # of the pressure
@@ -336,7 +336,7 @@ class _Patch:
     total: float  # int N dtheta
 
 
-def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Patch:
+def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Piece:
     """Solve (58) times -half/(2 pi) on centre +- half, with given normal force and unknown clearance."""
     mu, terms = case.sign * case.mu, basis.points.size
     difference = half * (basis.points[:, None] - basis.nodes)
@@ -360,7 +360,7 @@ def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Patch:
     *coefficients, clearance = np.linalg.solve(matrix, np.r_[known, along])
     tractions = half * basis.weighted @ coefficients
     unbalanced = float(np.sin(half * basis.nodes) @ tractions) - across
-    return _Patch(np.array(coefficients), float(clearance), unbalanced, float(tractions.sum()))
+    return _Piece(np.array(coefficients), float(clearance), unbalanced, float(tractions.sum()))
 
 
 def _kernels(bodies: BodyTerms, mu: float, theta: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

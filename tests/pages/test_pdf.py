@@ -18,7 +18,7 @@ import fastpin
 from fastpin.errors import InputError
 from fastpin.model import About
 from fastpin.pages import write_report
-from fastpin.pages.content import Facts, Items, Listing, Page, Section, Table, Text
+from fastpin.pages.content import Facts, Items, Listing, Page, PageSection, Table, Text
 from fastpin.pages.pdf import pdf_of
 from fastpin.pages.sections import SECTIONS
 from tests.support.drawing import draw_roughly
@@ -122,7 +122,7 @@ def test_every_kind_of_part_is_printed(tmp_path: Path) -> None:
         Listing("file", f"line {HOSTILE}\n\ttab\x1b[31m"), Listing("empty", ""),
     ]  # fmt: skip
     path = tmp_path / "p.pdf"
-    path.write_bytes(pdf_of(Page("title", "lead", [Section("one", "One", parts)], "made today")))
+    path.write_bytes(pdf_of(Page("title", "lead", [PageSection("one", "One", parts)], "made today")))
     (text,), _ = read(path)
     assert text.count(HOSTILE) == 4
     assert all(words in text for words in ("a note", "1.5 ± 2", "… 7 more …", "… 9 more …", "made today", "\\x1b[31m"))

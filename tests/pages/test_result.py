@@ -23,7 +23,7 @@ from fastpin.pages.content import Facts, Text
 from fastpin.pages.sections import (
     RESIDUAL_WORDS,
     SECTIONS,
-    Shared,
+    PageParts,
     case,
     convergence,
     loads,
@@ -349,7 +349,7 @@ def test_the_pin_radius_is_that_of_the_free_pin(interference: float, clearance: 
     bush = Bushing(Material(103e9, 0.34, yield_strength=138e6), 12.5e-3, interference)
     pair = MaterialPair(Material(210e9, 0.3), Material(71e9, 0.33))
     problem = fastpin.Problem(pair, 10e-3, clearance, 0.2, plate_body=bush)
-    page = Shared(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
+    page = PageParts(Source.of_result(fastpin.solve(problem, [{"P": 1e5}], nodes=61)), Album())
     rows = dict(next(part.rows for part in case(page).parts if isinstance(part, Facts)))
     assert rows["pin radius"] == f"{1e3 * (10e-3 - clearance):.6g} mm"
     name = "clearance after the press fit / radius" if interference else "clearance / radius"

@@ -60,7 +60,7 @@ CHANGES: dict[str, tuple[object, str, object]] = {
 @pytest.fixture
 def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """The only directory of stored code."""
-    monkeypatch.setattr(stored.Place, "_directories", lambda self: iter([tmp_path]))
+    monkeypatch.setattr(stored.StoredCode, "_directories", lambda self: iter([tmp_path]))
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     yield tmp_path
     forget()

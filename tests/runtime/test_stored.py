@@ -16,16 +16,16 @@ pytestmark = pytest.mark.skipif(jit.PLAIN or not machine.CAN_LOAD, reason="no co
 
 
 @pytest.fixture
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> stored.Place:
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> stored.StoredCode:
     """The place of a small kernel in an empty directory."""
     found = stored.place_of(jit.compiled(lambda x: x + x), "d")
     assert found is not None
-    monkeypatch.setattr(stored.Place, "_directories", lambda self: iter([tmp_path]))
-    monkeypatch.setattr(stored.Place, "_beside", lambda self: tmp_path)
+    monkeypatch.setattr(stored.StoredCode, "_directories", lambda self: iter([tmp_path]))
+    monkeypatch.setattr(stored.StoredCode, "_beside", lambda self: tmp_path)
     return found
 
 
-def test_threads_and_processes_of_equal_number_write_whole_files(place: stored.Place, tmp_path: Path) -> None:
+def test_threads_and_processes_of_equal_number_write_whole_files(place: stored.StoredCode, tmp_path: Path) -> None:
     """All write the same file at once. It is always whole, and nothing is left behind."""
     codes = [machine.Code(bytes([k]) * 3_000_000, "wrapper", "environment", ()) for k in range(4)]
     barrier = threading.Barrier(len(codes))
@@ -43,7 +43,7 @@ def test_threads_and_processes_of_equal_number_write_whole_files(place: stored.P
 
 
 def test_links_in_the_way_of_new_files_are_not_followed(
-    place: stored.Place, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    place: stored.StoredCode, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Neither under a name that can be guessed nor under the random one."""
     precious = tmp_path / "precious"
@@ -56,13 +56,13 @@ def test_links_in_the_way_of_new_files_are_not_followed(
     assert not (tmp_path / place.file).exists()
 
 
-def test_code_that_can_not_get_its_name_leaves_nothing_behind(place: stored.Place, tmp_path: Path) -> None:
+def test_code_that_can_not_get_its_name_leaves_nothing_behind(place: stored.StoredCode, tmp_path: Path) -> None:
     (tmp_path / place.file).mkdir()  # nobody, not even root, can give a file the name of a directory
     place.save(None)
     assert [path.name for path in tmp_path.iterdir()] == [place.file]
 
 
-def test_code_of_older_texts_that_can_not_be_deleted_is_left(place: stored.Place, tmp_path: Path) -> None:
+def test_code_of_older_texts_that_can_not_be_deleted_is_left(place: stored.StoredCode, tmp_path: Path) -> None:
     older = tmp_path / f"{place.stem}00000000{stored.SUFFIX}"
     older.mkdir()  # nobody, not even root, can delete a directory as a file
     place.save(None)

@@ -20,7 +20,7 @@ from fastpin.model.units import units
 from fastpin.solver.result import Result
 from fastpin.studies import converge
 from fastpin.studies.outcome_tables import outcomes_from
-from fastpin.studies.outcomes import CYCLE_QUANTITIES, Outcome, OutcomeValue, value_of
+from fastpin.studies.outcomes import CYCLE_QUANTITIES, OutcomeValue, StudyOutcome, value_of
 
 CONSTANTS = FatigueConstants(
     fatigue_strength=1100e6,
@@ -69,7 +69,7 @@ def test_outcomes_at_the_seat_of_a_bush(result: Result) -> None:
     assert reason == 'body: "seat" is the edge of the plate round a bush; this plate has no bush'
 
 
-def outcome(name: str) -> Outcome:
+def outcome(name: str) -> StudyOutcome:
     return outcomes_from({"it": {"cycle": name}})["it"]
 
 
