@@ -79,5 +79,4 @@ class BushFit(ReadOnly):
 
     def _reserve(self, friction: float) -> np.ndarray:
         needed = np.abs(self.shear) / friction if friction > 0.0 else np.where(self.shear == 0.0, 0.0, math.inf)
-        reserve: np.ndarray = self.pressure - needed
-        return reserve
+        return self.pressure - needed

@@ -18,10 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fastpin.model.grid import Grid
-from fastpin.model.problem import Problem
 from fastpin.reading.ends import end_place
 from fastpin.reading.half_line import End, Fit, Tries, Try, half_line
-from fastpin.reading.old_borders import OldBorder, old_borders, truly_sticking
+from fastpin.reading.old_borders import OldBorder, old_borders
 from fastpin.reading.zones import runs, unrolled
 
 HALF_WIDTHS = (5, 7, 10, 14, 20)
@@ -167,18 +166,6 @@ class ShearNodes:
     friction: float
     tilt: float
     coupling: float
-
-    @classmethod
-    def of(
-        cls, problem: Problem, grid: Grid, tractions: tuple[np.ndarray, np.ndarray], status: np.ndarray,
-        marks: np.ndarray, places: np.ndarray,
-    ) -> ShearNodes:  # fmt: skip
-        """The nodes of a problem with their pressure and shear `tractions`, status, marks and places, shape (n,)."""
-        pressure, shear = tractions
-        coupling = problem.surfaces.dundurs()[1]
-        tilt = math.atan(problem.friction * coupling) / math.pi
-        sticking = truly_sticking(status, problem.friction * pressure - np.abs(shear))
-        return cls(grid, pressure, shear, sticking, marks, places, problem.friction, tilt, coupling)
 
     @cached_property
     def _patches(self) -> list[_Patch]:

@@ -75,8 +75,7 @@ def hoop_peak(
         bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
         press_fit = press_fit_hoop(problem, body)
     place = angle if closed.any() or value != 0.0 else math.nan
-    section = _net_section(problem, body)
-    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
+    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / _net_section(problem, body))
 
 
 def _net_section(problem: Problem, body: Body) -> float:
@@ -121,6 +120,5 @@ def _is_resolved(
             return False
     if any(abs(angle_between(place, angle)) < spacing for place in refined.resolved):
         return True
-    around = hoop(angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
-    drops = value - around
+    drops = value - hoop(angle + spacing * np.array([-4.0, -2.0, 2.0, 4.0]))
     return not any(drops[near] > SHARP * drops[far] for near, far in ((1, 0), (2, 3)) if drops[far] > 1e-3 * abs(value))

@@ -31,11 +31,9 @@ def joint_displacement(
 
     `tractions` are the pressure and the shear (n,), `moved` is dx + i dy, and `force` is Q - i P of the tractions.
     """
-    radius, hub, gauge = problem.hole_radius, None, None
-    if hub_radius is not None:
-        hub = _checked_hub(problem, hub_radius) / radius
-    if gauge_radius is not None:
-        gauge = _checked_gauge(problem, gauge_radius) / radius
+    radius = problem.hole_radius
+    hub = None if hub_radius is None else _checked_hub(problem, hub_radius) / radius
+    gauge = None if gauge_radius is None else _checked_gauge(problem, gauge_radius) / radius
     own, coupling = problem.joint.displacement_compliances(hub, gauge)
     unit = problem.surfaces.beta_star
     (cos, sin), (pressure, shear) = grid.trig_moments(), tractions
@@ -84,9 +82,7 @@ def bush_fit(problem: Problem, stress_at: Callable[[Points], Stress], friction: 
     body = problem.plate_body
     if not isinstance(body, Bushing):
         raise InputError("plate_body", "the plate has no bush: there is no interface")
-    if friction is not None:
-        friction = number("friction", friction, 0.0)
+    chosen = body.friction if friction is None else number("friction", friction, 0.0)
     theta = -0.5 * math.pi + math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)
     stress = stress_at(Points.at_radius(body.outer_radius, theta))
-    chosen = body.friction if friction is None else friction
     return BushFit(theta, -stress.radial, stress.shear, problem.press_fit_pressure, chosen)

@@ -37,16 +37,6 @@ Sides = Callable[[np.ndarray], tuple[bool, bool]]
 """Tells for the node indices of a zone whether its start and its stop are to be read."""
 
 
-def no_cusps(run: np.ndarray) -> list[OldBorder]:
-    """No old borders in the zone of any nodes `run`."""
-    return []
-
-
-def both_sides(run: np.ndarray) -> tuple[bool, bool]:
-    """Read the start and the stop of the zone of any nodes `run`."""
-    return True, True
-
-
 def square_root(run: np.ndarray) -> tuple[HalfLine, HalfLine]:
     """The half lines at both ends of a zone for like bodies: those of the exponent 1/2 for any nodes `run`."""
     return half_line(0.5), half_line(0.5)
@@ -90,8 +80,8 @@ def intervals(
     quantity: np.ndarray,
     lines: Lines = square_root,
     kinds: np.ndarray | None = None,
-    cusps: Cusps = no_cusps,
-    sides: Sides = both_sides,
+    cusps: Cusps = lambda run: [],
+    sides: Sides = lambda run: (True, True),
 ) -> list[Interval]:
     """Intervals of the zones in `mask`. A quantity falls to zero at their ends.
 
@@ -108,7 +98,7 @@ def intervals(
     kinds : ndarray, shape (n,), optional
         The quantity may have a kink inside a zone where `kinds` changes.
     cusps : callable
-        Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp.
+        Gives for the node indices of a zone the old borders in it, at which the quantity has a cusp. None by default.
     sides : callable
         Tells for the node indices of a zone whether its start and its stop are to be read. Any other end is the angle
         of the outermost node.
@@ -174,7 +164,7 @@ def stick_intervals(
     closed: np.ndarray,
     contact: list[Interval],
     lines: Lines = square_root,
-    cusps: Cusps = no_cusps,
+    cusps: Cusps = lambda run: [],
 ) -> list[Interval]:
     """Intervals of the stick zones. A stick zone ends where mu N - |T| falls to zero, or with the contact.
 

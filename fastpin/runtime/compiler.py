@@ -31,11 +31,6 @@ def dispatcher(source: KernelSource, alone: bool = True, kept: bool = False) -> 
     return numba.njit(**settings)(source.py_func)
 
 
-def callee(source: KernelSource) -> Any:
-    """The type of a kernel that another kernel calls."""
-    return numba.typeof(dispatcher(source, alone=False, kept=True))
-
-
 def compile_kernel(
     source: KernelSource, arguments: tuple[Any, ...], stores: bool
 ) -> tuple[Callable[..., Any], Code | None]:

@@ -68,7 +68,7 @@ class Kernel(KernelSource):
     @functools.cached_property
     def _numba_type_(self) -> Any:
         """The type of the kernel in other kernels. The compiler asks for it by this name."""
-        return compiler.callee(self)
+        return numba.typeof(compiler.dispatcher(self, alone=False, kept=True))
 
     def _find(self, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> Callable[..., Any]:
         """Load the machine code for these arguments, or compile it."""

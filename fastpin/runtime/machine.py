@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fastpin.runtime.extensions import folder, library, llvm
+from fastpin.runtime.extensions import library, llvm
 
 CAN_LOAD = sys.platform == "linux" and platform.machine() == "x86_64"
 """Whether machine code is loaded in this way: on the processors on which it is tested."""
@@ -50,21 +50,13 @@ def load(code: Code, name: str, module: str) -> Callable[..., Any]:
     pointer = ctypes.c_void_p.from_address(engine.get_global_value_address(code.environment))
     pointer.value = id(environment)
     # The function keeps environment and engine alive.
-    made: Callable[..., Any] = maker.make_function(
-        home, name, "", engine.get_function_address(code.entry), environment, (engine,)
-    )
-    return made
+    return maker.make_function(home, name, "", engine.get_function_address(code.entry), environment, (engine,))
 
 
 @functools.cache
 def target() -> tuple[str, str, str]:
     """The kind of machine, the processor and its features: code for another one may not run here."""
     return llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-
-
-def compiler_versions() -> tuple[str, ...]:
-    """The files with the versions of Numba and LLVM. Code belongs to both."""
-    return tuple((folder(name) / "_version.py").read_text(encoding="utf-8") for name in ("numba", "llvmlite"))
 
 
 @functools.cache

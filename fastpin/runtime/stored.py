@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from fastpin.runtime import compiler, machine
+from fastpin.runtime.extensions import folder
 from fastpin.runtime.source import SETTINGS, KernelSource
 
 SUFFIX = ".machine"
@@ -59,8 +60,7 @@ class StoredCode:
             key, code = marshal.loads(body)
             if key == self.key:
                 if not code:
-                    kept: Callable[..., Any] = compiler.dispatcher(self.kernel, kept=True)
-                    return kept
+                    return compiler.dispatcher(self.kernel, kept=True)
                 with contextlib.suppress(Exception):  # parts of Numba that it needs may change
                     return machine.load(machine.Code(*code), self.name, self.module)
         return None
@@ -134,4 +134,5 @@ def _environment() -> tuple[str, ...]:
     """Versions, the processor, and settings of Numba on which machine code depends."""
     settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
     chosen = [text for text in settings if text.partition("=")[0] not in UNRELATED]
-    return (sys.version, np.__version__, *machine.compiler_versions(), *machine.target(), *chosen)
+    compilers = [(folder(name) / "_version.py").read_text(encoding="utf-8") for name in ("numba", "llvmlite")]
+    return (sys.version, np.__version__, *compilers, *machine.target(), *chosen)

@@ -19,7 +19,7 @@ from fastpin.model.grid import Grid
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
 from fastpin.reading.marks import Marks
-from fastpin.states.quantities import QUANTITIES, Quantity, load_point
+from fastpin.states.quantities import QUANTITIES, Quantity, load_point, of_bush
 from fastpin.states.reading_bounds import NUMBERS, Bounds, StateBlock
 from fastpin.states.state import State
 from fastpin.states.yielding import OWNERS, PREFIX, strength_of, von_mises_peak, yielding_owners
@@ -29,11 +29,6 @@ Side = Literal["smallest", "largest", "largest magnitude"]
 
 AT_ONCE = 256
 """States whose nodal values are in memory at once, and most states that are read at once."""
-
-
-def _least_friction(state: State) -> float:
-    """Return the friction that just holds the bush, see ``BushFit.least_friction``; NaN without a bush."""
-    return state.bush_fit().least_friction if isinstance(state.problem.plate_body, Bushing) else math.nan
 
 
 def _von_mises(owner: str) -> Quantity:
@@ -50,7 +45,7 @@ NODE_VALUES = ("pressure", "shear", "status")
 
 READINGS: dict[str, Quantity] = {
     **{name: each for name, each in QUANTITIES.items() if each.kind not in ("angle", "ratio", "class")},
-    "bush_least_friction": Quantity("bush least friction", "ratio", _least_friction),
+    "bush_least_friction": Quantity("bush least friction", "ratio", of_bush(lambda fit: fit.least_friction)),
     **{PREFIX + owner: _von_mises(owner) for owner in OWNERS},
 }
 """The quantities that have extremes.
@@ -182,8 +177,7 @@ def yield_extremes(kept: Kept) -> Found:
 def _most_loaded(kept: Kept) -> list[int]:
     """Return the places of the states with the largest pressure, shear or size of a load."""
     columns = [np.abs(np.c_[b.pressure.max(axis=1), np.abs(b.shear).max(axis=1), b.loads]) for b in kept.blocks()]
-    sizes = np.concatenate(columns)
-    return sorted({int(np.argmax(column)) for column in sizes.T})
+    return sorted({int(np.argmax(column)) for column in np.concatenate(columns).T})
 
 
 def _is_near_yield(state: State, owner: str) -> bool:

@@ -73,7 +73,7 @@ def _hoop(read: Callable[[HoopPeak], float], body: Body = "plate") -> Callable[[
     return of
 
 
-def _bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
+def of_bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
     """A reading of the interface between bush and plate; NaN without a bush."""
 
     def of(state: State) -> float:
@@ -140,12 +140,12 @@ QUANTITIES: dict[str, Quantity] = {
         "joint uy", "displacement", lambda state: state.joint_displacement()["uy"], "displacement of the joint upwards"
     ),
     "bush_open_margin": Quantity(
-        "bush open margin", "traction", _bush(lambda fit: fit.open_margin), "least pressure between bush and plate"
+        "bush open margin", "traction", of_bush(lambda fit: fit.open_margin), "least pressure between bush and plate"
     ),
     "bush_slip_margin": Quantity(
         "bush slip margin",
         "traction",
-        _bush(lambda fit: fit.slip_margin),
+        of_bush(lambda fit: fit.slip_margin),
         "least pressure between bush and plate, minus shear over friction",
     ),
     "regime": Quantity("regime", "class", lambda state: float(state.regime), "regime of the contact", REGIMES),

@@ -311,8 +311,9 @@ class State(ReadOnly):
     @cached_property
     def nodes(self) -> ShearNodes:
         """The nodal tractions with the marks of old borders."""
-        marks, places = (self.marks or Marks()).arrays(self.grid.size)
-        return ShearNodes.of(self.problem, self.grid, (self.pressure, self.shear), self.status, marks, places)
+        borders = (self.marks or Marks()).arrays(self.grid.size)
+        laws = self.problem.friction, self.tilt, self.coupling
+        return ShearNodes(self.grid, self.pressure, self.shear, self._sticking, *borders, *laws)
 
     @cached_property
     def resultants(self) -> dict[str, float]:

@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fastpin.model.angles import angle_between
 from fastpin.model.checks import numbers
@@ -29,9 +29,6 @@ from fastpin.states.curves import traction_patches, tractions_at
 from fastpin.states.error_bars import ORDER, bars, pair_bar, size_floor
 from fastpin.states.quantities import QUANTITIES, quantity, sizes
 from fastpin.states.state import ErrorBars, State
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 AROUND = np.linspace(-2.0, 2.0, 17)
 """Places round an angle at which the curves are compared, in node distances. They reach to the next coarse nodes.
@@ -56,8 +53,7 @@ class PairBars(ErrorBars):
     """The error bars of a state from the state at the same load on a `coarse` grid with half the intervals."""
 
     def __init__(self, state: State, coarse: State) -> None:
-        self._state = state
-        self.coarse = coarse
+        self._state, self.coarse = state, coarse
 
     @cached_property
     def _bars(self) -> dict[str, float]:

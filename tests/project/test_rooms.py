@@ -17,10 +17,10 @@ MOST = {
     "isinstance of bodies outside bodies/": 125,
     "drive is None, or not": 30,
     "classes defined twice": 1,
-    "small private functions used once": 162,
+    "small private functions used once": 161,
     "constants of modules": 1_397,
     "hidden imports": 0,
-    "lines of code": 34_689,
+    "lines of code": 34_658,
 }
 """The most that each number may be. A smaller number takes its place here."""
 

@@ -53,7 +53,7 @@ CHANGES: dict[str, tuple[object, str, object]] = {
     "no list of mathematics": (intrinsics, "INTR_MATH", None),
     "no object code": (compiler, "_object_code", refuse),
     "no engine": (machine, "_engine", refuse),
-    "no versions": (machine, "folder", lambda name: Path(os.devnull, name)),
+    "no versions": (stored, "folder", lambda name: Path(os.devnull, name)),
 }
 
 
