@@ -118,7 +118,9 @@ def _status(source: Source) -> Text:
     """Say whether the result is complete, and why not."""
     corners = len(source.case.history)
     if source.result.complete:
-        return Text(f"Complete: all {corners:,} corners of the load history were followed; {_count(source)}.")
+        followed = "the only corner" if corners == 1 else f"all {corners:,} corners"
+        verb = "was" if corners == 1 else "were"
+        return Text(f"Complete: {followed} of the load history {verb} followed; {_count(source)}.")
     why = f" The reason: {source.error}." if source.error else ""
     how = way_on(source.path, source.error)
     return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{_said(how)}", "note")
@@ -140,7 +142,8 @@ def margins(page: PageParts) -> PageSection:
     cycle = [] if source.cycle is None else source.cycle.states
     found += fatigue_margins(problem, source.fatigue, cycle)
     run = "" if source.result.complete else " of an unfinished run"
-    words = f"Margins over all {source.points.size:,} kept states{run}: allowable/value - 1"
+    states = "the only kept state" if source.points.size == 1 else f"all {source.points.size:,} kept states"
+    words = f"Margins over {states}{run}: allowable/value - 1"
     remarks = "Between two kept states nothing is known. The von Mises stress is looked at on the edges and on circles "
     remarks += "down to a third of the hole's radius below them; fastpin is elastic."
     rows = margin_rows(problem, found)

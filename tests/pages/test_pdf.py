@@ -71,6 +71,18 @@ def test_pages_are_numbered_and_have_a_head(report: tuple[list[str], pypdf.PdfRe
     assert (pdf.metadata.title, pdf.metadata.author) == (HOSTILE, "A. Engineer")
 
 
+def test_no_figure_stands_above_the_title(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_roughly(monkeypatch)
+    sample_result([{"P": 1e6}], nodes=21).report(tmp_path / "r.pdf", title="Bolt")
+    found: list[tuple[str, float]] = []
+    first = read(tmp_path / "r.pdf")[1].pages[0]
+    text = first.extract_text(visitor_text=lambda text, user, *_: found.append((text.strip(), user[5])))
+    assert "the only corner of the load history was followed" in " ".join(text.split())
+    _, title = (height for text, height in found if text == "Bolt")  # the first one is the head of the page
+    (caption,) = (height for text, height in found if text.endswith("their ranges over the history."))
+    assert caption < title
+
+
 def test_sections_stand_on_the_pages_that_the_contents_and_the_outline_name(
     report: tuple[list[str], pypdf.PdfReader],
 ) -> None:
