@@ -14,8 +14,9 @@ from cases import CYCLE, FORCE, PROBLEM, STEADY, graded_grid, uniform_grid
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.bodies.body import PinBody, PlateBody
 from fastpin.elasticity.system import System
-from fastpin.model.bodies import Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube
 from fastpin.model.grid import Grid
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.bodies import Bushing, Plate, Ring
 from fastpin.elasticity.tractions import Tractions, cauchy_integrals
-from fastpin.model import Bushing, Plate, Ring
 from fastpin.runtime import threads as work
 
 Timed = Callable[..., Any]

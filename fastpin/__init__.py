@@ -20,4 +20,8 @@ dimensionless problem (R = F = beta* = 1). All arrays of a state have one entry 
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from fastpin import figures
+from fastpin.moved import with_moved
+
+_face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__ = with_moved(_face, figures, ("plot_convergence",))

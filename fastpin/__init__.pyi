@@ -1,3 +1,4 @@
+from . import bodies as bodies
 from . import casefile as casefile
 from . import errors as errors
 from . import figures as figures
@@ -12,7 +13,6 @@ from .casefile.reader import read_case as read_case
 from .errors import CaseFileError as CaseFileError
 from .errors import FastpinError as FastpinError
 from .errors import InputError as InputError
-from .figures.convergence import plot_convergence as plot_convergence
 from .figures.cycles import plot_cycles as plot_cycles
 from .figures.tractions import plot_tractions as plot_tractions
 from .kernels.status import Status as Status

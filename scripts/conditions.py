@@ -15,10 +15,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from fastpin.elasticity.bodies import body_terms
+from fastpin.bodies import Tube
+from fastpin.elasticity.terms import body_terms
 from fastpin.errors import FastpinError
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.bodies import Tube
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result

@@ -15,9 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.bodies.body import PinBody, PlateBody
+from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.ring import SUPPORTS
+from fastpin.bodies.tube import TUBE_LOADS
 from fastpin.elasticity.plates import plate_compliance
-from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import Corner
 from fastpin.model.lug import Lug, Part, PartLoad
@@ -264,7 +267,7 @@ def bodies(rng: np.random.Generator, seed: int) -> RandomCase:
     problem = Problem.from_load_parameter(
         pair, load_parameter, _any_friction(rng), pin_body=pin, plate_body=plate, **support
     )
-    outside = problem.joint.lug
+    outside = problem.plate_body.lug
     held = isinstance(outside, Ring) and outside.held
     stress = 0.0 if held or rng.random() < 0.6 else 0.5
     corners = _extreme_loads(rng, problem, int(rng.integers(1, 7)), stress)

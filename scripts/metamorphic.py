@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
+from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies.body import PlateBody
+from fastpin.bodies.compliance import Compliance
 from fastpin.errors import FastpinError
-from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS, ROTATION, SXX, SXY, SYY, UX, UY, M, P, Q
@@ -148,7 +149,7 @@ def enlarged(body: Any, radius: float, modulus: float, displacement: float) -> A
 
 def has_side(problem: Problem) -> bool:
     """Whether the plate has a side that does not turn with the load."""
-    lug = problem.joint.lug
+    lug = problem.plate_body.lug
     return isinstance(lug, Compliance) or (isinstance(lug, Ring) and lug.support == "half")
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import fastpin
-from fastpin import benchmarks, casefile, damage, elasticity, model, report, studies, verification
+from fastpin import benchmarks, bodies, casefile, damage, elasticity, model, report, studies, verification
 from fastpin.errors import FastpinError
 from fastpin.report.curves import Curve
 from scripts.inline import Inline
@@ -108,14 +108,15 @@ class Valid:
         study = convergence.studies[0]
         fatigue = damage.fatigue(result, "smith-watson-topper")
         lug = casefile.parse_lug(LUG).lug
-        compliance = model.Compliance(0.3, "strain", 1.0, MATRIX)
+        compliance = bodies.Compliance(0.3, "strain", 1.0, MATRIX)
         grid = result.grid
         made: Sequence[Any] = (
             pair, pair.pin, problem, history, history.blocks[0], result, state, cycle, result.cycles[-1], options, case,
             grid, convergence, study, study.series[0], fatigue, fatigue.hot_spot, lug, compliance, plan, plan.points[0],
             result.restart, fastpin.Points.at_depth(0.0, state.theta), state.stress(fastpin.Points.at_depth(0.0, -1.5)),
-            state.peak_hoop_stress(), cycle.loops["Q"], model.Disk(), model.Plate(), model.Ring(3.0), model.Tube(0.5),
-            model.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6), model.Hole("bolt", 3j, 0.5),
+            state.peak_hoop_stress(), cycle.loops["Q"], bodies.Disk(), bodies.Plate(), bodies.Ring(3.0),
+            bodies.Tube(0.5), bodies.Bushing(pair.plate, 2.0), model.FatigueConstants(1e9, -0.1, 0.5, -0.6),
+            model.Hole("bolt", 3j, 0.5),
             model.PartLoad("sxx", ("left", "right"), normal=1.0), lug.outline[0], casefile.parse_lug(LUG),
             report.sweep.chart(plan, rows, "peak_pressure"), studies.sweep.status(plan, "sweep"),
             damage.findley(HISTORY, 0.3),
@@ -127,7 +128,7 @@ class Valid:
         self.objects: dict[str, Callable[[], Any]] = {type(one).__name__: _always(one) for one in made}
         del self.objects["type"]
         bush = fastpin.Problem.from_load_parameter(
-            pair, 0.1, 0.4, plate_body=model.Bushing(pair.pin, 2.0, 0.01, friction=0.2)
+            pair, 0.1, 0.4, plate_body=bodies.Bushing(pair.pin, 2.0, 0.01, friction=0.2)
         )
         bushed = fastpin.solve(bush, [{"P": 1.0}], nodes=NODES)[-1]
         self._bushed = bushed
@@ -148,7 +149,7 @@ class Valid:
             "loads.csv": "P, Q\n1.0, 0\n1.0, 0.2\n",
             "outcomes.toml": '[outcomes]\nwork = {quantity = "work"}\n',
             "materials.toml": '["own steel"]\nE = 2e11\nnu = 0.3\n',
-            "lug.json": model.Compliance(0.3, "strain", 1.0, MATRIX).to_text(),
+            "lug.json": bodies.Compliance(0.3, "strain", 1.0, MATRIX).to_text(),
         }
         for name, text in texts.items():
             Path(name).write_text(text, encoding="utf-8")
@@ -219,7 +220,7 @@ class Valid:
             "parse_case.text": casefile.EXAMPLE,
             "parse_lug.text": LUG,
             "parse_plan.text": PLAN,
-            "from_document.content": model.Compliance(0.3, "strain", 1.0, MATRIX).document(),
+            "from_document.content": bodies.Compliance(0.3, "strain", 1.0, MATRIX).document(),
             "with_outcomes.outcomes": {"work": {"quantity": "work"}},
             "angle_of_largest.values": np.arange(float(n)),
             "elliptic_stress.pressure": 1.0,

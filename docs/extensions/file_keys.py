@@ -9,8 +9,9 @@ from dataclasses import fields
 from typing import Any
 
 import fastpin
+from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.casefile.reader import EXAMPLE, KEYS, ROOT_KEYS
-from fastpin.model import Bushing, Compliance, FatigueConstants, Plate, Ring, Tube
+from fastpin.model import FatigueConstants
 from fastpin.model.loads import LOAD
 from fastpin.model.options import OPTIONS
 from fastpin.model.units import units_per_thickness

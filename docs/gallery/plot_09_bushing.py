@@ -7,8 +7,8 @@ pin. fastpin also tells whether the press fit holds the bush.
 """
 
 import fastpin
+from fastpin.bodies import Bushing, Ring
 from fastpin.figures import plot_sketch
-from fastpin.model import Bushing, Ring
 
 steel, aluminium = fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"]
 bronze = fastpin.Material(110e9, 0.34, "bronze")

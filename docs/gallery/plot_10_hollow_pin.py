@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import fastpin
-from fastpin.model import Disk, Tube
+from fastpin.bodies import Disk, Tube
 
 pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["aluminium"])
 pins = {"solid": Disk(), "bore of 5 mm": Tube(bore_radius=5e-3), "bore of 8 mm": Tube(bore_radius=8e-3)}

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import fastpin
-from fastpin.model import Ring
+from fastpin.bodies import Ring
 
 pair = fastpin.MaterialPair(fastpin.MATERIALS["steel"], fastpin.MATERIALS["steel"], plane="stress")
 theta = np.linspace(-np.pi, np.pi, 361)

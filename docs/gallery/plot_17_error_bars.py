@@ -22,4 +22,4 @@ print(f"peak pressure: {state.peak_pressure / 1e6:.3f} MPa, error bar {bar / 1e6
 
 finer = fastpin.solve(problem, loads, nodes=801)[-1]
 assert abs(finer.peak_pressure - state.peak_pressure) <= bar
-figure = fastpin.plot_convergence(study)
+figure = fastpin.figures.plot_convergence(study)

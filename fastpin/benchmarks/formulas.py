@@ -10,8 +10,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fastpin.bodies.body import PinLoad
 from fastpin.model.checks import choice, instance, number, numbers
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import Material, Plane
 
 LEAST = -0.06

@@ -14,10 +14,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fastpin.benchmarks.rows import Outcome, Row
+from fastpin.bodies import Plate, Ring
+from fastpin.bodies.body import PinLoad, PlateBody
 from fastpin.figures.style import Line, add_legend, panels
 from fastpin.model.angles import BOTTOM
-from fastpin.model.bodies import Plate, PlateBody, Ring
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.options import Method
 from fastpin.model.problem import Problem

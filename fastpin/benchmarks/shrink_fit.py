@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fastpin.benchmarks.rows import Outcome, Row
-from fastpin.model.bodies import Ring
+from fastpin.bodies import Ring
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report

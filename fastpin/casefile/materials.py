@@ -14,9 +14,6 @@ from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.synonyms import closest
 
-MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength")
-"""Keys of the material of a body."""
-
 DUNDURS_KEYS = ("alpha", "beta", "nu_pin", "convention", "beta_star")
 """Keys of [dundurs]."""
 

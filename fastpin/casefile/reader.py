@@ -14,18 +14,18 @@ from datetime import date
 from pathlib import Path
 from typing import Any, TypeVar
 
+from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.casefile.bodies import BODY_KINDS, keys_of, read_bodies
 from fastpin.casefile.loads import HARMONIC, read_history, report_loads
 from fastpin.casefile.material_files import known_materials
-from fastpin.casefile.materials import DUNDURS_KEYS, MATERIAL_KEYS, read_pair
+from fastpin.casefile.materials import DUNDURS_KEYS, read_pair
 from fastpin.casefile.toml_text import KINDS, CaseText, Section, parse_text, read_text, written
 from fastpin.errors import InputError
-from fastpin.model.bodies import Plate, Tube
 from fastpin.model.case import About, Case, check_arc, check_keep
 from fastpin.model.checks import file_path, string
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
-from fastpin.model.materials import MATERIALS, Material, MaterialPair
+from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
@@ -298,9 +298,9 @@ def _problem(
         "friction": 0.0,
         **dict.fromkeys(hub),
         "hub_stiffness": unit if chosen["rotation"] == "spring" else None,
-        "plate_body": Plate(),
+        "plate_body": INFINITE_PLATE,
     }
-    if isinstance(values["pin_body"], Tube):
+    if values["pin_body"] != SOLID_PIN:
         harmless["pin_load"] = "centre"
     problem = contact.build(make, values, harmless, {"plate_body": (source.section("plate_body"), "file")})
     return problem if is_complete else None

@@ -15,11 +15,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Plate, PlateBody, Ring, Tube
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
-from fastpin.model.compliance import Compliance
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS
@@ -86,28 +83,11 @@ def _contact(problem: Problem) -> Iterator[str]:
 
 
 def _bodies(problem: Problem) -> Iterator[list[str]]:
-    pin, plate = problem.pin_body, problem.plate_body
-    if isinstance(pin, Tube):
-        yield ["[pin_body]", f"bore_radius = {pin.bore_radius!r}", f"load = {_value(pin.load)}"]
-    if plate != Plate():
-        yield ["[plate_body]", *_plate_body(plate)]
-
-
-def _plate_body(body: PlateBody, prefix: str = "") -> Iterator[str]:
-    if isinstance(body, Compliance):
-        raise InputError("plate_body", "a compliance has a file of its own: name it in the section [plate_body]")
-    if isinstance(body, Ring):
-        yield f"{prefix}outer_radius = {body.outer_radius!r}"
-        yield f"support = {_value(body.support)}"
-    elif isinstance(body, Bushing):
-        yield from _material(body.material)
-        yield f"outer_radius = {body.outer_radius!r}"
-        yield f"interference = {body.interference!r}"
-        if body.friction is not None:
-            yield f"friction = {body.friction!r}"
-        yield from _plate_body(body.inside, "ring_")
-    elif body.reaction is not None:
-        yield f"reaction = [{body.reaction[0]!r}, {body.reaction[1]!r}]"
+    for name, body in problem.given_bodies.items():
+        block = [f"[{name}]"]
+        for key, value in body.toml().items():
+            block += _material(value) if isinstance(value, Material) else [f"{key} = {_value(value)}"]
+        yield block
 
 
 def _loads(history: LoadHistory, thickness: float | None) -> Iterator[str]:
@@ -118,7 +98,8 @@ def _loads(history: LoadHistory, thickness: float | None) -> Iterator[str]:
                 whole = {value: _whole(value, thickness) for value in set(column)}
                 column = [whole[value] for value in column]
             lines = [", ".join(map(repr, column[k : k + PER_LINE])) for k in range(0, len(column), PER_LINE)]
-            yield f"{name} = [{lines[0]}]" if len(lines) == 1 else "\n".join([f"{name} = [", *_indented(lines), "]"])
+            indented = [f"    {line}," for line in lines]
+            yield f"{name} = [{lines[0]}]" if len(lines) == 1 else "\n".join([f"{name} = [", *indented, "]"])
 
 
 def _whole(value: float, thickness: float | None) -> float:
@@ -134,10 +115,6 @@ def _whole(value: float, thickness: float | None) -> float:
         one = math.nextafter(product, end)
         near += [one, math.nextafter(one, end)]
     return min((each for each in near if each / thickness == value), key=lambda each: len(repr(each)), default=product)
-
-
-def _indented(lines: list[str]) -> Iterator[str]:
-    return (f"    {line}," for line in lines)
 
 
 def _options(options: SolveOptions) -> Iterator[str]:

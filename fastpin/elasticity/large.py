@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fastpin.elasticity.bodies import BodyTerms
 from fastpin.elasticity.drive import Drive
 from fastpin.elasticity.operator import Operator, uniform_part
 from fastpin.elasticity.system import System
+from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import fourier, influence
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.problem import Problem

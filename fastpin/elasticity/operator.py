@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from fastpin.elasticity.bodies import BodyTerms
 from fastpin.elasticity.drive import Drive
+from fastpin.elasticity.terms import BodyTerms
 from fastpin.kernels import influence, toeplitz
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem

@@ -17,10 +17,10 @@ import numpy as np
 import scipy.linalg
 from threadpoolctl import threadpool_limits
 
+from fastpin.bodies.compliance import LEAST_ORDER, MOST_ORDER, Compliance
 from fastpin.elasticity.panels import Boundary, Edges, Fineness, matrices
 from fastpin.errors import InputError
 from fastpin.model.checks import check_callable, instance, string, whole_number
-from fastpin.model.compliance import LEAST_ORDER, MOST_ORDER, Compliance
 from fastpin.model.lug import Hole, Lug, Part
 from fastpin.version import __version__
 

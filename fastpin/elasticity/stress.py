@@ -8,17 +8,16 @@ in the units of the tractions. Tension is positive.
 from __future__ import annotations
 
 import math
+from functools import lru_cache, partial
 
 import numpy as np
 
-from fastpin.elasticity import bodies
-from fastpin.elasticity.tractions import Tractions, cauchy_integrals
-from fastpin.elasticity.walls import LEAST_BORE, pin_wall, plate_walls, traction_harmonics
-from fastpin.model.bodies import Plate
-from fastpin.model.compliance import Compliance
-from fastpin.model.loads import LOADS, REMOTE
+from fastpin.bodies.walls import PlateWalls, Wall
+from fastpin.elasticity.tractions import CHUNK, Tractions, cauchy_integrals
+from fastpin.kernels import fourier, laurent
 from fastpin.model.points import ROUNDING, Body
 from fastpin.model.problem import Problem
+from fastpin.runtime.threads import in_chunks
 
 SERIES = 50
 """Terms of the series about the pin's centre. It is used where r < R/2."""
@@ -41,19 +40,19 @@ def plate_stress(
         Distances of the points from the edge of the hole, in units of R; at least 0. All are 0 for a compliance.
     """
     kolosov, none = problem.surfaces.plate_kolosov, np.zeros(3)
-    far = remote if isinstance(problem.plate_body, Plate) else none
+    far = remote if problem.plate_body.is_infinite else none
     walls = plate_walls(problem, tractions, tuple(float(value) for value in remote))
     if walls is None or walls.lug is None:
         found = hole_stress(kolosov, tractions, far, theta, depth)
         if walls is not None:
-            found += walls.surface.polar(theta, 1.0 + depth)
-        elif isinstance(problem.plate_body, Compliance):
-            found[1] += _compliance_hoop(problem.plate_body, kolosov, tractions, remote, theta)
+            found += polar(walls.surface, theta, 1.0 + depth)
+        of_order = partial(traction_harmonics, tractions)
+        problem.plate_body.add_edge_hoop(found[1], problem.joint.hole, of_order, remote.tolist(), theta)
         return found
     found, beyond = np.empty((3, theta.size)), is_beyond_bush(problem, depth)
     inside = ~beyond
     found[:, inside] = hole_stress(kolosov, tractions, none, theta[inside], depth[inside])
-    found[:, inside] += walls.surface.polar(theta[inside], 1.0 + depth[inside])
+    found[:, inside] += polar(walls.surface, theta[inside], 1.0 + depth[inside])
     below = 1.0 + depth[beyond] - (problem.joint.bush or 1.0)
     found[:, beyond] = seat_stress(problem, tractions, remote, theta[beyond], below)
     return found
@@ -76,8 +75,8 @@ def seat_stress(
     assert walls is not None
     assert walls.lug is not None
     below = depth / joint.bush
-    found = walls.lug.polar(theta, 1.0 + below)
-    if isinstance(joint.lug, Plate):
+    found = polar(walls.lug, theta, 1.0 + below)
+    if joint.plate_body.lug.is_infinite:
         found += hole_stress(joint.pair.plate_kolosov, Tractions(()), remote, theta, below)
     return found
 
@@ -99,20 +98,6 @@ def press_fit_hoop(problem: Problem, body: Body = "plate") -> float:
     if body == "seat":
         return float(seat_stress(problem, Tractions(()), np.zeros(3), np.zeros(1), np.zeros(1))[1, 0])
     return -2.0 * pressure / ((1.0 - 1.0 / bush) * (1.0 + 1.0 / bush))
-
-
-def _compliance_hoop(
-    body: Compliance, kolosov: float, tractions: Tractions, remote: np.ndarray, theta: np.ndarray
-) -> np.ndarray:
-    """Hoop stress on the edge of the hole, shape (m,), beyond that of the infinite plate, (T48)."""
-    t = traction_harmonics(tractions, body.order)
-    moved = body.matrix @ bodies.plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
-    for place, value in zip(REMOTE, remote, strict=True):
-        moved = moved + value * body.columns_of(LOADS[place])
-    order = np.arange(-body.order, body.order + 1.0)
-    waves = np.exp(1j * np.multiply.outer(theta, order))
-    hoop: np.ndarray = 8.0 / (kolosov + 1.0) * np.real(waves @ ((1.0 + order) * bodies.complex_coefficients(moved)))
-    return hoop
 
 
 def hole_stress(
@@ -164,7 +149,7 @@ def pin_stress(problem: Problem, tractions: Tractions, theta: np.ndarray, depth:
     found = disk_stress(problem.surfaces.pin_kolosov, problem.pin_load, tractions, theta, depth)
     wall = pin_wall(problem, tractions)
     if wall is not None:
-        found += wall.polar(theta, np.maximum(1.0 - depth, max(problem.joint.bore, LEAST_BORE)))
+        found += polar(wall, theta, np.maximum(1.0 - depth, wall.smallest))
     return found
 
 
@@ -224,3 +209,49 @@ def _near_centre(pressure: np.ndarray, shear: np.ndarray, zeta: np.ndarray) -> t
 def _sum(coefficients: np.ndarray, zeta: np.ndarray) -> np.ndarray:
     """The power series with these coefficients at the points zeta."""
     return np.polynomial.polynomial.polyval(zeta, coefficients)
+
+
+# -- the smooth fields of bodies ------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
+def traction_harmonics(tractions: Tractions, highest: int) -> np.ndarray:
+    """Harmonics (t_n, conj t_-n) of t = s_rr + i s_rtheta on the contact rim, n = 0 to `highest`; (highest + 1, 2)."""
+    found = np.zeros((highest + 1, 2), dtype=complex)
+    for patch in tractions.patches:
+        theta, steps = patch[:, 0], np.diff(patch[:, 0])
+        left, right = np.r_[0.0, steps], np.r_[steps, 0.0]
+        for begin in range(0, highest + 1, fourier.BLOCK):
+            order = np.arange(begin, min(begin + fourier.BLOCK, highest + 1), dtype=float)
+            pressure, shear = fourier.hat_coefficients(order, theta, left, right, patch[:, 1:]).T
+            found[begin : begin + order.size] -= np.array([pressure - 1j * shear, pressure + 1j * shear]).T
+    return found / (2.0 * math.pi)
+
+
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
+def pin_wall(problem: Problem, tractions: Tractions) -> Wall | None:
+    """The field of a hollow pin beyond that of a solid pin under a force at its centre; None for a solid pin."""
+    return problem.pin_body.wall(problem.joint.pin_rim, partial(traction_harmonics, tractions))
+
+
+@lru_cache(maxsize=80)  # the hat functions of 32 nodes, see fastpin/states/reading_bounds.py
+def plate_walls(problem: Problem, tractions: Tractions, remote: tuple[float, ...]) -> PlateWalls | None:
+    """The smooth fields of a plate under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
+    return problem.plate_body.walls(problem.joint.hole, partial(traction_harmonics, tractions), remote)
+
+
+def polar(wall: Wall, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Stresses (srr, stt, srt) of a field, shape (3, m), at the angles `theta` and radii `radius`, both (m,)."""
+    found = np.zeros((theta.size, 2), dtype=complex)
+
+    def compute(part: slice) -> None:
+        series = wall.growing, wall.decaying, wall.smallest, wall.largest
+        laurent.add_polar(theta[part], radius[part], *series, found[part])
+        for other in wall.others:
+            mean, first = other(radius[part] * np.exp(1j * theta[part]))
+            found[part, 0] += mean
+            found[part, 1] += first
+
+    in_chunks(theta.size, CHUNK, compute)
+    mean, radial = found[:, 0].real, found[:, 1].real
+    return np.array([radial, mean - radial, -found[:, 1].imag])

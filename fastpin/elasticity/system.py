@@ -19,9 +19,9 @@ from functools import cached_property
 
 import numpy as np
 
-from fastpin.elasticity.bodies import BodyTerms, body_terms
 from fastpin.elasticity.drive import DISPLACEMENTS, Drive, replace_forces
 from fastpin.elasticity.operator import DenseOperator, Operator, make_operator, uniform_part
+from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.model.grid import Grid, arc_of
 from fastpin.model.loads import LOAD_KIND, LOADS, ROTATION, SXX, SXY, SYY, M, P, Q
 from fastpin.model.problem import Problem
@@ -243,7 +243,7 @@ def load_columns(problem: Problem, theta: np.ndarray, bodies: BodyTerms | None) 
     """The size R kappa'/(2 G) of the hole's displacement per remote stress, and the columns of all loads.
 
     The columns, shape (2n, loads), map forces and remote stresses to gap and slip at the angles `theta` (n,),
-    dimensionless. Those of the other loads are 0. `bodies` are the :func:`fastpin.elasticity.bodies.body_terms`.
+    dimensionless. Those of the other loads are 0. `bodies` are the :func:`fastpin.elasticity.terms.body_terms`.
     """
     pair = problem.surfaces
     cos, sin, cos_double, sin_double = np.cos(theta), np.sin(theta), np.cos(2 * theta), np.sin(2 * theta)

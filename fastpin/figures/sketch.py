@@ -12,12 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
+from fastpin.bodies.body import Shape
 from fastpin.errors import InputError
 from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.stick_slip import zone_look, zone_patch
 from fastpin.figures.words import ROUNDING, caption, point_text, short_load, shown_unit
 from fastpin.kernels.status import STICK
-from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.case import Case
 from fastpin.model.checks import as_toml, instance
 from fastpin.model.history import LoadHistory
@@ -33,9 +33,6 @@ LoadRange = tuple[float, float]
 GAP = 0.07
 """Drawn clearance, in radii of the hole. The true one could not be seen."""
 
-HALF = 2.5
-"""Half the side of the drawn part of a plate without an outer rim, in radii of the hole."""
-
 LONG, SHORT = 1.45, 0.55
 """Lengths of the arrow of a force and of a remote stress, in radii of the hole."""
 
@@ -50,6 +47,14 @@ SHORTEST = 0.35
 
 STEEL, ALLOY, BRASS = "#C9CDD3", "#E8EAED", "#EAD9A8"
 """Shades of pin, plate and bush."""
+
+PARTS: dict[str, dict[str, Any]] = {
+    "lug": {"facecolor": ALLOY, "edgecolor": "0.25", "linewidth": 1.2},
+    "bush": {"facecolor": BRASS, "edgecolor": "0.25", "linewidth": 1.0},
+    "hole": {"facecolor": "white", "edgecolor": "0.15", "linewidth": 1.2},
+    "bore": {"facecolor": "white", "edgecolor": "0.15", "linewidth": 0.9},
+}
+"""Style of the parts of bodies."""
 
 ARROW: dict[str, Any] = {"mutation_scale": 11.0, "linewidth": 1.5, "shrinkA": 0.0, "shrinkB": 0.0, "zorder": 6}
 """Style of all arrows."""
@@ -151,7 +156,10 @@ def draw_sketch(
     panel = sheet.axes[0, 0]
     panel.set_aspect("equal")
     panel.set_axis_off()
-    outside = _draw_plate(panel, problem)
+    shapes = problem.plate_body.drawing(problem.joint.hole)
+    outside = float(shapes[0].size)
+    for shape in [*shapes, Shape("circle", 1.0, "hole")]:
+        _draw_shape(panel, shape)
     _draw_pin(panel, problem, ranges)
     if state is not None:
         _draw_contact(panel, state)
@@ -172,35 +180,20 @@ def draw_sketch(
     return sheet
 
 
-def _draw_plate(panel: Axes, problem: Problem) -> float:
-    """Draw the plate with its bodies, and return the half-size of what is drawn, in radii of the hole."""
-    radius, body = problem.hole_radius, problem.plate_body
-    bush = body.outer_radius / radius if isinstance(body, Bushing) else None
-    inside = body.inside if isinstance(body, Bushing) else body
-    outside = inside.outer_radius / radius if isinstance(inside, Ring) else max(HALF, 1.6 * (bush or 1.0))
-    if isinstance(inside, Ring):
-        panel.add_patch(Circle((0.0, 0.0), outside, facecolor=ALLOY, edgecolor="0.25", linewidth=1.2))
-        _draw_support(panel, outside, inside.support)
+def _draw_shape(panel: Axes, shape: Shape, centre: complex = 0j, zorder: float = 1.0) -> None:
+    """Draw a shape of a body about a centre."""
+    size = shape.size
+    if shape.kind == "circle":
+        panel.add_patch(Circle((centre.real, centre.imag), size, zorder=zorder, **PARTS[shape.part]))
+    elif shape.kind == "square":  # The plate goes on: its cut has no line.
+        panel.add_patch(Rectangle((-size, -size), 2.0 * size, 2.0 * size, facecolor=ALLOY, linewidth=0.0))
     else:
-        # The plate goes on: its cut has no line.
-        panel.add_patch(Rectangle((-outside, -outside), 2.0 * outside, 2.0 * outside, facecolor=ALLOY, linewidth=0.0))
-    if bush is not None:
-        panel.add_patch(Circle((0.0, 0.0), bush, facecolor=BRASS, edgecolor="0.25", linewidth=1.0))
-    panel.add_patch(Circle((0.0, 0.0), 1.0, facecolor="white", edgecolor="0.15", linewidth=1.2))
-    return float(outside)
-
-
-def _draw_support(panel: Axes, outside: float, support: str) -> None:
-    """Draw short strokes round a clamped rim, and on the side of the support of other rings."""
-    if support == "body":
-        return
-    turn = np.linspace(0.0, 2.0 * math.pi, 73)[:-1]
-    # A clamped rim has leaning strokes, as walls have in drawings; a rim with tractions has fewer, upright ones.
-    held = support == "held"
-    for angle in turn if held else turn[::2]:
-        begin = outside * np.exp(1j * angle)
-        end = (1.06 if held else 1.03) * outside * np.exp(1j * (angle + (0.05 if held else 0.0)))
-        panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
+        # Leaning strokes stand close, upright ones apart.
+        leans, turn = shape.kind == "leaning strokes", np.linspace(0.0, 2.0 * math.pi, 73)[:-1]
+        for angle in turn if leans else turn[::2]:
+            begin = size * np.exp(1j * angle)
+            end = (1.06 if leans else 1.03) * size * np.exp(1j * (angle + (0.05 if leans else 0.0)))
+            panel.plot([begin.real, end.real], [begin.imag, end.imag], color="0.35", linewidth=0.7)
 
 
 def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) -> None:
@@ -215,11 +208,8 @@ def _draw_pin(panel: Axes, problem: Problem, ranges: Mapping[str, LoadRange]) ->
         panel.add_patch(
             Circle((0.0, 0.0), 1.0 + GAP, facecolor="none", edgecolor="0.3", linewidth=0.8, linestyle="--", zorder=3)
         )
-    if isinstance(problem.pin_body, Tube):
-        bore = problem.pin_body.bore_radius / problem.hole_radius
-        panel.add_patch(
-            Circle((away.real, away.imag), bore, facecolor="white", edgecolor="0.15", linewidth=0.9, zorder=4)
-        )
+    for shape in problem.pin_body.drawing(problem.joint.pin_rim):
+        _draw_shape(panel, shape, away, zorder=4.0)
 
 
 def _middle(span: LoadRange | None) -> float:

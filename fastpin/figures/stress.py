@@ -19,7 +19,6 @@ from fastpin.figures.sheet import Look, Sheet
 from fastpin.figures.states import HOOP, DrawnStates, drawn_states, name_states, state_lines
 from fastpin.figures.style import angle_axis, draw_zero, line
 from fastpin.figures.words import ANGLE, caption, loads_text, point_text, quantity
-from fastpin.model.bodies import Disk
 from fastpin.model.checks import choice, instance
 from fastpin.model.points import BODIES, Body
 from fastpin.model.units import units
@@ -224,7 +223,9 @@ def draw_field(state: State, curves: list[Curve], component: str, look: Look) ->
     panel = sheet.axes[0, 0]
     unit, radius = units(state.problem)["traction"], state.problem.hole_radius
     distance, angle, value = curves[0].columns
-    nearest = SINGULAR * radius if state.problem.pin_body == Disk() and state.problem.pin_load == "centre" else 0.0
+    nearest = (
+        SINGULAR * radius if not state.problem.pin_body.bore_radius and state.problem.pin_load == "centre" else 0.0
+    )
     every = np.concatenate([curve[value][curve[distance] >= nearest] for curve in curves])
     low, high = np.quantile(every, [1.0 - FARTHEST, FARTHEST])
     factor, label = unit.scale([low, high])

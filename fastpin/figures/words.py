@@ -8,9 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.checks import shortened
-from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
@@ -82,8 +80,12 @@ def caption(problem: Problem, states: Sequence[State] = ()) -> str:
     """The parameters of a problem as text: materials, bodies, friction, sizes, and the load parameter of the states."""
     unit = units(problem)
     pair = problem.pair
-    parts = [f"pin: {_material(pair.pin, problem)}{_pin_body(problem)}; plate: {_material(pair.plate, problem)}"]
-    parts[0] += f"{_plate_body(problem)}; plane {pair.plane}"
+    pin_body = problem.pin_body.caption(problem.pin_load, lambda length: short(length, unit["length"]))
+    plate_body = problem.plate_body.caption(
+        lambda length: short(length, unit["length"]), lambda material: _material(material, problem)
+    )
+    parts = [f"pin: {_material(pair.pin, problem)}{pin_body}; plate: {_material(pair.plate, problem)}"]
+    parts[0] += f"{plate_body}; plane {pair.plane}"
     parts.append(f"friction coefficient {problem.friction:.{DIGITS}g}")
     if not problem.dimensionless:
         parts.append(f"hole radius {short(problem.hole_radius, unit['length'])}")
@@ -148,26 +150,3 @@ def _material(material: Material, problem: Problem) -> str:
         return shortened(material.name)
     modulus = f"{material.E:.{DIGITS}g}/β*" if problem.dimensionless else short(material.E, PASCAL)
     return f"E = {modulus}, ν = {material.nu:.{DIGITS}g}"
-
-
-def _pin_body(problem: Problem) -> str:
-    unit = units(problem)["length"]
-    if isinstance(problem.pin_body, Tube):
-        return f", bore radius {short(problem.pin_body.bore_radius, unit)}"
-    words = {"body": ", body force", "centre": ", force at the centre"}
-    return words[problem.pin_load] if isinstance(problem.pin_body, Disk) else ""
-
-
-def _plate_body(problem: Problem) -> str:
-    body, unit = problem.plate_body, units(problem)["length"]
-    words = ""
-    if isinstance(body, Bushing):
-        words = f" with bush of {_material(body.material, problem)} to radius {short(body.outer_radius, unit)}"
-        body = body.inside
-    if isinstance(body, Ring):
-        words += f", ring to radius {short(body.outer_radius, unit)}"
-    elif isinstance(body, Compliance):
-        words += ", finite"
-    elif isinstance(body, Plate) and body.reaction is not None:
-        words += f", forces balanced at ({short(body.reaction[0], unit)}, {short(body.reaction[1], unit)})"
-    return words

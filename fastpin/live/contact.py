@@ -21,9 +21,7 @@ from fastpin.kernels.status import OPEN
 from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
-from fastpin.model.bodies import Bushing, Ring, Tube, kind_of
 from fastpin.model.case import Case
-from fastpin.model.compliance import Compliance
 from fastpin.model.doubts import doubts
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
@@ -394,7 +392,7 @@ class LiveContact:
         history, grid = self.session.history, self.session.grid
         if history is None or grid is None:
             raise InputError("case", "no load was followed yet")
-        if isinstance(self.session.problem.plate_body, Compliance):
+        if "file" in self.session.problem.plate_body.keys:
             raise InputError(
                 "case",
                 "a plate from a compliance file can't be saved here; "
@@ -420,8 +418,7 @@ def _named(given: np.ndarray) -> dict[str, float]:
 
 def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
-    bore = problem.pin_body.bore_radius if isinstance(problem.pin_body, Tube) else 0.0
-    lug, bush = problem.joint.lug, problem.plate_body
+    lug, bush = problem.plate_body.lug, problem.plate_body.bush
     return {
         "title": title,
         "units": {kind: asdict(unit) for kind, unit in units(problem).items()},
@@ -431,10 +428,10 @@ def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
         "radius": problem.hole_radius,
         "clearance": problem.assembled_clearance,
         "yielded": scales.force * problem.surfaces.beta_star,
-        "bore": bore,
-        "plate": kind_of(problem.plate_body),
-        "bush": bush.outer_radius if isinstance(bush, Bushing) else None,
-        "rim": lug.outer_radius if isinstance(lug, Ring) else None,
+        "bore": problem.pin_body.bore_radius,
+        "plate": problem.plate_body.kind,
+        "bush": None if bush is None else bush.outer_radius,
+        "rim": lug.outer_radius if math.isfinite(lug.outer_radius) else None,
         "doubts": [str(doubt) for doubt in doubts(problem, None, SolveOptions())],
         "axes": vector_axes(problem, scales),
         "loads": load_controls(problem, scales),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
+from fastpin.bodies.body import Control, PlateBody
+from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
-from fastpin.model.bodies import SUPPORTS, TUBE_LOADS, Bushing, Disk, Plate, Ring, Tube, kind_of
-from fastpin.model.checks import choice, number
-from fastpin.model.compliance import Compliance
+from fastpin.model.checks import choice
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
@@ -32,9 +32,6 @@ MOST_FRICTION = 1.2
 
 USUAL_STRAIN = 1e-3
 """Strain of a usual load, where the case has none to go by."""
-
-PLATES = {"plate": "infinite plate", "ring": "ring lug", "bushing": "plate with a bush"}
-"""Kinds of plates that can be chosen."""
 
 MISFITS = 1.5
 """End of the slider of the clearance, in parts of the clearance or of the displacement under the usual force."""
@@ -87,18 +84,15 @@ def problem_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
     """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
     unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
     misfit = MISFITS * scales.misfit
-    plate = problem.plate_body
-    found = [
+    return [
         _slider("contact", "friction", problem.friction, NUMBER, 0.0, MOST_FRICTION),
         _slider("contact", "clearance", problem.clearance, unit["displacement"], -misfit, misfit),
         _chooser("contact", "plane", problem.pair.plane, PLANES),
         *_material("pin", problem.pair.pin, unit["modulus"]),
-        *_pin(problem, unit["length"]),
+        *_pin(problem, unit),
         *_material("plate", problem.pair.plate, unit["modulus"]),
+        *_plate(problem, unit),
     ]
-    if isinstance(plate, Compliance):
-        return found
-    return found + _plate(problem, unit)
 
 
 def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -133,11 +127,11 @@ def changed_fields(problem: Problem, changes: Mapping[str, Any]) -> dict[str, An
             _changed_material(problem.pair.plate, "plate", changes),
             changes.get("plane", problem.pair.plane),
         )
-    if changes.keys() & {"pin_bore", "bore_load"}:
-        fields["pin_body"] = _changed_pin(problem, changes)
-        if fields["pin_body"] != Disk():
+    if changes.keys() & PIN_CONTROLS:
+        fields["pin_body"] = changed_pin(problem.pin_body, changes)
+        if fields["pin_body"] != SOLID_PIN:
             fields["pin_load"] = "centre"  # the load of a hollow pin is a field of its body
-    if changes.keys() & {"plate_body", "outer_radius", "support", "interference", *_names_of_material("bush")}:
+    if changes.keys() & {"plate_body", *PLATE_CONTROLS, *_names_of_material("bush")}:
         fields["plate_body"] = _changed_plate(problem, changes)
     return fields
 
@@ -152,12 +146,9 @@ NAMES = (
     "plane",
     "pin_load",
     "rotation",
-    "pin_bore",
-    "bore_load",
+    *PIN_CONTROLS,
     "plate_body",
-    "outer_radius",
-    "support",
-    "interference",
+    *PLATE_CONTROLS,
     *(name for body in ("pin", "plate", "bush") for name in _names_of_material(body)),
 )
 """Names of all controls of problems."""
@@ -197,63 +188,42 @@ def _changed_material(material: Material, body: str, changes: Mapping[str, Any])
     return Material(changes.get(modulus, material.E), changes.get(ratio, material.nu))
 
 
-def _pin(problem: Problem, length: Unit) -> list[dict[str, Any]]:
-    body, radius = problem.pin_body, problem.hole_radius
-    bore = body.bore_radius if isinstance(body, Tube) else 0.0
-    found = [_slider("pin", "pin_bore", bore, length, 0.0, 0.9 * radius)]
-    if isinstance(body, Tube):
-        found.append(_chooser("pin", "bore_load", body.load, TUBE_LOADS))
-    elif not problem.held and problem.drive == "force":
+def _of_body(group: str, controls: Sequence[Control], unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
+    """The controls of a body."""
+    found = []
+    for each in controls:
+        if isinstance(each.value, Material):
+            found += _material(each.name, each.value, unit["modulus"])
+        elif each.choices:
+            found.append(_chooser(group, each.name, each.value, each.choices))
+        else:
+            found.append(_slider(group, each.name, each.value, unit[each.kind], each.least, each.most))
+    return found
+
+
+def _pin(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
+    found = _of_body("pin", problem.pin_body.page_controls(problem.hole_radius), unit)
+    if problem.pin_body == SOLID_PIN and not problem.held and problem.drive == "force":
         found.append(_chooser("pin", "pin_load", problem.pin_load, ("centre", "body")))
     if problem.pin_load != "body" and problem.hub_radius is None and problem.hub_stiffness is None:
         found.append(_chooser("pin", "rotation", problem.rotation, ("free", "fixed")))
     return found
 
 
-def _changed_pin(problem: Problem, changes: Mapping[str, Any]) -> Disk | Tube:
-    body = problem.pin_body
-    bore = number("pin_bore", changes.get("pin_bore", body.bore_radius if isinstance(body, Tube) else 0.0))
-    if bore == 0.0:
-        return Disk()
-    return Tube(bore, changes.get("bore_load", body.load if isinstance(body, Tube) else "uniform"))
+def _plate(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
+    body = problem.plate_body
+    if body.kind not in TITLES:
+        return []
+    controls = body.page_controls(problem.hole_radius, problem.clearance, problem.dimensionless)
+    return [_chooser("plate", "plate_body", body.kind, TITLES), *_of_body("plate", controls, unit)]
 
 
-def _plate(problem: Problem, unit: dict[str, Unit]) -> list[dict[str, Any]]:
-    body, radius = problem.plate_body, problem.hole_radius
-    found = [_chooser("plate", "plate_body", kind_of(body), PLATES)]
-    if isinstance(body, (Ring, Bushing)):
-        found.append(_slider("plate", "outer_radius", body.outer_radius, unit["length"], 1.05 * radius, 4.0 * radius))
-    if isinstance(body, Ring):
-        found.append(_chooser("plate", "support", body.support, SUPPORTS))
-    if isinstance(body, Bushing):
-        most = max(2.0 * body.interference, abs(problem.clearance), 1e-3 * radius * (not problem.dimensionless))
-        found.append(_slider("plate", "interference", body.interference, unit["displacement"], 0.0, most))
-        found += _material("bush", body.material, unit["modulus"])
-    return found
-
-
-def _changed_plate(problem: Problem, changes: Mapping[str, Any]) -> Plate | Ring | Bushing:
-    body, radius = problem.plate_body, problem.hole_radius
-    if isinstance(body, Compliance):
-        raise InputError("plate_body", "the compliance of a finite plate can't be changed on the page")
-    kind = choice("plate_body", changes.get("plate_body", kind_of(body)), tuple(PLATES))
-    if kind != kind_of(body):
-        if kind == "plate":
-            return Plate()
-        if kind == "ring":
-            return Ring(2.0 * radius)
-        return Bushing(problem.pair.plate if not problem.pair.plate.is_rigid else MATERIALS["steel"], 1.25 * radius)
-    values = {name: changes[name] for name in ("outer_radius", "support", "interference") if name in changes}
-    if isinstance(body, Plate):
-        if values:
-            raise InputError(min(values), "an infinite plate has no outer radius, support or interference")
-        return body
-    if isinstance(body, Bushing) and changes.keys() & set(_names_of_material("bush")):
-        values["material"] = _changed_material(body.material, "bush", changes)
-    wrong = values.keys() - vars(body).keys()
-    if wrong:
-        raise InputError(min(wrong), f"is no field of a {PLATES[kind]}")
-    return replace(body, **values)
+def _changed_plate(problem: Problem, changes: Mapping[str, Any]) -> PlateBody:
+    body = problem.plate_body
+    values = {name: changes[name] for name in ("plate_body", *PLATE_CONTROLS) if name in changes}
+    if body.bush is not None and changes.keys() & set(_names_of_material("bush")):
+        values["material"] = _changed_material(body.bush.material, "bush", changes)
+    return changed_plate(body, values, problem.hole_radius, problem.pair.plate)
 
 
 def vector_axes(problem: Problem, scales: Scales) -> list[dict[str, Any]]:

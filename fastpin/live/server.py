@@ -32,16 +32,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 from fastpin.errors import FastpinError, InputError
 from fastpin.live.contact import LiveContact
 from fastpin.live.page import live_page, page_files, recorded_page
-from fastpin.live.protocol import (
-    ALONE,
-    MOST_A_SECOND,
-    MOST_BYTES,
-    MOST_WAITING,
-    Limits,
-    Message,
-    read_message,
-    refusal,
-)
+from fastpin.live.protocol import ALONE, MOST_A_SECOND, MOST_BYTES, MOST_WAITING, Limits, Message, read_message, refusal
 from fastpin.model.checks import any_text, as_toml
 from fastpin.version import __version__
 

@@ -1,11 +1,5 @@
-from .bodies import Bushing as Bushing
-from .bodies import Disk as Disk
-from .bodies import Plate as Plate
-from .bodies import Ring as Ring
-from .bodies import Tube as Tube
 from .case import About as About
 from .case import Case as Case
-from .compliance import Compliance as Compliance
 from .fatigue import FatigueConstants as FatigueConstants
 from .grid import Grid as Grid
 from .history import LoadHistory as LoadHistory

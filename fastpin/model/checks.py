@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+MOST_PARAMETER = 1e50
+"""Largest load parameter of a dimensionless problem. A larger clearance could only mean a wrong unit."""
+
 LONGEST_TEXT = 60
 """Most characters of a value that a message repeats."""
 

@@ -20,11 +20,11 @@ from contextvars import ContextVar
 import numpy as np
 
 from fastpin.errors import InputWarning
-from fastpin.model.bodies import Bushing
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND
 from fastpin.model.materials import Material
 from fastpin.model.options import SolveOptions
+from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
 
@@ -111,7 +111,7 @@ def doubts(
 ) -> list[InputWarning]:
     """Return a warning for each doubtful value of a problem, its loads and the options of the solver."""
     found, has_units = [*_of_contact(problem)], _has_units(problem)
-    for name, material in _materials(problem):
+    for name, material in problem.joint.materials.items():
         found += _of_material(name, material, has_units)
     if options is not None and options.arc is not None:
         angle = max(options.arc, key=abs)
@@ -153,7 +153,7 @@ def pressure_doubts(problem: Problem, history: LoadHistory, pressures: Iterable[
                 f"contact strains of about {strain:.2g} are beyond linear elasticity; are all values in SI units?",
             )
         )
-    for name, material in (("pin", problem.pair.pin), (_edge(problem), problem.surfaces.plate)):
+    for name, material in (("pin", problem.pair.pin), (owner_of(problem, "plate"), problem.surfaces.plate)):
         strength = material.known_yield_strength
         if strength is not None and peak > strength >= LEAST_STRENGTH * material.E:
             found.append(
@@ -177,7 +177,7 @@ def yield_doubt(problem: Problem, edge: str, stress: float, where: str) -> Input
     `where` tells the angle and the load, for example "before any load".
     """
     name, words = EDGES[edge]
-    material = dict(_materials(problem))[name]
+    material = problem.joint.materials[name]
     strength = material.known_yield_strength
     if strength is None or not stress > strength >= LEAST_STRENGTH * material.E:
         return None
@@ -221,19 +221,8 @@ def are_given() -> bool:
 
 def _has_units(problem: Problem) -> bool:
     """Whether a problem is given in units, and not in parts of its own radius or modulus."""
-    own = [problem.hole_radius, *(material.E for _, material in _materials(problem))]
+    own = [problem.hole_radius, *(material.E for _, material in problem.joint.materials.items())]
     return not problem.dimensionless and 1.0 not in own
-
-
-def _materials(problem: Problem) -> Iterator[tuple[str, Material]]:
-    yield "pin", problem.pair.pin
-    yield "plate", problem.pair.plate
-    if isinstance(problem.plate_body, Bushing):
-        yield "bush", problem.plate_body.material
-
-
-def _edge(problem: Problem) -> str:
-    return "bush" if isinstance(problem.plate_body, Bushing) else "plate"
 
 
 def _short(value: float) -> str:
@@ -301,8 +290,7 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
     radius, clearance, moduli = problem.hole_radius, problem.clearance, _moduli(problem)
     if radius > LARGEST_HOLE and all(modulus >= STIFF for _, modulus in moduli):
         yield InputWarning(
-            "hole_radius",
-            f"{_short(radius)} m is larger than any pin; lengths are in m; {_meant(radius, 'mm', 1e-3)}",
+            "hole_radius", f"{_short(radius)} m is larger than any pin; lengths are in m; {_meant(radius, 'mm', 1e-3)}"
         )
     if problem.thickness is not None and problem.thickness > THICKEST * radius:
         yield InputWarning(
@@ -314,8 +302,8 @@ def _of_sizes(problem: Problem) -> Iterator[InputWarning]:
             "clearance",
             f"the interference is {-100.0 * clearance / radius:.3g} % of the hole radius; metals yield at 0.5 %",
         )
-    body = problem.plate_body
-    if isinstance(body, Bushing) and body.interference > TIGHTEST * body.outer_radius:
+    body = problem.plate_body.bush
+    if body is not None and body.interference > TIGHTEST * body.outer_radius:
         yield InputWarning(
             "interference",
             f"{_short(body.interference)} m is {100.0 * body.interference / body.outer_radius:.3g} % of the outer "
@@ -343,7 +331,7 @@ def _of_moduli(problem: Problem) -> Iterator[InputWarning]:
 
 def _moduli(problem: Problem) -> list[tuple[str, float]]:
     """The name and modulus of each body that is not rigid. There is at least one."""
-    return [(name, material.E) for name, material in _materials(problem) if not material.is_rigid]
+    return [(name, material.E) for name, material in problem.joint.materials.items() if not material.is_rigid]
 
 
 _modulus = operator.itemgetter(1)
@@ -351,10 +339,6 @@ _modulus = operator.itemgetter(1)
 
 def _softest(problem: Problem) -> tuple[str, float]:
     return min(_moduli(problem), key=_modulus)
-
-
-def _stiffest(problem: Problem) -> tuple[str, float]:
-    return max(_moduli(problem), key=_modulus)
 
 
 def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:
@@ -367,7 +351,7 @@ def _of_loads(problem: Problem, history: LoadHistory) -> Iterator[InputWarning]:
     name, soft = max(strains, key=lambda name: strains[name]), _softest(problem)
     if strains[name] > MOST_STRAIN:
         yield _too_large(problem, name, largest[name], strains[name])
-    elif strains[name] < LEAST_STRAIN and _stiffest(problem)[1] > STIFFEST:
+    elif strains[name] < LEAST_STRAIN and max(_moduli(problem), key=_modulus)[1] > STIFFEST:
         yield InputWarning(
             "E", f"{_short(soft[1])} Pa of the {soft[0]} is stiffer than diamond; moduli are in Pa: 69 GPa is 69e9"
         )

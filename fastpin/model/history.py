@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.bodies import Ring
 from fastpin.model.checks import (
     as_toml,
     file_path,
@@ -30,7 +29,6 @@ from fastpin.model.checks import (
     true_or_false,
     whole_number,
 )
-from fastpin.model.compliance import Compliance
 from fastpin.model.csv_columns import ColumnChoice, column_choices
 from fastpin.model.history_csv import read_corners
 from fastpin.model.load_units import Basis
@@ -100,7 +98,11 @@ class Block:
         rows, cycles = len(self.given), len(self.lengths)
         if self.given.shape != (rows, len(LOADS)) or not self.given.dtype == float or np.isinf(self.given).any():
             raise InputError("given", f"must be finite numbers or NaN, shape (corners, {len(LOADS)})")
-        if self.ends.shape != (rows,) or self.ends.dtype.kind != "i" or not _lie_within(self.ends, 0, cycles):
+        if (
+            self.ends.shape != (rows,)
+            or self.ends.dtype.kind != "i"
+            or (rows and not 0 <= self.ends.min() <= self.ends.max() <= cycles)
+        ):
             raise InputError("ends", f"must be {rows} whole numbers from 0 to {cycles}, the number of inner cycles")
         whole_number("count", self.count, 1)
         whole_number("size", self.size, 0)
@@ -525,7 +527,9 @@ def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
     for name, value in largest.items():
         most = MOST_LOAD * natural[LOAD_KIND[name]]
         number(name, value, -most, most)
-    _check_remote(problem, largest)
+    for name in (LOADS[place] for place in REMOTE):
+        if largest.get(name, 0.0) != 0.0:
+            problem.plate_body.lug.check_remote(name)
     if problem.pin_load == "body" and largest.get("M", 0.0) != 0.0:
         raise InputError(
             "M",
@@ -548,24 +552,6 @@ def check_largest(problem: Problem, largest: Mapping[str, float]) -> None:
         raise InputError(displacement, words)
 
 
-def _check_remote(problem: Problem, largest: Mapping[str, float]) -> None:
-    """Raise :class:`InputError` if a remote stress other than 0 can't act on the plate's body.
-
-    `largest` has the largest value of every load that is given.
-    """
-    body = problem.joint.lug
-    for name in (LOADS[place] for place in REMOTE):
-        if largest.get(name, 0.0) == 0.0:
-            continue
-        if isinstance(body, Ring) and body.held:
-            raise InputError(
-                name, 'a held rim leaves no remote stress; leave it out, or choose another support, such as "uniform"'
-            )
-        if isinstance(body, Compliance) and name not in body.columns:
-            known = ", ".join(body.columns) or "none"
-            raise InputError(name, f"the compliance of the plate has no column of this load; its columns are: {known}")
-
-
 def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | None) -> np.ndarray:
     first = np.zeros(len(LOADS)) if initial is None else number_array("initial", initial)
     if first.shape != (len(LOADS),):
@@ -579,10 +565,6 @@ def _filled(parts: list[np.ndarray], initial: Sequence[float] | np.ndarray | Non
 
 def _times(block: Block, count: int) -> np.ndarray:
     return block.given if count == 1 else np.tile(block.given, (count, 1))
-
-
-def _lie_within(values: np.ndarray, least: int, most: int) -> bool:
-    return not values.size or (values.min() >= least and values.max() <= most)
 
 
 def _plain(given: np.ndarray) -> Block:

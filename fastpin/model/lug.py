@@ -13,19 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
+from fastpin.bodies.compliance import COLUMNS
 from fastpin.errors import InputError
-from fastpin.model.checks import (
-    as_toml,
-    choice,
-    instances,
-    items,
-    number,
-    numbers,
-    point,
-    positive,
-    string,
-)
-from fastpin.model.compliance import COLUMNS
+from fastpin.model.checks import as_toml, choice, instances, items, number, numbers, point, positive, string
 from fastpin.model.materials import PLANES, Material, Plane
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS
 from fastpin.model.read_only import ReadOnlyDict

@@ -27,6 +27,9 @@ from fastpin.model.synonyms import explains_keywords
 Plane = Literal["strain", "stress"]
 """Plane strain or plane stress, for type checkers."""
 
+MATERIAL_KEYS = ("material", "E", "nu", "rigid", "fatigue", "yield_strength")
+"""Keys of the material of a body in case files."""
+
 PLANES = ("strain", "stress")
 """Words for plane strain and plane stress."""
 

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.checks import choice, in_one_shape, instance, numbers
-from fastpin.model.compliance import Compliance
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.model.read_only import ReadOnly
@@ -123,14 +121,14 @@ class Points(ReadOnly):
             if far is not None and np.any(depth > wall + ROUNDING * max(1.0, wall)):
                 rim = "at least the bore" if body == "pin" else "at most the outer"
                 raise InputError("radius", f"must be {rim} radius of {far * radius:g} in the {body}")
-        if body == "plate" and isinstance(problem.plate_body, Compliance) and np.any(depth > 0.0):
+        if body == "plate" and problem.plate_body.edge_only and np.any(depth > 0.0):
             raise InputError("points", "a compliance gives the stress on the edge of the hole only")
         return np.minimum(depth, wall)
 
 
 def bodies_of(problem: Problem) -> tuple[Body, ...]:
     """The bodies of :data:`BODIES` that a problem has, from the hole outwards, then the pin."""
-    return ("plate", "seat", "pin") if isinstance(problem.plate_body, Bushing) else ("plate", "pin")
+    return ("plate", "pin") if problem.joint.bush is None else ("plate", "seat", "pin")
 
 
 def material_of(problem: Problem, body: Body) -> Material:
@@ -150,7 +148,7 @@ def material_of(problem: Problem, body: Body) -> Material:
 
 def owner_of(problem: Problem, body: Body) -> str:
     """The word for the body that the material of :func:`material_of` belongs to: "pin", "plate" or "bush"."""
-    if body == "plate" and isinstance(problem.plate_body, Bushing):
+    if body == "plate" and problem.joint.bush is not None:
         return "bush"
     return "plate" if body == "seat" else body
 
@@ -168,6 +166,6 @@ def near_rim(problem: Problem, body: Body) -> float:
 def far_rim(problem: Problem, body: Body) -> float | None:
     """Radius of a body's other rim over the hole's radius; 0 for a solid pin, None for a plate without a rim."""
     if body == "pin":
-        return problem.pin_body.bore_radius / problem.hole_radius if isinstance(problem.pin_body, Tube) else 0.0
-    lug = problem.joint.lug
-    return lug.outer_radius / problem.hole_radius if isinstance(lug, Ring) else None
+        return problem.pin_body.bore_radius / problem.hole_radius
+    outer = problem.plate_body.lug.outer_radius
+    return outer / problem.hole_radius if math.isfinite(outer) else None

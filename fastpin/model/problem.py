@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
+from fastpin.bodies.body import BodyBase, PinBody, PinLoad, PlateBody
+from fastpin.bodies.joint import Joint, check_bodies, without_units
+from fastpin.bodies.kinds import INFINITE_PLATE, SOLID_PIN
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Disk, PinBody, Plate, PlateBody, Ring, Tube, check_pin_body, check_plate_body
-from fastpin.model.checks import as_toml, choice, instance, not_negative, number, positive, true_or_false
-from fastpin.model.compliance import Compliance
-from fastpin.model.joint import Joint, PinLoad
-from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair, check_moduli
+from fastpin.model.checks import (
+    MOST_PARAMETER,
+    as_toml,
+    choice,
+    instance,
+    not_negative,
+    number,
+    positive,
+    true_or_false,
+)
+from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 from fastpin.model.synonyms import explains_keywords
 
 Rotation = Literal["free", "fixed", "spring"]
@@ -20,9 +29,6 @@ Rotation = Literal["free", "fixed", "spring"]
 
 LEAST_RADIUS, MOST_RADIUS = 1e-30, 1e30
 """Limits of the hole radius, m. Squares of dimensional results are then still numbers, in any units."""
-
-MOST_PARAMETER = 1e50
-"""Largest load parameter of a dimensionless problem. A larger clearance could only mean a wrong unit."""
 
 MOST_FRICTION = 1e6
 """Largest coefficient of friction. The pin sticks wherever it touches. Beyond, rounding makes it slip."""
@@ -53,7 +59,7 @@ class Problem:
     Parameters
     ----------
     pair : MaterialPair
-        Materials of pin and plate. The material of a bush stands in the :class:`fastpin.model.Bushing`.
+        Materials of pin and plate. The material of a bush stands in the :class:`fastpin.bodies.Bushing`.
     hole_radius : float
         R, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`.
     clearance : float
@@ -62,7 +68,7 @@ class Problem:
         Coefficient of friction, 0 to :data:`MOST_FRICTION`.
     pin_load : {"centre", "body"}
         The load of a solid pin acts at its centre, or as a uniform body force (section 4 of the paper). The load of a
-        hollow pin is a field of its :class:`fastpin.model.Tube`.
+        hollow pin is a field of its :class:`fastpin.bodies.Tube`.
     rotation : {"free", "fixed", "spring"}
         A free pin carries the moment M (0 unless given). A fixed pin has a prescribed rotation (0 unless given). A
         spring holds the pin at its hub; the load ``rotation`` then turns the far end of the spring. A body-loaded pin
@@ -90,10 +96,10 @@ class Problem:
         :data:`MOST_GAUGE` R. Only with a prescribed displacement. Far away the plate's displacement under a force grows
         like the logarithm of the distance. So a displacement relative to the plate needs a radius. The default of a
         ring, also round a bush, is its outer rim.
-    pin_body : Disk or Tube
-        A solid or a hollow pin.
-    plate_body : Plate, Ring, Bushing or Compliance
-        An infinite plate, a ring lug, a bush in either of them, or any finite plate.
+    pin_body : PinBody
+        A solid or a hollow pin; a class of :mod:`fastpin.bodies`.
+    plate_body : PlateBody
+        An infinite plate, a ring lug, a bush in either of them, or any finite plate; a class of :mod:`fastpin.bodies`.
     thickness : float, optional
         Thickness of pin and plate, m. It changes no state. Printed texts then have forces in N, moments in N m and
         energies in J. Loads and results in Python and HDF5 stay per thickness:
@@ -117,8 +123,8 @@ class Problem:
     hub_stiffness: float | None = field(default=None, kw_only=True)
     drive: DriveKind = field(default="force", kw_only=True)
     gauge_radius: float | None = field(default=None, kw_only=True)
-    pin_body: PinBody = field(default=Disk(), kw_only=True)
-    plate_body: PlateBody = field(default=Plate(), kw_only=True)
+    pin_body: PinBody = field(default=SOLID_PIN, kw_only=True)
+    plate_body: PlateBody = field(default=INFINITE_PLATE, kw_only=True)
     thickness: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
@@ -136,7 +142,7 @@ class Problem:
             raise InputError("clearance", f"{limits}, not {clearance:g}")
         friction = not_negative("friction", self.friction)
         number("friction", friction, 0.0, MOST_FRICTION)
-        self._check_bodies(radius)
+        check_bodies(self.pair, radius, self.pin_body, self.plate_body, self.pin_load, self.dimensionless)
         object.__setattr__(self, "hole_radius", radius)
         if clearance + self.joint.press_fit[1] < 0.0 and self.is_incompressible:
             incompressible = "a pin with nu = 0.5 in a rigid plate keeps its area"
@@ -166,36 +172,6 @@ class Problem:
         object.__setattr__(self, "friction", friction)
         object.__setattr__(self, "dimensionless", bool(self.dimensionless))
 
-    def _check_bodies(self, radius: float) -> None:
-        """Check pin and plate body. `radius` is the radius of the hole."""
-        check_pin_body(self.pin_body, radius)
-        check_plate_body(self.plate_body, radius, self.dimensionless)
-        if isinstance(self.pin_body, Tube) and self.pin_load == "body":
-            raise InputError(
-                "pin_load", 'a hollow pin has its load in its own body, load = "body" of the tube; leave pin_load out'
-            )
-        if isinstance(self.plate_body, Bushing):
-            check_bush(self.pair, self.plate_body)
-            number("interference", self.plate_body.interference, 0.0, MOST_PARAMETER)
-        elif isinstance(self.plate_body, Compliance):
-            self._check_compliance(self.plate_body, radius)
-
-    def _check_compliance(self, body: Compliance, radius: float) -> None:
-        """Check that a compliance belongs to the plate's material and to the hole."""
-        given = body.nu, body.plane
-        wanted = self.pair.plate.nu, self.pair.plane
-        if not math.isclose(given[0], wanted[0], abs_tol=1e-9) or given[1] != wanted[1]:
-            raise InputError(
-                "plate_body",
-                f"the compliance was made for nu = {given[0]:g}, plane {given[1]}; the plate has nu = {wanted[0]:g}, "
-                f"plane {wanted[1]}",
-            )
-        if not self.dimensionless and not body.scaled_to(radius):
-            raise InputError(
-                "plate_body",
-                f"the compliance was made for a hole of radius {body.hole_radius:g}; the hole radius is {radius:g}",
-            )
-
     def _check_hub(self, radius: float) -> None:
         """Check the radius and the stiffness of the hub. `radius` is the radius of the hole."""
         if self.hub_radius is not None:
@@ -207,9 +183,7 @@ class Problem:
             if not LEAST_HUB * radius <= (1.0 + 1e-9) * hub or hub > radius:  # LEAST_HUB * radius is rounded
                 limits = f"{LEAST_HUB * radius:g} and the hole radius {radius:g}"
                 raise InputError("hub_radius", f"must lie between {limits}, not {hub:g}")
-            if isinstance(self.pin_body, Tube) and hub < (1.0 - 1e-9) * self.pin_body.bore_radius:
-                bore = self.pin_body.bore_radius
-                raise InputError("hub_radius", f"must be at least the bore radius {bore:g}, not {hub:g}")
+            self.pin_body.check_hub(hub)
             object.__setattr__(self, "hub_radius", hub)
         if self.hub_stiffness is not None:
             stiffness = number("hub_stiffness", self.hub_stiffness)
@@ -232,18 +206,9 @@ class Problem:
             if gauge < radius:
                 raise InputError("gauge_radius", f"must be at least the hole radius {radius:g}, not {gauge:g}")
             number("gauge_radius", gauge, radius, MOST_GAUGE * radius)
-            self._check_gauge(gauge)
+            if why := self.plate_body.lug.without_gauge(gauge):
+                raise InputError("gauge_radius", why)
             object.__setattr__(self, "gauge_radius", gauge)
-
-    def _check_gauge(self, gauge: float) -> None:
-        """Check that the gauge circle lies in the plate's body."""
-        if isinstance(self.plate_body, Compliance):
-            raise InputError("gauge_radius", "a compliance knows the edge of the hole only: leave the gauge out")
-        body = self.joint.lug
-        if isinstance(body, Plate) and body.reaction is not None:
-            raise InputError("gauge_radius", "a plate with a reaction at a point has no gauge circle: leave it out")
-        if isinstance(body, Ring) and gauge > (1.0 + 1e-9) * body.outer_radius:
-            raise InputError("gauge_radius", f"must be at most the outer radius {body.outer_radius:g}, not {gauge:g}")
 
     def __repr__(self) -> str:
         size = f"load parameter {self.clearance:.6g} (R = F = beta* = 1)"
@@ -254,8 +219,8 @@ class Problem:
         driven = "" if self.drive == "force" else f", driven by {self.drive.replace('both', 'ux and uy')}"
         driven += "" if self.gauge_radius is None else f" over radius {self.gauge_radius:.6g}"
         load = {"centre": "load at the centre", "body": "body load"}[self.pin_load]
-        load = load if isinstance(self.pin_body, Disk) else repr(self.pin_body)
-        plate = "" if self.plate_body == Plate() else f"\n {self.plate_body!r}"
+        load = load if self.pin_body == SOLID_PIN else repr(self.pin_body)
+        plate = "" if self.plate_body == INFINITE_PLATE else f"\n {self.plate_body!r}"
         return (
             f"<Problem: {self.pair!r}\n {size}, friction {self.friction:.6g}\n"
             f" {load}, rotation {self.rotation}{hub}{driven}{plate}>"
@@ -275,8 +240,8 @@ class Problem:
         hub_stiffness: float | None = None,
         drive: DriveKind = "force",
         gauge_radius: float | None = None,
-        pin_body: PinBody = Disk(),  # noqa: B008 - frozen
-        plate_body: PlateBody = Plate(),  # noqa: B008 - frozen
+        pin_body: PinBody = SOLID_PIN,
+        plate_body: PlateBody = INFINITE_PLATE,
     ) -> Problem:
         """The dimensionless problem of the paper: R = 1, F = 1, beta* = 1.
 
@@ -287,13 +252,7 @@ class Problem:
         """
         value = number("load_parameter", load_parameter, -MOST_PARAMETER, MOST_PARAMETER)
         instance("pair", pair, MaterialPair, "a MaterialPair")
-        if isinstance(plate_body, Bushing):
-            check_bush(pair, plate_body)
-            factor = MaterialPair(pair.pin, plate_body.material, pair.plane).beta_star
-            plate_body = replace(plate_body, material=plate_body.material.scaled(factor))
-            pair = pair.scaled(pair.beta_star / factor)
-        else:
-            pair = pair.dimensionless
+        plate_body, pair = without_units(pair, plate_body)
         return cls(
             pair, 1.0, value, friction, pin_load, rotation, hub_radius, True,
             hub_stiffness=hub_stiffness, drive=drive, gauge_radius=gauge_radius, pin_body=pin_body,
@@ -313,7 +272,13 @@ class Problem:
     @property
     def has_bodies(self) -> bool:
         """Whether the pin is hollow or the plate is no infinite plate."""
-        return self.pin_body != Disk() or self.plate_body != Plate()
+        return bool(self.given_bodies)
+
+    @property
+    def given_bodies(self) -> dict[str, BodyBase]:
+        """The bodies by their fields, without a solid pin and an infinite plate."""
+        bodies = {"pin_body": self.pin_body, "plate_body": self.plate_body}
+        return {name: body for name, body in bodies.items() if body not in (SOLID_PIN, INFINITE_PLATE)}
 
     @property
     def pin_radius(self) -> float:
@@ -389,10 +354,8 @@ class Problem:
         It is zero for the paper's datum of a solid pin, and [R^2/r^2 - (kappa_I + 1)] / (4 pi G_I beta*) for a hub of
         radius r. The hub of a hollow pin is its bore by default. A spring of stiffness k adds R^2 / (k beta*).
         """
-        compliance, hub = 0.0, self.hub_radius
-        if hub is None and isinstance(self.pin_body, Tube):
-            hub = self.pin_body.bore_radius
-        if hub is not None and self.held:
+        compliance, hub = 0.0, self.hub_radius or self.pin_body.bore_radius
+        if hub and self.held:
             ratio = (self.hole_radius / hub) ** 2
             stiffness = 4.0 * math.pi * self.surfaces.beta_star
             compliance = (ratio - (self.pair.pin_kolosov + 1.0)) * self.pair.pin_compliance / stiffness
@@ -409,8 +372,3 @@ class Problem:
 def checked_thickness(field: str, value: object) -> float:
     """Check a thickness, m, from :data:`LEAST_RADIUS` to :data:`MOST_RADIUS`, and return it as a float."""
     return number(field, positive(field, value), LEAST_RADIUS, MOST_RADIUS)
-
-
-def check_bush(pair: MaterialPair, bush: Bushing) -> None:
-    """Raise :class:`InputError` if the moduli of pin and bush are too different for one contact."""
-    check_moduli("material", "pin and bush", pair.pin, bush.material)

@@ -18,7 +18,7 @@ from fastpin.model.points import bodies_of
 from fastpin.model.units import named_loads
 from fastpin.pages.album import Album
 from fastpin.pages.content import Picture
-from fastpin.report.case import edge_body, hole_body
+from fastpin.report.case import edge_body
 from fastpin.report.stress import COMPONENTS
 from fastpin.report.sweep import Chart
 from fastpin.solver.result import Result
@@ -41,7 +41,7 @@ class Words(NamedTuple):
 def sketch(album: Album, case: Case) -> Picture:
     """Draw the joint with the ranges of its loads."""
     words = Words(
-        f"Sketch of pin and {hole_body(case.problem)} with arrows for the loads.",
+        f"Sketch of pin and {edge_body(case.problem, 'plate')} with arrows for the loads.",
         "The joint to scale, with an exaggerated clearance, and its loads with their ranges over the history.",
     )
     return album.picture(lambda path: figures.plot_sketch(case, path), *words)

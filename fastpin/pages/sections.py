@@ -11,7 +11,6 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.kernels.status import SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import interval_from_bottom
-from fastpin.model.bodies import Bushing
 from fastpin.model.checks import as_toml
 from fastpin.model.doubts import doubts, pressure_doubts
 from fastpin.model.loads import LOAD, named_load
@@ -183,9 +182,7 @@ _IN_RESULTS = ("nodes", "method", "error_bars")
 def materials(page: PageParts) -> PageSection:
     """Return the constants of all materials."""
     problem = page.source.case.problem
-    found = {"pin": problem.pair.pin, "plate": problem.pair.plate}
-    if isinstance(problem.plate_body, Bushing):
-        found["bush"] = problem.plate_body.material
+    found = problem.joint.materials
     modulus = Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL
     columns: list[Column] = [("constant", "", _CONSTANTS)]
     columns += [(name, "", _constants(material, modulus)) for name, material in found.items()]

@@ -19,7 +19,7 @@ from fastpin.figures.states import MOST_JOINED, DrawnStates
 from fastpin.model.case import Case
 from fastpin.model.loads import LOADS
 from fastpin.model.options import SolveOptions
-from fastpin.report.case import hole_body
+from fastpin.report.case import edge_body
 from fastpin.report.cycle import MOST_STOPS, fatigue_bodies
 from fastpin.report.states import stored_rows
 from fastpin.solver.result import Result
@@ -249,7 +249,7 @@ class Source:
     @cached_property
     def fatigue(self) -> list[Fatigue] | str:
         """Fatigue of plate and bush over the last cycle; or a sentence that says why it is not known."""
-        body = hole_body(self.case.problem)
+        body = edge_body(self.case.problem, "plate")
         bodies = fatigue_bodies(self.case.problem, CRITERION)
         if self.case.problem.surfaces.plate.is_rigid:
             return f"The {body} is rigid: it has no stress and no fatigue."

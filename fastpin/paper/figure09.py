@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
-from fastpin.model.joint import PinLoad
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import NAMES, Panel, chosen, pushed, traction_figure
 from fastpin.report.curves import Curve
@@ -29,10 +29,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     cases = [(load_parameter, pin_load) for load_parameter in LOAD_PARAMETERS for pin_load in PIN_LOADS]
     return [
         traction_curve(
-            pushed(PAIR, load_parameter, FRICTION, nodes, pin_load),
-            L_p=load_parameter,
-            mu=FRICTION,
-            pin_load=pin_load,
+            pushed(PAIR, load_parameter, FRICTION, nodes, pin_load), L_p=load_parameter, mu=FRICTION, pin_load=pin_load
         )
         for load_parameter, pin_load in steps(cases, progress)
     ]

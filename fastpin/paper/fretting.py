@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.model.grid import Grid
-from fastpin.model.joint import PinLoad
 from fastpin.model.problem import Problem, Rotation
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.tractions import NAMES, PAIRS, Panel, chosen, traction_figure

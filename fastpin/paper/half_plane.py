@@ -33,8 +33,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import panels
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps

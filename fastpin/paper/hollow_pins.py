@@ -10,8 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.bodies import Disk, Tube
+from fastpin.bodies.tube import TubeLoad
 from fastpin.figures.style import Line, add_legend, panels
-from fastpin.model.bodies import Disk, PinBody, Tube, TubeLoad
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.legends import grey, head, marked
@@ -23,10 +24,7 @@ TITLE = "Hollow pins: peak pressure and half-angle over the bore, by friction an
 LEAST_NODES = 101
 BORES = (0.0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, *(0.02 * k for k in range(29, 37)), 0.75, 0.8, 0.85, 0.9)
 FRICTION = (0.0, 0.3)
-LOADS: dict[TubeLoad, str] = {
-    "uniform": "uniform traction on a free bore",
-    "held": "rigid core in the bore",
-}
+LOADS: dict[TubeLoad, str] = {"uniform": "uniform traction on a free bore", "held": "rigid core in the bore"}
 
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
@@ -34,7 +32,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     cases = [(load, friction, bore) for load in LOADS for friction in FRICTION for bore in BORES]
     rows: dict[tuple[str, float], list[tuple[float, float, float]]] = {}
     for load, friction, bore in steps(cases, progress):
-        body: PinBody = Tube(bore, load) if bore else Disk()
+        body: Disk | Tube = Tube(bore, load) if bore else Disk()
         problem = Problem.from_load_parameter(PAIR, LOAD_PARAMETER, friction, pin_body=body)
         state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
         half = 0.5 * sum(stop - start for start, stop in state.contact)

@@ -16,10 +16,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import add_legend, line, panels
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
-from fastpin.model.joint import PinLoad
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.legends import head

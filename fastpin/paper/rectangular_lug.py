@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.bodies import Compliance, Plate
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.figures.style import Line, add_legend, angle_axis, line, panels
-from fastpin.model.bodies import Plate, PlateBody
-from fastpin.model.compliance import Compliance
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
@@ -52,7 +51,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     curves: list[Curve] = []
     peaks: dict[float, list[tuple[float, float]]] = {}
     for width in steps([math.inf, *HALF_WIDTHS], progress):
-        body: PlateBody = Plate() if math.isinf(width) else lug_of(width)
+        body: Plate | Compliance = Plate() if math.isinf(width) else lug_of(width)
         for friction in FRICTION:
             problem = Problem.from_load_parameter(PAIR, LOAD_PARAMETER, friction, "body", plate_body=body)
             state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve

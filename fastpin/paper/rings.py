@@ -11,8 +11,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from fastpin.bodies import Plate, Ring
+from fastpin.bodies.ring import Support
 from fastpin.figures.style import Line, line
-from fastpin.model.bodies import Plate, PlateBody, Ring, Support
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve
@@ -33,7 +34,7 @@ INFINITE = "infinite plate"
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions at P = F, one curve for the infinite plate, and one for each support and outer radius."""
-    cases: list[tuple[dict[str, Any], PlateBody]] = [({"support": INFINITE}, Plate())]
+    cases: list[tuple[dict[str, Any], Plate | Ring]] = [({"support": INFINITE}, Plate())]
     for support in SUPPORTS:
         for outer in OUTER_RADII:
             cases.append(({"support": support, "outer_radius": outer}, Ring(outer, support)))

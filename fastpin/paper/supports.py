@@ -11,8 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from fastpin.bodies import Plate, Ring
+from fastpin.bodies.ring import SUPPORTS
 from fastpin.figures.style import Line, add_legend, line, panels
-from fastpin.model.bodies import SUPPORTS, Plate, PlateBody, Ring
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.paper.legends import head
@@ -57,7 +58,7 @@ NAMES = {
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """One curve over the outer radius for each support, and one for the infinite plate."""
-    rings: list[tuple[str, float, PlateBody]] = [
+    rings: list[tuple[str, float, Plate | Ring]] = [
         (support, outer, Ring(outer, support)) for support in SUPPORTS for outer in OUTER_RADII
     ]
     rows: dict[str, list[tuple[float, float, float]]] = {}

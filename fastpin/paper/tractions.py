@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
+from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps, traction_curve

@@ -10,7 +10,6 @@ import numpy as np
 from fastpin.elasticity.stress import press_fit_hoop
 from fastpin.elasticity.tractions import RefinedTractions
 from fastpin.model.angles import angle_between, near_bottom
-from fastpin.model.bodies import Ring
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, near_rim
 from fastpin.model.problem import Problem
@@ -75,15 +74,10 @@ def hoop_peak(
         bypass = open_hole_hoop(problem, np.array([sxx, syy, sxy]), angle, body)
         press_fit = press_fit_hoop(problem, body)
     place = angle if closed.any() or value != 0.0 else math.nan
-    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / _net_section(problem, body))
-
-
-def _net_section(problem: Problem, body: Body) -> float:
-    """Width W - D of the net section beside the hole of a ring, m; infinite for any other plate, a bush, the pin."""
-    lug, own = problem.joint.lug, "seat" if problem.joint.bush else "plate"
-    if body != own or not isinstance(lug, Ring):
-        return math.inf
-    return 2.0 * (lug.outer_radius - near_rim(problem, body) * problem.hole_radius)
+    # the width W - D of the net section beside the hole of a ring; infinite for any other plate, a bush, the pin
+    is_own, edge = body == ("seat" if problem.joint.bush else "plate"), near_rim(problem, body) * problem.hole_radius
+    section = 2.0 * (problem.plate_body.lug.outer_radius - edge) if is_own else math.inf
+    return HoopPeak(value, place, resolved, bearing, gross, bypass, press_fit, force / section)
 
 
 def _highest(hoop: Hoop, angles: np.ndarray, top: int) -> tuple[float, float]:

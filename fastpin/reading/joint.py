@@ -7,13 +7,10 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from fastpin.elasticity.bodies import basis, translation_rows
+from fastpin.bodies.compliance import basis
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.checks import number
-from fastpin.model.compliance import Compliance
 from fastpin.model.grid import Grid
-from fastpin.model.loads import LOADS
 from fastpin.model.points import Points
 from fastpin.model.problem import LEAST_HUB, MOST_GAUGE, Problem
 from fastpin.reading.bush import BushFit
@@ -39,38 +36,26 @@ def joint_displacement(
     (cos, sin), (pressure, shear) = grid.trig_moments(), tractions
     moved += unit * own * force
     moved -= unit * coupling * radius * complex(cos @ pressure - sin @ shear, sin @ pressure + cos @ shear)
-    if isinstance(problem.plate_body, Compliance):
-        nodal = basis(problem.plate_body.matrix, grid)[1] @ np.r_[pressure, shear]
-        moved += _over_supports(problem, problem.plate_body, nodal, load)
-    return {"ux": float(moved.real), "uy": float(moved.imag)}
-
-
-def _over_supports(problem: Problem, body: Compliance, tractions: np.ndarray, load: Mapping[str, float]) -> complex:
-    """Mean displacement of the hole over the supports of a compliance, m."""
-    displacement = body.matrix @ tractions
-    for name in set(body.columns) & set(LOADS):
-        displacement = displacement + load[name] * body.columns[name]
-    x, y = (
-        math.sqrt(0.5) * problem.hole_radius * problem.pair.plate_compliance * (translation_rows(body) @ displacement)
+    moved = problem.plate_body.over_supports(
+        moved, problem.joint.hole, lambda matrix: basis(matrix, grid)[1] @ np.r_[pressure, shear], load
     )
-    return complex(x, y)
+    return {"ux": float(moved.real), "uy": float(moved.imag)}
 
 
 def _checked_hub(problem: Problem, hub_radius: float) -> float:
     """A radius in the pin, m."""
-    if isinstance(problem.pin_body, Tube):
-        return number("hub_radius", hub_radius, problem.pin_body.bore_radius, problem.hole_radius)
     if problem.pin_load == "body":
         raise InputError("hub_radius", "the displacement of a body-loaded pin is its mean: leave the hub out")
-    return number("hub_radius", hub_radius, LEAST_HUB * problem.hole_radius, problem.hole_radius)
+    least = problem.pin_body.bore_radius or LEAST_HUB * problem.hole_radius
+    return number("hub_radius", hub_radius, least, problem.hole_radius)
 
 
 def _checked_gauge(problem: Problem, gauge_radius: float) -> float:
     """A radius in the plate, m."""
-    lug = problem.joint.lug
-    if isinstance(lug, Compliance):
-        raise InputError("gauge_radius", "a compliance knows the edge of the hole only: leave the gauge out")
-    most = lug.outer_radius if isinstance(lug, Ring) else MOST_GAUGE * problem.hole_radius
+    lug = problem.plate_body.lug
+    if lug.edge_only:
+        raise InputError("gauge_radius", lug.without_gauge(gauge_radius))
+    most = min(lug.outer_radius, MOST_GAUGE * problem.hole_radius)
     return number("gauge_radius", gauge_radius, problem.hole_radius, most)
 
 
@@ -79,8 +64,8 @@ def bush_fit(problem: Problem, stress_at: Callable[[Points], Stress], friction: 
 
     `stress_at` gives the stress in the plate, with straight lines between the nodes.
     """
-    body = problem.plate_body
-    if not isinstance(body, Bushing):
+    body = problem.plate_body.bush
+    if body is None:
         raise InputError("plate_body", "the plate has no bush: there is no interface")
     chosen = body.friction if friction is None else number("friction", friction, 0.0)
     theta = -0.5 * math.pi + math.pi * (2.0 * np.arange(AROUND) / AROUND - 1.0)

@@ -13,7 +13,6 @@ from fastpin.elasticity.stress import is_beyond_bush, pin_stress, plate_stress, 
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN
-from fastpin.model.bodies import Disk, Plate
 from fastpin.model.checks import instance
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE
@@ -211,13 +210,16 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     instance("points", points, Points, "fastpin.Points")
     material = check_body(problem, body)
     depth, theta = points.depths(problem, body).ravel(), points.theta.ravel()
-    if body == "pin" and problem.pin_load == "centre" and isinstance(problem.pin_body, Disk) and np.any(depth == 1.0):
+    if body == "pin" and problem.pin_load == "centre" and not problem.pin_body.bore_radius and np.any(depth == 1.0):
         raise InputError("points", "the force acts at the centre of the pin: the stress there is infinite")
     ratio: float | np.ndarray = material.nu
     if body == "pin":
         components = pin_stress(problem, tractions, theta, depth)
     else:
-        _check_reaction(problem, theta, near_rim(problem, body) + depth)
+        for place in (point / problem.hole_radius for point in problem.plate_body.lug.force_points):
+            away = np.abs((near_rim(problem, body) + depth) * np.exp(1j * theta) - place)
+            if np.any(away < ROUNDING * abs(place)):
+                raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
         ratio = ratio if body == "seat" else _ratios_in_plate(problem, depth)
         remote = np.array([load.get(LOADS[place], 0.0) for place in REMOTE])
         stress = seat_stress if body == "seat" else plate_stress
@@ -227,15 +229,6 @@ def stress_at(problem: Problem, tractions: Tractions, load: Mapping[str, float],
     if problem.surfaces.plane == "strain":
         axial = (ratio.reshape(points.shape) if isinstance(ratio, np.ndarray) else ratio) * (radial + hoop)
     return Stress(points.theta, radial, hoop, shear, axial)
-
-
-def _check_reaction(problem: Problem, theta: np.ndarray, radius: np.ndarray) -> None:
-    """Refuse points of the plate, at these radii over R, at which a reaction acts."""
-    lug = problem.joint.lug
-    if isinstance(lug, Plate) and lug.reaction is not None:
-        place = complex(*lug.reaction) / problem.hole_radius
-        if np.any(np.abs(radius * np.exp(1j * theta) - place) < ROUNDING * abs(place)):
-            raise InputError("points", "the reaction acts at one of the points: the stress there is infinite")
 
 
 def _ratios_in_plate(problem: Problem, depth: np.ndarray) -> float | np.ndarray:
@@ -259,7 +252,7 @@ def open_hole_hoop(problem: Problem, remote: np.ndarray, angle: float, body: Bod
 
     It is that on the edge of the `body` "plate" or "seat".
     """
-    if isinstance(problem.plate_body, Plate):
+    if problem.plate_body.is_infinite:
         sxx, syy, sxy = (float(value) for value in remote)
         return (sxx + syy) - 2.0 * ((sxx - syy) * math.cos(2.0 * angle) + 2.0 * sxy * math.sin(2.0 * angle))
     stress, place = seat_stress if body == "seat" else plate_stress, (np.array([angle]), np.zeros(1))

@@ -7,41 +7,18 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.case import Case
 from fastpin.model.checks import instance
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOAD_KIND, LOADS, named_load
 from fastpin.model.materials import Material
+from fastpin.model.points import owner_of
 from fastpin.model.problem import Problem
-from fastpin.model.units import PASCAL, Unit, acting_loads, units
+from fastpin.model.units import PASCAL, acting_loads, units
 from fastpin.report.table import Column, table, visible_rows
 
 ROUNDING = 1e-9
 """Values below this part of the largest of their kind are rounding, and printed as 0."""
-
-_PIN_LOADS = {"centre": "force at the centre", "body": "uniform body force"}
-"""Words for the load of a solid pin."""
-
-_BORE_LOADS = {
-    "uniform": "uniform traction in the bore",
-    "normal": "normal traction in the bore",
-    "shear": "shear traction in the bore",
-    "held": "force on a rigid core in the bore",
-    "body": "uniform body force",
-}
-"""Words for the load of a hollow pin."""
-
-_SUPPORTS = {
-    "held": "rim clamped",
-    "uniform": "held by a uniform traction on the rim",
-    "normal": "held by normal traction on the rim",
-    "shear": "held by shear traction on the rim",
-    "half": "held by normal pressure on half of the rim",
-    "body": "held by a uniform body force",
-}
-"""Words for the support of a ring."""
 
 
 def describe(case: Case) -> str:
@@ -63,7 +40,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
     Another class than :class:`Case` raises :class:`InputError`.
     """
     instance("case", case, Case, "a Case")
-    problem, options = case.problem, case.options
+    problem, options, count = case.problem, case.options, len(case.history)
     pair, surfaces = problem.pair, problem.surfaces
     alpha, beta = surfaces.dundurs()
     if problem.dimensionless:
@@ -75,9 +52,7 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         length = units(problem)["length"]
         size = f"hole radius {length.text(problem.hole_radius)}, {kind} {length.text(problem.clearance)}"
         size += "" if problem.thickness is None else f", thickness {length.text(problem.thickness)}"
-    pin_load = (
-        _PIN_LOADS[problem.pin_load] if isinstance(problem.pin_body, Disk) else _BORE_LOADS[problem.pin_body.load]
-    )
+    pin_load = problem.pin_body.load_words(problem.pin_load)
     contact = "" if surfaces is pair else "pin and bush: "
     if options.arc is None:
         where = "arc chosen by the solver"
@@ -94,68 +69,28 @@ def case_rows(case: Case) -> list[tuple[str, str]]:
         ("contact", f"{size}, friction {problem.friction:g}"),
         ("loading", f"{pin_load}, rotation {problem.rotation}{_hub(problem)}{_drive(problem)}"),
         ("solver", f"{method}, {options.nodes} nodes, {where}"),
-        ("loads", f"{_corners(len(case.history))} from no load"),
+        ("loads", f"{count:,} corner{'s' * (count != 1)}, reached {'one after the other ' * (count != 1)}from no load"),
     ]
     if options.keep != "all":
         rows.append(("states", f"kept: {options.keep}"))
     return rows
 
 
-def hole_body(problem: Problem) -> str:
-    """Return the word for the body with the hole: bush or plate."""
-    return "bush" if isinstance(problem.plate_body, Bushing) else "plate"
-
-
 def edge_body(problem: Problem, body: str) -> str:
     """Return words for the body whose edge "plate", "seat" or "pin" names: the hole may be in a bush."""
-    return {"plate": hole_body(problem), "seat": "plate at the seat"}.get(body, body)
-
-
-def _corners(count: int) -> str:
-    return "1 corner, reached" if count == 1 else f"{count:,} corners, reached one after the other"
+    return {"plate": owner_of(problem, "plate"), "seat": "plate at the seat"}.get(body, body)
 
 
 def _bodies(problem: Problem) -> list[tuple[str, str]]:
     """Return the rows of the bodies; none for a solid pin in an infinite plate."""
-    length, body, rows = units(problem)["length"], problem.plate_body, []
-    if isinstance(problem.pin_body, Tube):
-        rows.append(("pin body", f"hollow, bore radius {length.text(problem.pin_body.bore_radius)}"))
-    if isinstance(body, Bushing):
-        rows += [("plate body", _plate_body(body.inside, length)), *_bush(problem, body)]
-    elif body != Plate():
-        rows.append(("plate body", _plate_body(body, length)))
-    return rows
-
-
-def _plate_body(body: Plate | Ring | Compliance, length: Unit) -> str:
-    if isinstance(body, Compliance):
-        made = f", {body.made_by}" if body.made_by else ""
-        return (
-            f"finite plate, compliance of {body.order} harmonics{made}, loads: {', '.join(['forces', *body.columns])}"
-        )
-    if isinstance(body, Ring):
-        return f"ring of outer radius {length.text(body.outer_radius)}, {_SUPPORTS[body.support]}"
-    if body.reaction is None:
-        return "infinite plate"
-    x, y = (length.text(value) for value in body.reaction)
-    return f"infinite plate, forces balanced at x = {x}, y = {y}"
-
-
-def _bush(problem: Problem, bush: Bushing) -> list[tuple[str, str]]:
-    """Return the rows of a bush and of its press fit."""
-    unit = units(problem)
-    size = f"outer radius {unit['length'].text(bush.outer_radius)}"
-    grip = "" if bush.friction is None else f", friction {bush.friction:g} in the plate"
-    rows = [("bush", f"{_material(bush.material, problem.dimensionless)}, {size}{grip}")]
-    if bush.interference:
-        rows.append(
-            (
-                "press fit",
-                f"interference {unit['displacement'].text(bush.interference)}, "
-                f"pressure {unit['traction'].text(problem.press_fit_pressure, 4)}, "
-                f"clearance after it {unit['displacement'].text(problem.assembled_clearance)}",
-            )
-        )
+    unit, bush, rows = units(problem), problem.plate_body.bush, []
+    for body in (problem.pin_body, problem.plate_body):
+        rows += body.rows(unit["length"].text, lambda material: _material(material, problem.dimensionless))
+    if bush is not None and bush.interference:
+        words = f"interference {unit['displacement'].text(bush.interference)}"
+        words += f", pressure {unit['traction'].text(problem.press_fit_pressure, 4)}"
+        words += f", clearance after it {unit['displacement'].text(problem.assembled_clearance)}"
+        rows.append(("press fit", words))
     return rows
 
 
@@ -167,7 +102,7 @@ def _hub(problem: Problem) -> str:
     if problem.hub_stiffness is not None:
         spring = f" of stiffness {unit['stiffness'].text(problem.hub_stiffness)}"
     if problem.hub_radius is None:
-        if not isinstance(problem.pin_body, Disk):
+        if problem.pin_body.bore_radius:
             return f"{spring} at the bore"
         if problem.surfaces.pin.is_rigid:
             return spring

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
+from fastpin.bodies.compliance import FORMAT, VERSION
 from fastpin.model.checks import choice
-from fastpin.model.compliance import FORMAT, VERSION
 from fastpin.model.fields import FIELDS
 from fastpin.model.loads import LOADS
 from fastpin.model.options import METHODS, SolveOptions
@@ -107,10 +107,7 @@ def _problem() -> Schema:
 
 def _state() -> Schema:
     interval = _list_of(_NUMBER, 2)
-    slip = {
-        "description": "start and stop, deg, and the sign of the slip",
-        **_list_of(_NUMBER, 3),
-    }
+    slip = {"description": "start and stop, deg, and the sign of the slip", **_list_of(_NUMBER, 3)}
     quantities = {
         name: {"enum": list(REGIMES.values())} if each.classes else _UNKNOWN | {"description": each.kind}
         for name, each in QUANTITIES.items()

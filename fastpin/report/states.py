@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fastpin.model.angles import from_bottom, interval_from_bottom
-from fastpin.model.bodies import Bushing
 from fastpin.model.checks import instance, instances
 from fastpin.model.points import Body, elastic_bodies
 from fastpin.model.problem import Problem
@@ -322,7 +321,7 @@ def bush_line(problem: Problem, states: Sequence[State]) -> str:
 
     `states` are all kept states, or those of their extremes.
     """
-    if not isinstance(problem.plate_body, Bushing) or not any(state.in_contact for state in states):
+    if problem.joint.bush is None or not any(state.in_contact for state in states):
         return ""
     fits = [(state, state.bush_fit()) for state in states]
     state, fit = min(fits, key=lambda pair: pair[1].open_margin)

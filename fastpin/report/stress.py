@@ -10,7 +10,6 @@ import numpy as np
 from fastpin.errors import InputError
 from fastpin.model.angles import from_bottom
 from fastpin.model.checks import choice, number
-from fastpin.model.compliance import Compliance
 from fastpin.model.points import BODIES, ROUNDING, Body, Points, elastic_bodies, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
 from fastpin.model.units import units
@@ -167,7 +166,7 @@ def field_curves(
     unit, radius, curves = units(state.problem), state.problem.hole_radius, []
     choice("body", body, ("plate", "pin", "both"))
     drawn = tuple(each for each in bodies_of(state, body) if each != "seat")  # the plate has it
-    if body == "both" and isinstance(state.problem.plate_body, Compliance):
+    if body == "both" and state.problem.plate_body.edge_only:
         drawn = tuple(each for each in drawn if each == "pin")  # the stress inside the plate is unknown
     theta = -1.5 * math.pi + 2.0 * math.pi * np.arange(2 * fineness + 1) / (2 * fineness)
     for each in drawn:

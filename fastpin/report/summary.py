@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from fastpin.bodies.body import BodyBase
 from fastpin.model.angles import interval_from_bottom
-from fastpin.model.bodies import PinBody, PlateBody, body_document
 from fastpin.model.case import Case
-from fastpin.model.compliance import Compliance
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import Block
 from fastpin.model.loads import LOAD_KIND, LOADS
@@ -31,10 +30,7 @@ from fastpin.version import __version__
 
 
 def document(
-    case: Case,
-    result: Result | None,
-    error: str | None = None,
-    cycle: LoadCycle | None = None,
+    case: Case, result: Result | None, error: str | None = None, cycle: LoadCycle | None = None
 ) -> dict[str, Any]:
     """Return a case and its states as a JSON-ready dict. NaN and infinity become None.
 
@@ -114,11 +110,8 @@ def _material_summary(material: Material) -> dict[str, Any]:
     return known | {"yield_strength": material.yield_strength}
 
 
-def _body_summary(body: PinBody | PlateBody) -> dict[str, Any]:
-    found = body_document(body, _material_summary)
-    if isinstance(body, Compliance):
-        found |= {"order": body.order, "loads": list(body.columns), "made_by": body.made_by}
-    return found
+def _body_summary(body: BodyBase) -> dict[str, Any]:
+    return body.as_json(_material_summary) | body.summary()
 
 
 def _state_summary(state: State) -> dict[str, Any]:

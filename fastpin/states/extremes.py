@@ -14,7 +14,6 @@ from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
-from fastpin.model.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.points import elastic_bodies
 from fastpin.model.problem import Problem
@@ -208,9 +207,9 @@ def exists(problem: Problem, name: str) -> bool:
     if name.startswith(PREFIX):
         return name.removeprefix(PREFIX) in yielding_owners(problem)
     if name == "bush_slip_margin":
-        return isinstance(problem.plate_body, Bushing) and problem.plate_body.friction is not None
+        return problem.joint.bush is not None and problem.plate_body.bush.friction is not None
     if name.startswith("bush_"):
-        return isinstance(problem.plate_body, Bushing)
+        return problem.joint.bush is not None
     edges = {"peak_hoop": "plate", "peak_hoop_seat": "seat"}
     return name not in edges or edges[name] in elastic_bodies(problem)
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fastpin.elasticity.bodies import body_terms
 from fastpin.elasticity.system import load_columns
+from fastpin.elasticity.terms import body_terms
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE
 from fastpin.model.angles import near_bottom

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fastpin.model.angles import angle_between, degrees_from_bottom, from_bottom
-from fastpin.model.bodies import Bushing
 from fastpin.model.points import Body, elastic_bodies
 from fastpin.reading.zones import Interval, is_all_round
 from fastpin.states.regimes import REGIMES
@@ -77,7 +76,7 @@ def of_bush(read: Callable[[BushFit], float]) -> Callable[[State], float]:
     """A reading of the interface between bush and plate; NaN without a bush."""
 
     def of(state: State) -> float:
-        return read(state.bush_fit()) if isinstance(state.problem.plate_body, Bushing) else math.nan
+        return math.nan if state.problem.joint.bush is None else read(state.bush_fit())
 
     return of
 

@@ -16,7 +16,6 @@ import numpy as np
 from fastpin.elasticity.stress import plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
-from fastpin.model.bodies import Bushing
 from fastpin.model.grid import Grid
 from fastpin.model.loads import REMOTE
 from fastpin.model.problem import Problem
@@ -265,7 +264,7 @@ class Hats:
         """
         loaded = (pressure != 0.0).any(axis=0) | (shear != 0.0).any(axis=0)
         new, (before, after) = np.flatnonzero(loaded & ~self.known), _spacings(self._grid)
-        for begin in range(0, new.size, 32):  # elasticity/walls.py remembers the fields of so many nodes
+        for begin in range(0, new.size, 32):  # elasticity/stress.py remembers the fields of so many nodes
             nodes = new[begin : begin + 32]
             hats = np.zeros((2, nodes.size, 3, 3))
             hats[..., 0] = self._grid.theta[nodes, None] + np.array([-before[nodes], 0.0 * nodes, after[nodes]]).T
@@ -354,7 +353,7 @@ class StressBounds:
         owners = {name: name.removeprefix(PREFIX) for name in sorted(names) if name.startswith(PREFIX)}
         self.names = names & {self.HOOP, self.SEAT, *self.BUSH, *owners}
         self._owners, self._hats = owners, Hats(problem, grid)
-        self._bush = problem.plate_body if isinstance(problem.plate_body, Bushing) else None
+        self._bush = problem.plate_body.bush
         self._problem, self._grid = problem, grid
 
     def of(self, pressure: np.ndarray, shear: np.ndarray, status: np.ndarray, remote: np.ndarray) -> dict[str, Pair]:

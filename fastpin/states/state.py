@@ -452,7 +452,7 @@ class State(ReadOnly):
             solid pin, and R / sqrt(kappa_I + 1) in any other pin.
         gauge_radius : float, optional
             Radius of the circle in the plate, m. The default is the outer rim of a ring, also round a bush, the
-            supports of a :class:`fastpin.model.Compliance`, and the edge of the hole in an infinite plate, whose
+            supports of a :class:`fastpin.bodies.Compliance`, and the edge of the hole in an infinite plate, whose
             displacement grows like the logarithm of the radius.
 
         Raises

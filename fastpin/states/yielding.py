@@ -15,8 +15,6 @@ import numpy as np
 from fastpin.elasticity.stress import pin_stress, plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.model.angles import from_bottom
-from fastpin.model.bodies import Bushing, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.grid import Grid
 from fastpin.model.points import Body, Points, far_rim, material_of, near_rim
 from fastpin.model.problem import Problem
@@ -70,22 +68,21 @@ class Circle(NamedTuple):
 
 def circles(problem: Problem) -> Iterator[Circle]:
     """The circles of a problem. A rigid body has none; a compliance has the edge of its hole only."""
-    bush, pin = problem.plate_body, problem.pin_body
-    if isinstance(bush, Bushing):
+    if problem.joint.bush is not None:
         wall = near_rim(problem, "seat") - 1.0
         if not problem.surfaces.plate.is_rigid:
             yield from (Circle("bush", "plate", depth, "bore of the bush") for depth in _depths(wall))
             yield Circle("bush", "plate", wall, "rim of the bush")
         if not problem.pair.plate.is_rigid:
             yield from (Circle("plate", "seat", depth, "seat") for depth in _depths(_wall(problem, "seat")))
-    elif isinstance(bush, Compliance):
+    elif problem.plate_body.edge_only:
         yield Circle("plate", "plate", 0.0, "hole")
     elif not problem.surfaces.plate.is_rigid:
         yield from (Circle("plate", "plate", depth, "hole") for depth in _depths(_wall(problem, "plate")))
     if not problem.pair.pin.is_rigid:
         wall = _wall(problem, "pin")
         yield from (Circle("pin", "pin", depth, "pin") for depth in _depths(wall))
-        if isinstance(pin, Tube):
+        if problem.pin_body.bore_radius:
             yield Circle("pin", "pin", wall, "bore of the pin")
 
 

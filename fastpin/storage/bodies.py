@@ -6,21 +6,19 @@ compliance is stored whole.
 
 from __future__ import annotations
 
-from dataclasses import fields
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
 import numpy as np
 
-from fastpin.model.bodies import KINDS, Disk, PinBody, Plate, PlateBody, Ring, kind_of
+from fastpin.bodies.body import BodyBase
+from fastpin.bodies.kinds import KINDS
 from fastpin.model.checks import as_toml
-from fastpin.model.compliance import Compliance
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.materials import Material
 from fastpin.model.problem import Problem
 from fastpin.storage.damage import as_python, dataset_of, text_of
-
-_COMPLIANCE_FIELDS = ("nu", "plane", "hole_radius", "made_by")
 
 
 def write_material(group: h5py.Group, name: str, material: Material) -> None:
@@ -45,10 +43,8 @@ def read_material(group: h5py.Group) -> Material:
 
 def write_bodies(group: h5py.Group, problem: Problem) -> None:
     """Write the bodies of a problem into its group."""
-    if problem.pin_body != Disk():
-        _write_body(group, "pin_body", problem.pin_body)
-    if problem.plate_body != Plate():
-        _write_body(group, "plate_body", problem.plate_body)
+    for name, body in problem.given_bodies.items():
+        _write(group, name, body.entries())
 
 
 def read_bodies(group: h5py.Group) -> dict[str, Any]:
@@ -64,34 +60,29 @@ def read_bodies(group: h5py.Group) -> dict[str, Any]:
     return {name: _read_body(group[name]) for name in ("pin_body", "plate_body") if name in group}
 
 
-def _write_body(parent: h5py.Group, name: str, body: PinBody | PlateBody) -> None:
+def _write(parent: h5py.Group, name: str, entries: Mapping[str, Any]) -> None:
+    """Write the entries of a body, or the columns of a compliance, into a new group."""
     group = parent.create_group(name)
-    group.attrs["kind"] = kind_of(body)
-    if isinstance(body, Compliance):
-        group.attrs.update({each: getattr(body, each) for each in _COMPLIANCE_FIELDS})
-        group["matrix"] = body.matrix
-        columns = group.create_group("columns")
-        for load, column in body.columns.items():
-            columns[load] = column
-        return
-    for each in fields(body):
-        value = getattr(body, each.name)
+    for key, value in entries.items():
         if isinstance(value, Material):
-            write_material(group, each.name, value)
-        elif isinstance(value, (Plate, Ring)):
-            _write_body(group, each.name, value)
+            write_material(group, key, value)
+        elif isinstance(value, Mapping):
+            _write(group, key, value)
+        elif isinstance(value, np.ndarray):
+            group[key] = value
         elif value is not None:
-            group.attrs[each.name] = value
+            group.attrs[key] = value
 
 
-def _read_body(group: h5py.Group) -> PinBody | PlateBody:
+def _read_body(group: h5py.Group) -> BodyBase:
     kind = group.attrs.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"the kind {as_toml(kind)} of {group.name[1:]} is unknown")
     given: dict[str, Any] = {name: _as_plain(value) for name, value in group.attrs.items() if name != "kind"}
-    if kind == "compliance":
-        given["matrix"] = dataset_of(group, "matrix", float)[()]
-        given["columns"] = {load: dataset_of(group["columns"], load, float)[()] for load in group["columns"]}
+    for name in KINDS[kind].arrays:
+        given[name] = dataset_of(group, name, float)[()]
+    for name in KINDS[kind].named_arrays:
+        given[name] = {each: dataset_of(group[name], each, float)[()] for each in group[name]}
     if "material" in group:
         given["material"] = read_material(group["material"])
     if "inside" in group:

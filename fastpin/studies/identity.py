@@ -15,7 +15,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from fastpin.model.bodies import Disk, Plate, body_document
 from fastpin.model.case import Case
 from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory
@@ -49,7 +48,9 @@ def canonical(case: Case) -> dict[str, Any]:
         "plate": _material(pair.plate),
         "plane": pair.plane,
         **_fields(problem),
-        **_bodies(problem),
+        # A solid pin and an infinite plate are left out, so that older ids stay. The friction of a bush changes no
+        # state, and enters like fatigue constants: a result says whether the bush slips.
+        **{name: _without_negative_zero(body.as_json(_material)) for name, body in problem.given_bodies.items()},
         "dimensionless": problem.dimensionless,
         "loads": _loads(case.history),
         "solve": _options(case.options),
@@ -92,16 +93,6 @@ def _fields(problem: Problem) -> dict[str, Any]:
         for name, (value, in_ids) in values.items()
         if in_ids == "always" or (in_ids == "given" and value != usual[name])
     }
-
-
-def _bodies(problem: Problem) -> dict[str, Any]:
-    """Return the bodies of a problem. A solid pin and an infinite plate are left out, so that older ids stay.
-
-    The friction of a bush changes no state, and enters like fatigue constants: a result says whether the bush slips.
-    """
-    given = {"pin_body": (problem.pin_body, Disk()), "plate_body": (problem.plate_body, Plate())}
-    found = {name: body_document(body, _material) for name, (body, plain) in given.items() if body != plain}
-    return {name: _without_negative_zero(entry) for name, entry in found.items()}
 
 
 def _without_negative_zero(value: Any) -> Any:

@@ -20,15 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fastpin.errors import InputError
-from fastpin.model.checks import (
-    as_toml,
-    check_callable,
-    file_path,
-    instance,
-    items,
-    true_or_false,
-    whole_number,
-)
+from fastpin.model.checks import as_toml, check_callable, file_path, instance, items, true_or_false, whole_number
 from fastpin.model.inputs import HDF5_SIGNATURE
 from fastpin.runtime.threads import cores
 from fastpin.storage import store

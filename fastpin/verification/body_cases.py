@@ -10,10 +10,9 @@ from functools import partial
 
 import numpy as np
 
-from fastpin.elasticity.bodies import body_terms
+from fastpin.bodies import Bushing, Compliance, Ring, Tube
+from fastpin.elasticity.terms import body_terms
 from fastpin.kernels import harmonics
-from fastpin.model.bodies import Bushing, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.loads import LOADS, REMOTE
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
@@ -83,6 +82,9 @@ STUCK = Problem.from_load_parameter(
 )
 """An interference fit of a hollow pin in a bush in a ring."""
 
+RING = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
+"""A ring whose compliance is known."""
+
 
 def cut_layer_difference(kind: str) -> float:
     """Difference of a bush cut into two layers from one layer, in a ring whose rim is free or held.
@@ -106,13 +108,13 @@ def ring_compliance(problem: Problem, order: int) -> Compliance:
 
     Its first harmonic holds no translation of the hole. The mean rotation of the outer rim is 0.
     """
-    joint, size = problem.joint, 2 + 4 * order
-    kolosov, rim, kind = problem.pair.plate_kolosov, joint.lug_rim, joint.lug_kind
+    ring, hole, size = problem.plate_body, problem.joint.hole, 2 + 4 * order
+    kolosov, rim, kind = hole.kolosov, ring.far(hole), ring.outer_kind
     matrix = np.zeros((size, size))
     # The traction on the plate is (N, -T) = (-s_rr, -s_rtheta), and G v/R = c/2 times s.
     matrix[0, 0] = -0.5 * (harmonics.uniform(rim, kolosov, kind) + 1.0)
     matrix[1, 1] = -0.5 * rim**-2.0
-    of_traction, of_force = joint.lug_first.displacement()
+    of_traction, of_force = ring.first(hole).displacement()
     change = harmonics.ring(np.arange(2.0, order + 1.0), rim, kolosov, kind).T
     for k, (a, b, d) in enumerate([(of_traction + 0.5, of_force, 0.0), *change]):
         radial, shear, mixed = 0.5 * (a + d) + b, 0.5 * (a + d) - b, 0.5 * (a - d)

@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from fastpin.kernels.status import STICK
-from fastpin.model.bodies import Ring
 from fastpin.model.materials import MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.verification import body_cases, interference
 from fastpin.verification.comparisons import all_round_difference, event_load
-from fastpin.verification.finite_elements import UNLIKE
 from fastpin.verification.rows import NODES, CheckRow, CheckRows, Solving, angle_row, half_width, relative_row
 from fastpin.verification.sliding import solve_sliding
 
@@ -82,7 +80,7 @@ def pressed_bodies(solving: Solving) -> CheckRows:
 
 def ring_by_compliance(solving: Solving) -> CheckRows:
     """A ring by its closed forms, and by the compliance between Fourier coefficients."""
-    ring = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0, "normal"))
+    ring = body_cases.RING
     by_matrix = replace(ring, plate_body=body_cases.ring_compliance(ring, 32))
     (one,), (two,) = (solving(problem, [{"P": 1.0, "Q": 0.2, "sxx": 0.05}]) for problem in (ring, by_matrix))
     difference = np.abs([one.pressure - two.pressure, one.shear - two.shear]).max()

@@ -15,7 +15,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients, plate_coefficients
+from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
+from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.errors import InputError
 from fastpin.kernels import fourier, influence
 from fastpin.model.checks import number, positive

@@ -27,7 +27,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fastpin.errors import InputError
-from fastpin.model.bodies import Plate, Ring
 from fastpin.model.checks import instance, numbers
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import check_corner
@@ -93,9 +92,7 @@ def stuck_ratio(problem: Problem) -> float:
     """
     _checked_loads(problem, {})
     joint = problem.joint
-    plate = joint.lug_first.displacement() * problem.pair.plate_compliance
-    if joint.bush is not None:
-        plate = joint.bush_first.displacement() * problem.surfaces.plate_compliance
+    plate = joint.plate_first.displacement() * problem.surfaces.plate_compliance
     of_traction, of_force = joint.pin_first.displacement() * problem.pair.pin_compliance - plate
     return -float(of_force / of_traction)
 
@@ -299,9 +296,6 @@ def _checked_loads(problem: Problem, load: Mapping[str, float]) -> dict[str, flo
             raise InputError(name, "has a closed form for a solid pin in an infinite plate only")
     if given:
         check_loads(problem, LoadHistory([given]))
-    lug = problem.joint.lug
-    has_point = isinstance(lug, Plate) and lug.reaction is not None
-    has_half = isinstance(lug, Ring) and lug.support == "half"
-    if not isinstance(lug, (Plate, Ring)) or has_point or has_half:
+    if not problem.plate_body.lug.is_symmetric:
         raise InputError("plate_body", "has no closed form: it must carry the force symmetrically about the axis")
     return {**dict.fromkeys(HARMONIC_LOADS, 0.0), **given}

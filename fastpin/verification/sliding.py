@@ -29,7 +29,8 @@ from scipy.optimize import minimize_scalar, root
 from scipy.special import eval_jacobi, roots_jacobi, zeta
 from threadpoolctl import threadpool_limits
 
-from fastpin.elasticity.bodies import BodyTerms, body_terms, complex_coefficients, plate_coefficients
+from fastpin.bodies.compliance import complex_coefficients, plate_coefficients
+from fastpin.elasticity.terms import BodyTerms, body_terms
 from fastpin.errors import InputError
 from fastpin.model.angles import interval_near_bottom, near_bottom
 from fastpin.model.checks import as_toml, number, whole_number

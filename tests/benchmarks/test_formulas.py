@@ -11,8 +11,8 @@ import pytest
 
 from fastpin.benchmarks import half_angle, load_term, peak_pressure
 from fastpin.benchmarks.formulas import SPREAD
+from fastpin.bodies.body import PinLoad
 from fastpin.errors import InputError
-from fastpin.model.joint import PinLoad
 from fastpin.model.materials import MATERIALS, Material, MaterialPair, Plane
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.bodies.compliance import MOST_BYTES, Compliance
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.model.compliance import MOST_BYTES, Compliance
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem
 from tests.support.body_texts import HEAD

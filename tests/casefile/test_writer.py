@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from fastpin import casefile
+from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.case import About, Case
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.lug import LUG_EXAMPLE
 from fastpin.cli import compliance
 from fastpin.cli.main import main
-from fastpin.model.compliance import Compliance
 from tests.support.lugs import make_coarse
 
 TEXT = """\

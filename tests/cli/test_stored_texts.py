@@ -17,11 +17,11 @@ import pytest
 
 import fastpin
 from fastpin import storage
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import printable
 from fastpin.figures.words import caption
-from fastpin.model.compliance import Compliance
 from fastpin.solver.result import Result
 from fastpin.storage import packed, store
 from fastpin.storage.files import INDEX

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from fastpin.elasticity.bodies import body_terms
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.system import System
+from fastpin.elasticity.terms import body_terms
 from fastpin.model.angles import BOTTOM
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS, REMOTE, SXX, SXY, SYY, P, Q
 from fastpin.model.problem import Problem
@@ -179,7 +179,7 @@ def rim_columns(problem, traction):
     Kolosov's equations with many digits, for the harmonics from 2 to 40; harmonic 1 is left out.
     """
     joint = problem.joint
-    rim, kappa = joint.lug_rim, problem.pair.plate_kolosov
+    rim, kappa = joint.plate_body.lug.far(joint.hole), problem.pair.plate_kolosov
     compliance = problem.pair.plate_compliance / problem.surfaces.beta_star
 
     def coefficient(n):
@@ -268,14 +268,10 @@ def test_the_first_harmonic_of_the_force_is_that_of_the_joint(name):
     cos, sin = np.cos(grid.theta), np.sin(grid.theta)
     first = system.loads[:, P] @ np.r_[sin, cos] / grid.size  # half of it is gap, half of it slip
     pair, joint = problem.pair, problem.joint
-    of_plate = 0.0
-    if not isinstance(problem.plate_body, Bushing):
-        of_plate = pair.plate_compliance * joint.lug_first.displacement()[1]
-    else:
-        of_plate = problem.surfaces.plate_compliance * joint.bush_first.displacement()[1]
+    of_plate = problem.surfaces.plate_compliance * joint.plate_first.displacement()[1]
     if name == "ring, compliance":
         ring = Problem.from_load_parameter(UNLIKE, 0.1, 0.3, plate_body=Ring(2.0, "normal"))
-        of_plate = ring.pair.plate_compliance * ring.joint.lug_first.displacement()[1]
+        of_plate = ring.pair.plate_compliance * ring.joint.plate_first.displacement()[1]
     g12 = pair.pin_compliance * joint.pin_first.displacement()[1] - of_plate
     assert first == pytest.approx(-g12 / (4.0 * math.pi * problem.surfaces.beta_star), abs=1e-15)
 
@@ -346,7 +342,7 @@ def test_the_drive_of_a_hollow_pin_from_potentials(tube, hub):
 def test_the_drive_of_a_ring_from_potentials(support, gauge):
     """g and k of the rim over the gauge, by default the outer rim. Measured: 3e-16."""
     problem = unlike(plate_body=Ring(2.0, support), drive="both", gauge_radius=gauge)
-    of_traction, of_force = moved(problem.joint.lug_first, gauge or 2.0)
+    of_traction, of_force = moved(problem.joint.plate_first, gauge or 2.0)
     unit = problem.pair.plate_compliance / (4.0 * math.pi * problem.surfaces.beta_star)
     of_pin = np.array(unlike(drive="both").drive_compliances)
     expected = of_pin + unit * np.array([of_force, -of_traction])
@@ -360,10 +356,11 @@ def test_the_drive_of_a_bush_in_a_ring_from_potentials(gauge):
     problem = unlike(plate_body=Bushing(UNLIKE.pin, rim, inside=Ring(2.0, "uniform")), drive="both", gauge_radius=gauge)
     joint, surfaces = problem.joint, problem.surfaces
     far = 2.0 if gauge is None else gauge
-    change = surfaces.plate_compliance * moved(joint.bush_first, min(far, rim))
+    change = surfaces.plate_compliance * moved(joint.plate_first, min(far, rim))
     if far > rim:
-        tractions = np.array([joint.bush_first.traction(rim), [0.0, 1.0 / rim]])
-        change += problem.pair.plate_compliance * rim * (moved(joint.lug_first, far / rim) @ tractions)
+        tractions = np.array([joint.plate_first.traction(rim), [0.0, 1.0 / rim]])
+        lug_first = joint.plate_body.lug.first(problem.plate_body.around(joint.hole)[1])
+        change += problem.pair.plate_compliance * rim * (moved(lug_first, far / rim) @ tractions)
     of_pin = np.array(replace(problem, pair=surfaces, plate_body=Plate(), gauge_radius=None).drive_compliances)
     expected = of_pin + np.array([change[1], -change[0]]) / (4.0 * math.pi * surfaces.beta_star)
     assert problem.drive_compliances == pytest.approx(expected, rel=1e-13, abs=0.0)

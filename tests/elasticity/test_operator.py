@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin.bodies import Ring, Tube
 from fastpin.elasticity import large, operator
 from fastpin.elasticity.large import LargeSystem
 from fastpin.elasticity.operator import DenseOperator, ToeplitzOperator
 from fastpin.elasticity.system import System
 from fastpin.kernels import toeplitz
-from fastpin.model.bodies import Ring, Tube
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.solver import path, shortcut

@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fastpin.elasticity import bodies
-from fastpin.elasticity.stress import disk_stress, hole_stress, pin_stress, plate_stress
+from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
+from fastpin.bodies.ring import HalfCosine
+from fastpin.elasticity.stress import disk_stress, hole_stress, pin_stress, plate_stress, traction_harmonics
+from fastpin.elasticity.terms import body_terms
 from fastpin.elasticity.tractions import Tractions
-from fastpin.elasticity.walls import HalfCosine, traction_harmonics
 from fastpin.kernels import harmonics
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.loads import SXX, SXY, SYY
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
@@ -382,7 +382,7 @@ def test_half_cosine_at_its_ends():
 def test_hoop_stress_of_loads_is_the_strain_of_their_columns(body):
     """8 G eps/(kappa + 1) with the strain eps of the contact rim under the remote stress, (T48)."""
     problem, unit = case(body), {SXX: REMOTE[0], SYY: REMOTE[1], SXY: REMOTE[2]}
-    terms, nothing = bodies.body_terms(problem), Tractions(())
+    terms, nothing = body_terms(problem), Tractions(())
     strain = 0.0 * AROUND
     for place, value in unit.items():
         column = terms.columns.get(place, np.zeros(1))
@@ -424,7 +424,7 @@ def ring_compliance(order=40, outer=2.0):
     kolosov, size = problem.pair.plate_kolosov, 2 + 4 * order
     n = np.arange(2.0, order + 1.0)
     whole = 0.5 * harmonics.as_matrices(harmonics.ring(n, outer, kolosov, "free"))
-    first = problem.joint.lug_first.displacement() + np.array([0.5, 0.0])
+    first = problem.joint.plate_first.displacement() + np.array([0.5, 0.0])
     pairs = np.concatenate([0.5 * np.array([[[first[0], first[1]], [first[1], 0.0]]]), whole])
     matrix = np.zeros((size, size))
     matrix[0, 0] = -0.5 * (harmonics.uniform(outer, kolosov, "free") + 1.0)
@@ -439,7 +439,7 @@ def ring_compliance(order=40, outer=2.0):
     columns = {}
     stiffness = problem.pair.plate.shear_modulus
     for name_, place in (("sxx", SXX), ("syy", SYY), ("sxy", SXY)):
-        column = bodies.lug_columns(problem, 1.0)[place] * stiffness
+        column = problem.plate_body.displacements(problem.joint.hole)[place] * stiffness
         low = column.size // 2
         real = np.zeros(size)
         real[0] = math.sqrt(2.0) * column[low].real

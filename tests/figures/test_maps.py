@@ -11,11 +11,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, FancyArrowPatch, Rectangle, Wedge
 
 from fastpin import MATERIALS, Case, InputError, LoadHistory, MaterialPair, Problem, figures
+from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.figures.slip_extent import BOTH_WAYS, columns_of
 from fastpin.figures.stick_slip import LOOKS, MOST_COLUMNS, zone_boxes
 from fastpin.figures.style import COLOURS
 from fastpin.kernels.status import OPEN, SLIP_NEGATIVE, SLIP_POSITIVE, STICK
-from fastpin.model import Bushing, Ring, Tube
 from fastpin.states.cycles import Cycle
 from tests.support.samples import PAIR, sample_result, with_values
 

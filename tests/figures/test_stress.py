@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from fastpin import MATERIALS, InputError, LoadHistory, Material, MaterialPair, Problem, figures, solve
+from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.damage import fatigue
 from fastpin.figures.load_cycle import area_doubt
-from fastpin.model import Bushing, FatigueConstants, Ring, Tube
+from fastpin.model import FatigueConstants
 from fastpin.report.stress import COMPONENTS, depth_curves, field_curves, hoop_curves
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fastpin import MATERIALS, LoadHistory, Material, MaterialPair, Problem, figures
+from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.figures.words import (
     caption,
     load_text,
@@ -17,7 +18,6 @@ from fastpin.figures.words import (
     wrapped,
     wrapped_parts,
 )
-from fastpin.model import Bushing, Plate, Ring, Tube
 from fastpin.model.units import Unit
 from tests.support.samples import sample_result
 

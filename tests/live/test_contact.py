@@ -12,12 +12,12 @@ import pytest
 
 import fastpin
 from fastpin import casefile
+from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.elasticity.system import System
 from fastpin.live import contact as contact_module
 from fastpin.live.contact import LiveContact
 from fastpin.live.pictures import CURVE_ERROR
 from fastpin.live.protocol import ALONE, CLASS, Limits
-from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.states.curves import traction_patches
 from fastpin.states.state import State
 from fastpin.verification.body_cases import ring_compliance

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.case import check_arc
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.options import SolveOptions

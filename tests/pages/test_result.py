@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 import fastpin
+from fastpin.bodies import Bushing
 from fastpin.errors import InputError, OutputError
-from fastpin.model import Bushing, Material, MaterialPair
+from fastpin.model import Material, MaterialPair
 from fastpin.model.loads import LOAD, LOADS
 from fastpin.model.options import OPTIONS, SolveOptions
 from fastpin.pages import album, drawings, write_report

@@ -25,6 +25,11 @@ BREAKS = {
         "model/angles.py",
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from fastpin.solver.interrupt import SIGNALS\n",
     ),
+    "an import from the upper floor of the model": (
+        "one_direction",
+        "model/csv_columns.py",
+        "from fastpin.model.units import PASCAL\n",
+    ),
     "an import from a folder of the same rank": (
         "one_direction",
         "casefile/reader.py",

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fastpin import Problem, save, solve
+from fastpin.bodies import compliance
 from fastpin.cli import terminal
-from fastpin.model import compliance
 from fastpin.storage import layout
 from fastpin.studies import index
 from scripts import rounding
@@ -29,7 +29,7 @@ def test_the_versions_of_formats_are_those_of_the_code() -> None:
         (layout.FORMAT_VERSION, "format_version", "fastpin/storage/layout.py"),
         (layout.WITH_BODIES, "format_version", "fastpin/storage/layout.py"),
         (index.FORMAT_VERSION, "user_version", "fastpin/studies/index.py"),
-        (compliance.VERSION, "version", "fastpin/model/compliance.py"),
+        (compliance.VERSION, "version", "fastpin/bodies/compliance.py"),
     ]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fastpin.cli.options import join_words, parser
-from tests.support.layout import RANKS
+from tests.support.layout import ABOVE_BODIES, LEVELS, RANKS
 
 ROOT = Path(__file__).resolve().parents[2]
 README, CONTRIBUTING = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "CONTRIBUTING.md"))
@@ -35,6 +35,10 @@ def test_map_names_every_folder_with_its_rank_and_no_other() -> None:
     rows = re.findall(r"^\| (\d+) \| `(\w+)/` \|", CONTRIBUTING, re.MULTILINE)
     assert sorted(folder for _, folder in rows) == sorted(folders)
     assert {folder: int(rank) for rank, folder in rows} == RANKS
+    assert f"| {LEVELS.index(ABOVE_BODIES)} | upper floor of `model/` |" in CONTRIBUTING
+    upper = re.search(r"stands on the upper floor: (.*?)\.\s+The lower floor", CONTRIBUTING, re.DOTALL)
+    assert upper is not None
+    assert {f"model/{name}" for name in re.findall(r"`(\w+\.py)`", upper[1])} == {*ABOVE_BODIES} - {"model/__init__.py"}
 
 
 def test_files_and_folders_named_in_contributing_exist() -> None:

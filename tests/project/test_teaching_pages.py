@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from fastpin.bodies import Bushing, Ring
 from fastpin.casefile import parse_case
-from fastpin.model import Bushing, Ring
 from fastpin.studies import read_plan, sweep
 from fastpin.studies.plan import parse_plan
 from scripts import tutorial

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.reading.bush import BushFit

@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
-from fastpin.model.compliance import Compliance
 from fastpin.report.case import describe
 from fastpin.report.summary import document
 

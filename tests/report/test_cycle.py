@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
+from fastpin.bodies import Bushing
 from fastpin.model.angles import from_bottom
-from fastpin.model.bodies import Bushing
 from fastpin.model.fatigue import FatigueConstants
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair

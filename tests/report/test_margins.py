@@ -8,8 +8,9 @@ from dataclasses import replace
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Problem, Result, solve
+from fastpin.bodies import Bushing, Ring
 from fastpin.damage import fatigue
-from fastpin.model import Bushing, FatigueConstants, Ring
+from fastpin.model import FatigueConstants
 from fastpin.model.case import Case
 from fastpin.model.doubts import doubts_given
 from fastpin.report import summary

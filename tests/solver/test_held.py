@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fastpin.bodies import Ring
 from fastpin.elasticity.system import System
 from fastpin.kernels import exchange
 from fastpin.kernels.arrays import Contact
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.bodies import Ring
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.problem import Problem

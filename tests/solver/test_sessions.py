@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin.model.bodies import Bushing, Ring
+from fastpin.bodies import Bushing, Ring
 from fastpin.solver.errors import ArcError
 from fastpin.solver.place import ROWS, Loads
 from fastpin.solver.run import Run

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, Material, MaterialPair, Points, Problem, solve
+from fastpin.bodies import Bushing, Compliance, Plate, Ring, Tube
 from fastpin.damage import fatigue, fatigue_at_distance
 from fastpin.elasticity.stress import press_fit_hoop
-from fastpin.model import Bushing, Compliance, FatigueConstants, Plate, Ring, Tube
+from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import field_curves
 from fastpin.verification.comparisons import strain_slip_difference, stress_resultant

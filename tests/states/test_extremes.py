@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.bodies import Bushing, Ring
 from fastpin.elasticity.stress import plate_stress, seat_stress
 from fastpin.elasticity.tractions import Tractions
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Ring
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem

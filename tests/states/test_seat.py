@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from fastpin import InputError, Material, MaterialPair, Points, Problem, solve
+from fastpin.bodies import Bushing, Plate, Ring
 from fastpin.damage import fatigue, fatigue_at_distance
-from fastpin.model import Bushing, FatigueConstants, Plate, Ring
+from fastpin.model import FatigueConstants
 from fastpin.report.states import hoop_line
 from fastpin.report.stress import depth_curves, field_curves, hoop_curves
 from fastpin.states.quantities import QUANTITIES, values

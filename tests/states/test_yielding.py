@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fastpin import LoadHistory, Material, MaterialPair, Points, Problem, solve
+from fastpin.bodies import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.errors import InputWarning
-from fastpin.model import Bushing, Compliance, Disk, Plate, Ring, Tube
 from fastpin.model.doubts import EDGES, doubts, doubts_given
 from fastpin.states import extremes
 from fastpin.states.yield_doubts import yield_doubts_of

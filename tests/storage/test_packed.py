@@ -12,9 +12,9 @@ import pytest
 
 import fastpin
 from fastpin import storage
+from fastpin.bodies import Bushing, Ring, Tube
 from fastpin.cli.main import main
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Ring, Tube
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.result import Result

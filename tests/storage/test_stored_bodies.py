@@ -9,9 +9,9 @@ import h5py
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
 from fastpin.errors import InputError
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem

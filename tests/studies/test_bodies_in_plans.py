@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Disk, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import EXAMPLE, parse_case
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.bodies import Bushing, Disk, Plate, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.materials import MATERIALS, Material
 from fastpin.model.problem import Problem
 from fastpin.report.sweep import text as sweep_text

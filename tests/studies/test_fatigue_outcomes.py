@@ -55,7 +55,7 @@ def result() -> Result:
 
 
 def test_outcomes_at_the_seat_of_a_bush(result: Result) -> None:
-    bush = fastpin.model.Bushing(fastpin.Material(103e9, 0.34, "", CONSTANTS), 3e-3, 5e-6)
+    bush = fastpin.bodies.Bushing(fastpin.Material(103e9, 0.34, "", CONSTANTS), 3e-3, 5e-6)
     history = fastpin.LoadHistory([{"P": 4e5}, {"P": 1e5}]).repeated(2)
     bushed = fastpin.solve(problem(plate_body=bush), history, nodes=61)
     for criterion in CRITERIA:

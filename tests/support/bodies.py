@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.verification.body_cases import BRONZE, ring_compliance

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.errors import InputError
 from fastpin.kernels.status import OPEN, STICK
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.solver.solving import solve

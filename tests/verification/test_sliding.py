@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from fastpin.bodies import Tube
 from fastpin.elasticity.system import System
 from fastpin.errors import InputError
-from fastpin.model.bodies import Tube
 from fastpin.model.grid import Grid
 from fastpin.model.loads import LOADS
 from fastpin.model.materials import MATERIALS, Material, MaterialPair

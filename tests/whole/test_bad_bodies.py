@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Plate, Ring, Tube
+from fastpin.bodies.compliance import Compliance
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
-from fastpin.model.compliance import Compliance
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem

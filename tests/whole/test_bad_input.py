@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import fastpin
-from fastpin import damage, model, solver, states
+from fastpin import bodies, damage, model, solver, states
 from fastpin.casefile.reader import parse_case
 from fastpin.cli.main import main
 from fastpin.errors import CaseFileError, InputError
@@ -246,7 +246,7 @@ RAGGED = [[1.0], [1.0, 2.0]]
         lambda: fastpin.storage.load_points(5),
         lambda: fastpin.report.describe(None),
         lambda: fastpin.figures.result_html(None),
-        lambda: fastpin.plot_convergence(None, "a.png"),
+        lambda: fastpin.figures.plot_convergence(None, "a.png"),
         lambda: fastpin.save(None, "a.h5"),
         lambda: fastpin.storage.to_dataframe(None),
         lambda: fastpin.plot_tractions(None),
@@ -281,7 +281,7 @@ STATE = SOLVED[-1]
         ),
         (lambda: fastpin.casefile.case_text("x"), 'case: must be a Case, not "x"'),
         (lambda: fastpin.report.state_table(PROBLEM, [STATE], 5), "rows: must be the rows of table_rows, not 5"),
-        (lambda: model.Compliance.from_document([1]), "content: must be a table, not [1]"),
+        (lambda: bodies.Compliance.from_document([1]), "content: must be a table, not [1]"),
         (lambda: model.FatigueConstants(np.ones(2)), "fatigue_strength: must be a number, not [1.0, 1.0]"),
         (lambda: model.FatigueConstants().required(["x"], "a", "b"), "names: must be "),
         (lambda: fastpin.converge(PROBLEM, [{"P": 1.0}], outcomes=np.ones(2)), "outcomes: must be "),

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from fastpin.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.angles import BOTTOM
-from fastpin.model.bodies import Bushing, Plate, Ring, Tube
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem

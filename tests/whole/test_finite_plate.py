@@ -3,8 +3,8 @@
 import pytest
 
 from fastpin import MATERIALS, Material, MaterialPair, Problem, solve
+from fastpin.bodies import Ring
 from fastpin.elasticity.plates import plate_compliance
-from fastpin.model import Ring
 from fastpin.model.lug import Lug
 from tests.support.lugs import disc, make_rough, plate
 

@@ -360,7 +360,7 @@ def test_a_doubtful_value_gets_one_sentence_in_python_and_on_the_command_line(
     assert capsys.readouterr().err == f"fastpin: warning: {sentence}\n"
 
 
-BUSH = fastpin.model.Bushing(fastpin.Material(110e9, 0.34), 12e-3, 1e-3)
+BUSH = fastpin.bodies.Bushing(fastpin.Material(110e9, 0.34), 12e-3, 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -384,7 +384,7 @@ BUSH = fastpin.model.Bushing(fastpin.Material(110e9, 0.34), 12e-3, 1e-3)
 def test_a_doubtful_body_gets_one_sentence(
     pair: fastpin.MaterialPair, radius: float, clearance: float, body: Any, sentence: str
 ) -> None:
-    problem = fastpin.Problem(pair, radius, clearance, 0.3, plate_body=body or fastpin.model.Plate())
+    problem = fastpin.Problem(pair, radius, clearance, 0.3, plate_body=body or fastpin.bodies.Plate())
     history = fastpin.LoadHistory([{"P": 1e3 if pair is not PAIR else 1e6}])
     if pair.pin.E == 1e5:  # a load that a soft pin carries
         history = fastpin.LoadHistory([{"P": 1.0}])

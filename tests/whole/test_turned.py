@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import fastpin
+from fastpin.bodies import Plate
 from fastpin.model.angles import BOTTOM
-from fastpin.model.bodies import Plate
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.loads import LOADS

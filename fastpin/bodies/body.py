@@ -1,0 +1,509 @@
+"""What every body answers: checks, the response to tractions and loads, stresses, words, files, drawing, controls.
+
+A body says its shape and how its load enters or leaves it. The materials stand in the problem's pair. Lengths are in m,
+or in units of R for a dimensionless problem. docs/bodies.md explains the choices. The answers here are those of a body
+without the feature that is asked for. A body is a file of this folder; :mod:`fastpin.bodies.kinds` lists them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
+from typing import Any, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+
+from fastpin.bodies.walls import Amplitudes, Displacements, Other, PlateWalls, Wall, first_amplitudes
+from fastpin.errors import InputError
+from fastpin.kernels import harmonics
+from fastpin.kernels.harmonics import FREE, HELD, First
+from fastpin.model.materials import Material, MaterialPair, Plane
+
+PinLoad = Literal["centre", "body"]
+"""Kinds of load of a solid pin."""
+
+THINNEST = 0.04
+"""Least wall of a tube or ring, in parts of its larger radius.
+
+A thinner wall is a shell: it bends 10,000 times as much as its surface yields, and contacts are lost between the nodes.
+"""
+
+WIDEST = 1e6
+"""Largest outer radius, in parts of the hole radius. A larger body is an infinite plate."""
+
+Harmonics = Callable[[int], np.ndarray]
+"""Harmonics (t_n, conj t_-n) of t = s_rr + i s_rtheta on the contact rim up to an order N, shape (N + 1, 2)."""
+
+InWords = Callable[[Any], str]
+"""The text of a value: a length with its unit, or a material."""
+
+Remote = Sequence[float]
+"""A remote stress (sxx, syy, sxy); the own loads of a compliance."""
+
+Projected = Callable[[np.ndarray], np.ndarray]
+"""The coefficients of the tractions, Pa, in the basis of a matrix of a compliance."""
+
+Table = Any
+"""The section of a body in a case file: a :class:`fastpin.casefile.bodies.BodySection`."""
+
+
+class Rim(NamedTuple):
+    """A rim, and the material of the body behind it.
+
+    `hole` is the radius R of the pin's hole, m. `ratio` is the radius of the rim over R: 1 at the contact, and more at
+    the seat of a bush.
+    """
+
+    hole: float
+    ratio: float
+    material: Material
+    plane: Plane
+
+    @property
+    def radius(self) -> float:
+        """Radius of the rim, m."""
+        return self.hole * self.ratio
+
+    @property
+    def kolosov(self) -> float:
+        """Kolosov's constant of the material."""
+        return self.material.kolosov(self.plane)
+
+    @property
+    def compliance(self) -> float:
+        """1/G of the material, 1/Pa; 0 if it is rigid."""
+        return 1.0 / self.material.shear_modulus
+
+
+class Uniform(NamedTuple):
+    """Stresses under pressure all round (Lame): s_rr = mean + decaying/r^2, s_tt = mean - decaying/r^2, Pa.
+
+    The radius counts in units of the radius at which the pressure is given.
+    """
+
+    mean: float
+    decaying: float
+
+    @classmethod
+    def of_rim(cls, radial: float, compliance: float, kolosov: float) -> Uniform:
+        """The stresses under s_rr = `radial` at r = 1, where 2G u_r/r is `compliance` times as large."""
+        mean = 2.0 * radial * (1.0 + compliance) / (kolosov + 1.0)
+        return cls(mean, radial - mean)
+
+    @classmethod
+    def of_press_fit(cls, pressure: float, outer: float) -> Uniform:
+        """The stresses of a ring, 1 <= r <= `outer`, under a pressure on its outer rim."""
+        mean = -pressure / ((1.0 - 1.0 / outer) * (1.0 + 1.0 / outer))
+        return cls(mean, -mean)
+
+    def radial(self, radius: float) -> float:
+        """s_rr at a radius."""
+        return self.mean + self.decaying / radius**2
+
+    def von_mises(self, radius: float, nu: float, plane: Plane) -> float:
+        """The von Mises stress at a radius."""
+        one, other = self.radial(radius), self.mean - self.decaying / radius**2
+        third = nu * (one + other) if plane == "strain" else 0.0
+        return math.sqrt(0.5 * ((one - other) ** 2 + (other - third) ** 2 + (third - one) ** 2))
+
+
+class Shape(NamedTuple):
+    """A part of the drawing of a body: a filled circle, a filled square, or strokes round a rim.
+
+    `kind` is "circle", "square", "strokes" or "leaning strokes". `size` is the radius, or half the side, over R. `part`
+    tells the colours: "lug", "bush" or "bore".
+    """
+
+    kind: str
+    size: float
+    part: str
+
+
+class Control(NamedTuple):
+    """A control of the live page: a slider from `least` to `most`, a chooser among `choices`, or those of a material.
+
+    `kind` is the kind of the unit of a slider, a key of ``units``; "" for a chooser.
+    """
+
+    name: str
+    value: Any
+    kind: str = ""
+    least: float = 0.0
+    most: float = 0.0
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class BodyBase:
+    """A pin or a plate.
+
+    Attributes
+    ----------
+    kind : str
+        The name of the class in files.
+    keys : tuple of str
+        The keys of its section in case files.
+    arrays, named_arrays : tuple of str
+        The fields that are arrays, and arrays by name.
+    refused : dict of str to str
+        More words on keys of other kinds in its section of a case file.
+    controlled : tuple of str
+        The names of its controls on the live page. Those of a material are not among them.
+    """
+
+    kind: ClassVar[str]
+    keys: ClassVar[tuple[str, ...]] = ()
+    arrays: ClassVar[tuple[str, ...]] = ()
+    named_arrays: ClassVar[tuple[str, ...]] = ()
+    refused: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    controlled: ClassVar[tuple[str, ...]] = ()
+
+    @classmethod
+    def read(cls, table: Table) -> Self | None:
+        """Read the body from its section of a case file. None if it is wrong; all faults are reported."""
+        return cls()
+
+    def toml(self) -> dict[str, Any]:
+        """The keys and values of its section in a case file. Without any, the section is left out."""
+        return {each.name: value for each in fields(self) if (value := getattr(self, each.name)) is not None}
+
+    def entries(self) -> dict[str, Any]:
+        """The kind, and the fields by name, as HDF5 files hold them. A body inside has entries of its own."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        inner = {name: value.entries() if isinstance(value, BodyBase) else value for name, value in values.items()}
+        return {"kind": self.kind, **inner}
+
+    def as_json(self, material: Callable[[Material], Any]) -> dict[str, Any]:
+        """The kind, and the fields by name, JSON-ready. `material` turns a material into its entry."""
+
+        def plain(value: Any) -> Any:
+            if isinstance(value, dict):
+                return {name: plain(each) for name, each in value.items()}
+            value = list(value) if isinstance(value, tuple) else value
+            return material(value) if isinstance(value, Material) else value
+
+        found: dict[str, Any] = plain(self.entries())
+        return found
+
+    def summary(self) -> dict[str, Any]:
+        """More entries of its summary, beside those of :meth:`as_json`."""
+        return {}
+
+    def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
+        """Rows (subject, text) that describe it. None describe a solid pin and an infinite plate."""
+        return []
+
+    def drawing(self, rim: Rim) -> list[Shape]:
+        """The shapes that show it, the largest first; those of a pin without its outline."""
+        return []
+
+
+class PinBody(BodyBase):
+    """A pin. Its answers take the rim of the pin and the load of a solid pin. Those here are of a solid pin.
+
+    Attributes
+    ----------
+    bore_radius : float
+        Radius of the bore, m; 0 of a solid pin.
+    load : str
+        How the load enters at the bore; "" for a solid pin, whose load is one of :data:`PinLoad`.
+    """
+
+    bore_radius: float
+    load: str = ""
+
+    @property
+    def bore_kind(self) -> str:
+        """Whether the bore is held."""
+        return HELD if self.load == "held" else FREE
+
+    def check(self, radius: float) -> None:
+        """Raise :class:`InputError` if the body does not fit into a hole of this radius, m."""
+
+    def check_load(self, pin_load: PinLoad) -> None:
+        """Raise :class:`InputError` if a load of solid pins can't act on the body."""
+
+    def check_hub(self, radius: float) -> None:
+        """Raise :class:`InputError` if the body has no hub of this radius, m."""
+
+    def inner(self, rim: Rim) -> float:
+        """Radius of the bore over that of the pin."""
+        return self.bore_radius / rim.radius
+
+    def highest(self, rim: Rim) -> int:
+        """The highest harmonic that matters."""
+        return harmonics.harmonics_needed(self.inner(rim))
+
+    def uniform(self, rim: Rim) -> float:
+        """Compliance c(0) under pressure, in units of 1/2G."""
+        return harmonics.uniform(self.inner(rim), rim.kolosov, self.bore_kind)
+
+    def first(self, rim: Rim, pin_load: PinLoad) -> First:
+        """The first harmonic."""
+        return harmonics.first(self.inner(rim), rim.kolosov, self.load or pin_load)
+
+    def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:
+        """a, b, d less those of a disk, in 1/Pa, shape (3, m), for the harmonics `order` >= 2; (T38)."""
+        return np.zeros((3, order.size))
+
+    def wall(self, rim: Rim, tractions: Harmonics) -> Wall | None:
+        """The field of stress beyond that of a solid pin under a force at its centre; None for a solid pin."""
+        return None
+
+    def translation(self, rim: Rim, pin_load: PinLoad, hub: float | None) -> tuple[float, float]:
+        """The pin's part of the compliances g and k of (T29), in 1/(4 pi G), for a hub of radius `hub` R."""
+        kolosov, compliance = rim.kolosov, rim.compliance
+        if pin_load == "body":
+            return 0.5 * compliance, 0.5 * compliance
+        part = 1.0 / math.sqrt(kolosov + 1.0) if hub is None else hub
+        coupling = (1.0 - part**2) * compliance
+        own = 2.0 * (1.0 - part**2 - kolosov * math.log(part)) / (kolosov + 1.0) * compliance
+        return own, coupling
+
+    def load_words(self, pin_load: PinLoad) -> str:
+        """Words for the way in which its load enters."""
+        return {"centre": "force at the centre", "body": "uniform body force"}[pin_load]
+
+    def caption(self, pin_load: PinLoad, length: InWords) -> str:
+        """Words for the caption of a figure, which follow those for its material."""
+        return {"body": ", body force", "centre": ", force at the centre"}[pin_load]
+
+    def page_controls(self, radius: float) -> list[Control]:
+        """The controls of its shape and load on the live page, for a hole of this radius, m."""
+        return [Control("pin_bore", self.bore_radius, "length", 0.0, 0.9 * radius)]
+
+
+class PlateBody(BodyBase):
+    """A plate. Its answers take the rim of its own hole. Those here are of a plate that is symmetric about the axis.
+
+    Attributes
+    ----------
+    title : str
+        Its name on the live page; "" if it can't be chosen there.
+    is_infinite : bool
+        Whether a remote stress has Kirsch's field in it.
+    outer_radius : float
+        Radius of the outer rim, m; infinite without one. With a bush it is that of the bush: ask the ``lug``.
+    support : str
+        The distribution of the force on the outer rim, see :func:`fastpin.kernels.harmonics.first`.
+    edge_only : bool
+        Whether stresses and displacements are known at the edge of the hole only.
+    """
+
+    title: ClassVar[str] = ""
+    is_infinite: ClassVar[bool] = False
+    edge_only: ClassVar[bool] = False
+
+    outer_radius: float
+    support: str = "uniform"
+
+    @property
+    def outer_kind(self) -> str:
+        """Whether the outer rim is held."""
+        return HELD if self.support == "held" else FREE
+
+    @property
+    def lug(self) -> PlateBody:
+        """The body round a bush; the plate itself without one."""
+        return self
+
+    @property
+    def bush(self) -> Any:
+        """The :class:`fastpin.bodies.Bushing` in its hole; None without one."""
+        return None
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether it carries a force symmetrically about the axis, so that there are closed forms."""
+        return not (self.force_points or self.edge_only or self.support == "half")
+
+    @property
+    def force_points(self) -> tuple[complex, ...]:
+        """Points x + iy, m, at which forces act: the stress there is infinite."""
+        return ()
+
+    # -- checks
+
+    def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
+        """Raise :class:`InputError` if the body does not fit round a hole of this radius, m, that is called `name`.
+
+        The interference of a bush is not checked in a `dimensionless` problem: it then counts in units of F beta*.
+        """
+
+    def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
+        """Raise :class:`InputError` if the body does not fit to the materials, or to a hole of this radius, m."""
+
+    def without_gauge(self, radius: float) -> str:
+        """Why no displacement relative to a gauge circle of this radius, m, is known; empty if it is."""
+        return ""
+
+    def check_remote(self, name: str) -> None:
+        """Raise :class:`InputError` if the remote stress of this name can't act."""
+
+    def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
+        """Return the part of the body that fits round the hole, for a case file. Other parts are reported."""
+        return self if table.passes(lambda: self.check(radius, dimensionless)) else None
+
+    # -- materials
+
+    def surface(self, pair: MaterialPair) -> MaterialPair:
+        """The materials of the two surfaces in contact."""
+        return pair
+
+    def without_units(self, pair: MaterialPair) -> tuple[PlateBody, MaterialPair]:
+        """The body and the materials, scaled so that beta* of the surfaces is 1."""
+        return self, pair.dimensionless
+
+    # -- the response of the rim
+
+    def far(self, rim: Rim) -> float:
+        """Radius of the outer rim over that of the hole; infinite without one."""
+        return self.outer_radius / rim.radius
+
+    def highest(self, rim: Rim) -> int:
+        """The highest harmonic that matters at the contact."""
+        return harmonics.harmonics_needed(1.0 / (self.far(rim) * rim.ratio))
+
+    def pressed(self, rim: Rim) -> float:
+        """Whole compliance under pressure, 1/Pa; negative, as the hole widens under pressure."""
+        return 0.5 * rim.compliance * harmonics.uniform(self.far(rim), rim.kolosov, self.outer_kind)
+
+    def pressed_share(self, rim: Rim) -> float:
+        """:meth:`pressed` in units of 1/2G."""
+        return self.pressed(rim) / (0.5 * rim.compliance)
+
+    def press_fit(self, rim: Rim) -> tuple[float, float]:
+        """Pressure of a press fit, Pa, and displacement of the contact rim by it, m."""
+        return 0.0, 0.0
+
+    def first(self, rim: Rim) -> First:
+        """The first harmonic, in units of the surface's material."""
+        return harmonics.first(self.far(rim), rim.kolosov, self.support)
+
+    def twist(self, rim: Rim) -> float:
+        """Rotation of the rim per shear stress, 1/Pa: u_theta/r over s_rtheta, against the far rim."""
+        return -0.5 * rim.compliance * (1.0 - self.far(rim) ** -2.0)
+
+    def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:
+        """a, b, d less those of an infinite plate of the surface's material, in 1/Pa, (3, m), `order` >= 2; (T38)."""
+        return np.zeros((3, order.size))
+
+    def whole(self, rim: Rim, order: np.ndarray) -> np.ndarray:
+        """Whole compliances of the hole, shape (m, 2, 2), 1/Pa, for the harmonics `order` >= 2."""
+        return harmonics.hole(order, rim.kolosov, rim.compliance) + 0.5 * harmonics.as_matrices(self.change(rim, order))
+
+    def displacements(self, rim: Rim) -> Displacements:
+        """Displacements per unit load, over the radius of the hole: of forces beyond their first harmonic; (T39)."""
+        return {}
+
+    def load_columns(self, rim: Rim, beta: float) -> Displacements:
+        """As :meth:`displacements`, in units of beta*."""
+        unit = 1.0 / beta
+        return {place: unit * column for place, column in self.displacements(rim).items()}
+
+    def matrix_in(self, rim: Rim, beta: float) -> np.ndarray:
+        """The matrix of a compliance, without resultant and translation, in units of beta*; else (0, 0); (T41)."""
+        return np.zeros((0, 0))
+
+    def pressed_by_matrix(self, rim: Rim) -> float:
+        """The part of twice the compliance under pressure that :meth:`matrix_in` holds, 1/Pa."""
+        return 0.0
+
+    def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
+        """The plate's part of the compliances g and k of (T29), in 1/(4 pi G), for a gauge of radius `gauge` R.
+
+        The usual gauge is the outer rim, or the edge of the hole without one.
+        """
+        if gauge is None:
+            gauge = self.far(rim) if math.isfinite(self.outer_radius) else 1.0
+        if gauge == 1.0:
+            return 0.0, 0.0
+        of_traction, of_force = self.first(rim).translation(gauge)
+        return -of_force * rim.compliance, of_traction * rim.compliance
+
+    def over_supports(self, moved: complex, rim: Rim, projected: Projected, load: Mapping[str, float]) -> complex:
+        """The displacement `moved` of the pin over the hole, m, as one over the supports."""
+        return moved
+
+    # -- stresses
+
+    def assembly_stresses(self, rim: Rim, contact: float, edge: str = "hole") -> dict[str, float]:
+        """Von Mises stresses under the pressure `contact`, Pa, and press fits, by edges; a rigid body has none."""
+        if rim.material.is_rigid:
+            return {}
+        around = Uniform.of_rim(-contact, self.pressed_share(rim), rim.kolosov)
+        return {edge: around.von_mises(1.0, rim.material.nu, rim.plane)}
+
+    def highest_inside(self, rim: Rim) -> int:
+        """The highest harmonic that matters in the plate, up to its outer rim."""
+        return harmonics.harmonics_needed(math.sqrt(1.0 / self.far(rim)))
+
+    def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls | None:
+        """The smooth fields under tractions and a remote stress (sxx, syy, sxy); None for an infinite plate."""
+        if not (self.force_points or math.isfinite(self.outer_radius)):
+            return None
+        return PlateWalls(self.wall(rim, tractions(self.highest_inside(rim)), remote, whole=False), None)
+
+    def wall(self, rim: Rim, t: np.ndarray, remote: Remote, whole: bool) -> Wall:
+        """The field under the harmonics `t` on its own hole, beyond the hole in the infinite plate or `whole`.
+
+        The remote stress counts where it is a traction on an outer rim.
+        """
+        n, found = np.arange(2.0, len(t)), Amplitudes.zero(len(t) - 1)
+        known = first_amplitudes(harmonics.first(math.inf, rim.kolosov, "uniform"), t[1])
+        found.first[:] = first_amplitudes(self.first(rim), t[1]) - (0.0 if whole else known)
+        if whole:
+            found.B[2:], found.D[2:] = t[2:, 1] / (1.0 - n), t[2:, 0] / (n + 1.0) - t[2:, 1]
+            found.D[0] = t[0, 0]
+        others = self.add_fields(rim, t, remote, found)
+        return found.wall(rim.kolosov, 1.0, self.far(rim) if math.isfinite(self.outer_radius) else 1.0, others)
+
+    def add_fields(self, rim: Rim, t: np.ndarray, remote: Remote, found: Amplitudes) -> tuple[Other, ...]:
+        """Add the harmonics other than the first, beyond the infinite plate, and return fields in closed form."""
+        return ()
+
+    def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
+        """Add the hoop stress on the edge of the hole beyond the infinite plate at the angles `at`, shape (m,)."""
+
+    # -- words, drawing, controls
+
+    def words(self, length: InWords) -> str:
+        """Words that describe it."""
+        raise NotImplementedError
+
+    def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
+        return [("plate body", self.words(length))]
+
+    def drawing(self, rim: Rim) -> list[Shape]:
+        return [Shape("square", max(2.5, 1.6 * rim.ratio), "lug")]
+
+    def caption(self, length: InWords, material: InWords) -> str:
+        """Words for the caption of a figure, which follow those for its material."""
+        return ""
+
+    @classmethod
+    def usual(cls, radius: float, material: Material) -> Self:
+        """The body that the live page begins with, round a hole of this radius, m, in a plate of this material."""
+        return cls()
+
+    def page_controls(self, radius: float, clearance: float, dimensionless: bool) -> list[Control]:
+        """The controls of its shape on the live page, for a hole of this radius and a clearance, both in m."""
+        outer = Control("outer_radius", self.outer_radius, "length", 1.05 * radius, 4.0 * radius)
+        return [outer] if math.isfinite(self.outer_radius) else []
+
+    def changed(self, values: Mapping[str, Any]) -> Self:
+        """A copy with other values of the fields that the live page controls."""
+        wrong = values.keys() - vars(self).keys()
+        if wrong:
+            raise InputError(min(wrong), f"is no field of a {self.title}")
+        return replace(self, **values)
+
+
+def check_outer(outer: float, inner: float, name: str, thinnest: float) -> None:
+    """Check the outer radius of a body round a circle of radius `inner`, m, that is called `name`."""
+    least, most = inner / (1.0 - thinnest), WIDEST * inner
+    if not least <= outer <= most:
+        limits = f"must lie between {least:g} and {most:g} for the {name} {inner:g}"
+        raise InputError("outer_radius", f"{limits}, not {outer:g}")

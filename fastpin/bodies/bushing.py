@@ -1,0 +1,331 @@
+"""A bush that is bonded into the hole of an infinite plate or a ring."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import lru_cache, partial
+from types import MappingProxyType
+from typing import Any, Self
+
+import numpy as np
+
+from fastpin.bodies.body import Control, Harmonics, InWords, PlateBody, Remote, Rim, Shape, Table, Uniform, check_outer
+from fastpin.bodies.plate import Plate
+from fastpin.bodies.ring import Ring
+from fastpin.bodies.walls import Amplitudes, Displacements, PlateWalls, Wall, first_change, force_on, pairs_of, spectrum
+from fastpin.errors import InputError
+from fastpin.kernels import harmonics
+from fastpin.kernels.harmonics import First, Layer
+from fastpin.model.checks import MOST_PARAMETER, instance, not_negative, number, positive
+from fastpin.model.loads import REMOTE, P, Q
+from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, MaterialPair, check_moduli
+from fastpin.model.synonyms import explains_keywords
+
+THINNEST_LAYER = 0.01
+"""Least wall of a bush, in parts of its outer radius. It is bonded and does not bend; a thinner one is a coating."""
+
+
+@explains_keywords
+@dataclass(frozen=True)
+class Bushing(PlateBody):
+    """A bush in the hole of the plate, bonded to it. The pin touches the bush.
+
+    Parameters
+    ----------
+    material : Material
+        The bush. The plate of the problem's pair is the body round it.
+    outer_radius : float
+        Outer radius of the bush, m, more than the hole radius. The hole radius is the inner radius of the bush.
+    interference : float
+        Radial interference of the bush in the plate before it is pressed in, m, at least 0. The press fit makes the
+        clearance of the pin smaller. In a dimensionless problem the unit is F beta*, as of the clearance.
+    inside : Plate or Ring
+        The body round the bush.
+    friction : float, optional
+        Coefficient of friction between bush and plate. It changes no state; it tells whether the bush would slip.
+
+    Raises
+    ------
+    InputError
+        If a field is out of range or of another class.
+    """
+
+    kind = "bushing"
+    keys = (*MATERIAL_KEYS, "outer_radius", "interference", "friction", "ring_outer_radius", "support", "reaction")
+    controlled = ("outer_radius", "interference")
+    title = "plate with a bush"
+    refused = MappingProxyType({"file": "; a bush sits in an infinite plate or a ring"})
+
+    material: Material
+    outer_radius: float
+    interference: float = 0.0
+    inside: Plate | Ring = field(default_factory=Plate)
+    friction: float | None = None
+
+    def __post_init__(self) -> None:
+        instance("material", self.material, Material, "a Material")
+        if self.material.is_rigid:
+            raise InputError("material", "a rigid bush is a rigid plate: leave the bush out")
+        object.__setattr__(self, "outer_radius", positive("outer_radius", self.outer_radius))
+        object.__setattr__(self, "interference", not_negative("interference", self.interference))
+        if not isinstance(self.inside, (Plate, Ring)):
+            raise InputError("inside", "must be a Plate or a Ring: a bush sits in an infinite plate or a ring")
+        if self.friction is not None:
+            object.__setattr__(self, "friction", not_negative("friction", self.friction))
+
+    @property
+    def lug(self) -> PlateBody:
+        return self.inside
+
+    @property
+    def bush(self) -> Bushing:
+        return self
+
+    # -- case files
+
+    @classmethod
+    def read(cls, table: Table) -> Self | None:
+        material = table.material()
+        table.require("outer_radius")
+        outer = table.checked("outer_radius", positive)
+        interference, friction = (table.checked(key, not_negative) for key in ("interference", "friction"))
+        inside: Plate | Ring | None
+        if "ring_outer_radius" in table:
+            if "reaction" in table:
+                table.report("reaction: can't be given together with ring_outer_radius", "reaction")
+            inside = Ring.read(table, "ring_outer_radius")
+        else:
+            if "support" in table:
+                table.report("support: needs ring_outer_radius, the outer radius of the ring round the bush", "support")
+            inside = Plate.read(table)
+        if material is None or outer is None:
+            return None
+        values = {"material": material, "outer_radius": outer, "inside": inside or Plate(), "friction": friction}
+        key = next(key for key in ("rigid", "material", "E", "nu") if key in table)
+        return table.build(cls, {**values, "interference": interference or 0.0}, {}, {"material": (table, key)})
+
+    def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
+        key = "material" if "material" in table else "E"
+        bush = Bushing(self.material, self.outer_radius, friction=self.friction)
+        if not table.passes(partial(bush.check, radius, dimensionless)):
+            return None
+        if pair is not None and not table.passes(partial(bush.check_material, pair), {"material": key}):
+            return None
+        within = replace(bush, inside=self.inside)
+        if table.passes(partial(within.check, radius, dimensionless), {"outer_radius": "ring_outer_radius"}):
+            bush = within
+        pressed = replace(bush, interference=self.interference)
+        return pressed if table.passes(partial(pressed.check, radius, dimensionless)) else bush
+
+    def toml(self) -> dict[str, Any]:
+        found = super().toml()
+        inside = found.pop("inside").toml()
+        return found | {"ring_outer_radius" if name == "outer_radius" else name: inside[name] for name in inside}
+
+    # -- checks and materials
+
+    def check(self, radius: float, dimensionless: bool = False, name: str = "hole radius") -> None:
+        check_outer(self.outer_radius, radius, name, THINNEST_LAYER)
+        self.inside.check(self.outer_radius, name="outer radius of the bush")
+        if not dimensionless and self.interference >= self.outer_radius:
+            limit = f"must be smaller than the outer radius {self.outer_radius:g} of the bush"
+            raise InputError("interference", f"{limit}, not {self.interference:g}")
+
+    def check_material(self, pair: MaterialPair) -> None:
+        """Raise :class:`InputError` if the moduli of pin and bush are too different for one contact."""
+        check_moduli("material", "pin and bush", pair.pin, self.material)
+
+    def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
+        self.check_material(pair)
+        number("interference", self.interference, 0.0, MOST_PARAMETER)
+
+    def surface(self, pair: MaterialPair) -> MaterialPair:
+        return MaterialPair(pair.pin, self.material, pair.plane)
+
+    def without_units(self, pair: MaterialPair) -> tuple[PlateBody, MaterialPair]:
+        self.check_material(pair)
+        factor = self.surface(pair).beta_star
+        return replace(self, material=self.material.scaled(factor)), pair.scaled(pair.beta_star / factor)
+
+    # -- the response of the rim
+
+    def around(self, rim: Rim) -> tuple[Rim, Rim]:
+        """The bore of the bush, and the plate's own hole round it, which is the seat."""
+        return rim._replace(material=self.material), rim._replace(ratio=self.outer_radius / rim.hole)
+
+    def layer(self, rim: Rim, order: np.ndarray) -> Layer:
+        """The bush, for the harmonics `order` >= 2."""
+        bore, seat = self.around(rim)
+        return Layer(order, seat.ratio, bore.kolosov, bore.compliance)
+
+    def highest(self, rim: Rim) -> int:
+        seat = self.around(rim)[1]
+        return max(harmonics.harmonics_needed(1.0 / seat.ratio), self.inside.highest(seat))
+
+    def pressed(self, rim: Rim) -> float:
+        bore, seat = self.around(rim)
+        return harmonics.uniform_of_layer(seat.ratio, bore.kolosov, bore.compliance, self.inside.pressed(seat))
+
+    def press_fit(self, rim: Rim) -> tuple[float, float]:
+        if self.interference == 0.0:
+            return 0.0, 0.0
+        (bore, seat), inner = self.around(rim), rim.hole / self.outer_radius
+        pressure, moved = harmonics.press_fit(inner, bore.kolosov, bore.compliance, -self.inside.pressed(seat))
+        relative = self.interference / self.outer_radius
+        return pressure * relative, moved * relative * rim.hole
+
+    def first(self, rim: Rim) -> First:
+        bore, seat = self.around(rim)
+        far = 0.5 * rim.compliance * self.inside.first(seat).displacement()
+        return harmonics.first_of_layer(seat.ratio, bore.kolosov, bore.compliance, far)
+
+    def twist(self, rim: Rim) -> float:
+        bore, seat = self.around(rim)
+        part = seat.ratio**-2.0
+        return -0.5 * bore.compliance * (1.0 - part) + part * self.inside.twist(seat)
+
+    def change(self, rim: Rim, order: np.ndarray) -> np.ndarray:
+        layer = self.layer(rim, order)
+        moved = 2.0 * layer.contact_displacement(layer.amplitudes(self.inside.whole(self.around(rim)[1], order)))
+        return np.array([moved[:, 0, 0], 0.5 * (moved[:, 0, 1] + moved[:, 1, 0]), moved[:, 1, 1]])
+
+    def displacements(self, rim: Rim) -> Displacements:
+        inside = self.inside.displacements(self.around(rim)[1])
+        return {place: self._through(rim, column) for place, column in inside.items()}
+
+    def _through(self, rim: Rim, column: np.ndarray) -> np.ndarray:
+        """Displacements of the contact rim when the lug's own free hole is displaced by `column`, n = -K to K."""
+        bore, seat = self.around(rim)
+        highest, kolosov, outer, unit = column.size // 2, bore.kolosov, seat.ratio, bore.compliance
+        q, inner = outer**-2.0, 2.0 * self.inside.pressed(seat) / unit
+        half = 0.5 * (kolosov - 1.0)
+        uniform = 0.5 * (kolosov + 1.0) * column[highest].real / (half + q - inner * (1.0 - q))
+        first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
+        moved_first = (kolosov + 1.0) * column[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
+        order = np.arange(2.0, highest + 1.0)
+        layer = self.layer(rim, order)
+        growing = layer.moved_outside(self.inside.whole(seat, order), pairs_of(column))
+        rotation = 1j * column[highest].imag
+        return spectrum(order, layer.contact_displacement(growing), uniform + rotation, moved_first)
+
+    def translation(self, rim: Rim, gauge: float | None) -> tuple[float, float]:
+        own, seat = self.around(rim)
+        outer = seat.ratio
+        if gauge is None:
+            gauge = self.inside.far(seat) * outer if isinstance(self.inside, Ring) else 1.0
+        if gauge == 1.0:
+            return 0.0, 0.0
+        first = self.first(rim)
+        moved = first.translation(min(gauge, outer)) * own.compliance
+        if gauge > outer:
+            tractions = np.array([first.traction(outer), [0.0, 1.0 / outer]])  # t_1 and conj t_-1 on the lug's hole
+            beyond = self.inside.first(seat).translation(gauge / outer)
+            moved = moved + beyond @ tractions * outer * rim.compliance
+        return -float(moved[1]), float(moved[0])
+
+    # -- stresses
+
+    def assembly_stresses(self, rim: Rim, contact: float, edge: str = "hole") -> dict[str, float]:
+        own, seat = self.around(rim)
+        unit = 0.5 * own.compliance
+        whole = harmonics.uniform_of_layer(seat.ratio, own.kolosov, 2.0 * unit, self.inside.pressed(seat)) / unit
+        parts = Uniform.of_rim(-contact, whole, own.kolosov), Uniform.of_press_fit(self.press_fit(rim)[0], seat.ratio)
+        field = Uniform(*map(sum, zip(*parts, strict=True)))
+        edges = {"bore of the bush": 1.0, "rim of the bush": seat.ratio}
+        found = {name: field.von_mises(radius, self.material.nu, rim.plane) for name, radius in edges.items()}
+        return found | self.inside.assembly_stresses(seat, -field.radial(seat.ratio), "seat")
+
+    def highest_inside(self, rim: Rim) -> int:
+        seat = self.around(rim)[1]
+        return max(harmonics.harmonics_needed(math.sqrt(1.0 / seat.ratio)), self.inside.highest_inside(seat))
+
+    def walls(self, rim: Rim, tractions: Harmonics, remote: Remote) -> PlateWalls:
+        bush, passed = self._wall_and_passed(rim, tractions(self.highest_inside(rim)), remote)
+        return PlateWalls(bush, self.inside.wall(self.around(rim)[1], passed, remote, whole=True))
+
+    def _wall_and_passed(self, rim: Rim, t: np.ndarray, remote: Remote) -> tuple[Wall, np.ndarray]:
+        """The field of the bush beyond that of the hole in the infinite plate, and the harmonics that it passes on."""
+        bore, seat = self.around(rim)
+        kolosov, outer, unit, highest = bore.kolosov, seat.ratio, bore.compliance, len(t) - 1
+        order = np.arange(2.0, highest + 1.0)
+        moved, q, found, passed = self._moved_hole(seat, t, remote), outer**-2.0, Amplitudes.zero(highest), t.copy()
+        amplitudes, misfit, growing_traction, decaying_traction = _matrices(self, rim, highest)
+        growing = (amplitudes @ t[2:, :, None])[..., 0]
+        growing = growing + np.linalg.solve(misfit, pairs_of(moved)[..., None])[..., 0]
+        found.A[2:], found.C[2:] = growing.T
+        A, C = growing.T * np.array([outer**-order, outer ** (2.0 - order)])
+        found.B[2:], found.D[2:] = -(order + 1.0) * A - C, -order * order * A - (order - 1.0) * C
+        passed[2:] = ((growing_traction @ growing[..., None]) + (decaying_traction @ t[2:, :, None]))[..., 0]
+        lug, wall = self.inside.pressed(seat), (1.0 - 1.0 / outer) * (1.0 + 1.0 / outer)
+        stiff = 0.5 * unit * (kolosov - 1.0 + 2.0 * q) - 2.0 * lug * wall
+        uniform = (q * t[0, 0].real * (lug + 0.5 * unit) + moved[highest].real) / stiff
+        uniform -= 0.5 * self.press_fit(rim)[0] / wall
+        found.A[0], found.D[0], passed[0] = uniform, -2.0 * uniform, q * t[0] + 2.0 * uniform * wall
+        first = rim.compliance / unit * self.inside.first(seat).displacement()[0]
+        grown = 2.0 / unit * moved[highest + 1] / harmonics.first_stiffness(outer, kolosov, first)
+        own = self.first(rim)
+        found.first[:] = first_change(own, harmonics.first(math.inf, kolosov, "uniform"), t[1])
+        found.first[:2] += grown, -grown
+        passed[1, 0] = own.traction(outer) @ t[1] + 2.0 * grown * (outer - outer**-3.0)
+        passed[1, 1] = t[1, 1] / outer
+        return found.wall(kolosov, 1.0, outer), passed
+
+    def _moved_hole(self, seat: Rim, t: np.ndarray, remote: Remote) -> np.ndarray:
+        """Displacement of the lug's own free hole over its radius under the loads, n = -N to N.
+
+        `t` are the harmonics on the contact rim, (N + 1, 2), which has the force.
+        """
+        highest, force = len(t) - 1, force_on(t)
+        found = np.zeros(2 * highest + 1, dtype=complex)
+        loads = {Q: force.real, P: -force.imag, **dict(zip(REMOTE, remote, strict=True))}
+        for place, column in _displacements(self.inside, seat).items():
+            middle = column.size // 2
+            low = min(middle, highest)
+            found[highest - low : highest + low + 1] += loads[place] * column[middle - low : middle + low + 1]
+        return found
+
+    # -- words, drawing, controls
+
+    def rows(self, length: InWords, material: InWords) -> list[tuple[str, str]]:
+        grip = "" if self.friction is None else f", friction {self.friction:g} in the plate"
+        size = f"outer radius {length(self.outer_radius)}"
+        return [("plate body", self.inside.words(length)), ("bush", f"{material(self.material)}, {size}{grip}")]
+
+    def caption(self, length: InWords, material: InWords) -> str:
+        bush = f" with bush of {material(self.material)} to radius {length(self.outer_radius)}"
+        return bush + self.inside.caption(length, material)
+
+    def drawing(self, rim: Rim) -> list[Shape]:
+        seat = self.around(rim)[1]
+        return [*self.inside.drawing(seat), Shape("circle", seat.ratio, "bush")]
+
+    @classmethod
+    def usual(cls, radius: float, material: Material) -> Self:
+        return cls(MATERIALS["steel"] if material.is_rigid else material, 1.25 * radius)
+
+    def page_controls(self, radius: float, clearance: float, dimensionless: bool) -> list[Control]:
+        most = max(2.0 * self.interference, abs(clearance), 1e-3 * radius * (not dimensionless))
+        found = super().page_controls(radius, clearance, dimensionless)
+        return [
+            *found,
+            Control("interference", self.interference, "displacement", 0.0, most),
+            Control("bush", self.material),
+        ]
+
+
+@lru_cache(maxsize=16)
+def _matrices(bush: Bushing, rim: Rim, highest: int) -> tuple[np.ndarray, ...]:
+    """Matrices of a bush for the harmonics from 2 to `highest`, shape (m, 2, 2) each.
+
+    They are the growing amplitudes per traction on the contact rim, the misfit, and the traction at the outer rim per
+    growing amplitude and per traction on the contact rim; see :class:`fastpin.kernels.harmonics.Layer`.
+    """
+    order = np.arange(2.0, highest + 1.0)
+    layer, far = bush.layer(rim, order), bush.inside.whole(bush.around(rim)[1], order)
+    return layer.amplitudes(far), layer.misfit(far), layer.growing_traction, layer.decaying_traction
+
+
+@lru_cache(maxsize=16)
+def _displacements(lug: PlateBody, seat: Rim) -> Displacements:
+    return lug.displacements(seat)

@@ -1,0 +1,414 @@
+"""The compliance of any finite plate: a small matrix between Fourier coefficients on the edge of its hole.
+
+A finite plate differs from the infinite one by a smooth part. Few harmonics describe it, whatever the nodes are. The
+basis functions are, in this order,
+
+    r and theta component of 1/sqrt(2);  for n = 1 to K: r cos n theta, r sin n theta, theta cos n theta,
+    theta sin n theta.
+
+Their coefficients f of the traction on the plate and v of its displacement obey G v/R = (hole + matrix) f, where "hole"
+is the hole in the infinite plate of the same material, (T41) of docs/theory.md. The matrix is symmetric (Betti).
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from fastpin.bodies.body import Harmonics, InWords, PlateBody, Projected, Remote, Rim, Table
+from fastpin.bodies.walls import Displacements
+from fastpin.errors import InputError, printable
+from fastpin.kernels import fourier
+from fastpin.model.checks import any_text, as_toml, choice, file_path, number, numbers, positive, string, why_unreadable
+from fastpin.model.grid import Grid
+from fastpin.model.inputs import open_input
+from fastpin.model.loads import LOADS, REMOTE, P, Q
+from fastpin.model.materials import PLANES, Material, MaterialPair, Plane
+
+FORMAT = "fastpin compliance"
+"""Name of the file format, its first entry."""
+
+VERSION = 1
+"""Version of the file format."""
+
+LEAST_ORDER, MOST_ORDER = 2, 200
+"""Limits of the highest harmonic K."""
+
+ASYMMETRY = 1e-6
+"""Largest difference of a matrix and its transpose, in parts of its largest entry."""
+
+DECAYED = 1e-2
+"""Largest entry of the last harmonic, in parts of the largest entry of the harmonics 0 and 2."""
+
+COLUMNS = tuple(LOADS[place] for place in REMOTE)
+"""Loads that a plate may have besides the forces on the pin: its own loads take the names of the remote stresses."""
+
+MOST_BYTES = 10_000_000
+"""Most bytes of a file."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Compliance(PlateBody):
+    """A finite plate with a hole, by its compliance on the edge of the hole.
+
+    Parameters
+    ----------
+    nu : float
+        Poisson's ratio of the plate.
+    plane : {"strain", "stress"}
+    hole_radius : float
+        Radius of the hole, m.
+    matrix : ndarray, shape (2 + 4 K, 2 + 4 K)
+        The plate's compliance less that of the infinite plate, times G; see the module. It does not depend on E. The
+        first harmonic holds the translation of the hole over the supports.
+    columns : mapping of str to ndarray, shape (2 + 4 K,)
+        Displacement G v/R per unit of a load of the plate. The loads are called sxx, syy and sxy.
+    made_by : str
+        Origin of the numbers.
+
+    Raises
+    ------
+    InputError
+        If a field is out of range, the matrix is not symmetric, or its last harmonics have not decayed.
+    """
+
+    kind = "compliance"
+    keys = ("file",)
+    arrays, named_arrays = ("matrix",), ("columns",)
+    edge_only = True
+    outer_radius = math.inf
+
+    nu: float
+    plane: Plane
+    hole_radius: float
+    matrix: np.ndarray
+    columns: Mapping[str, np.ndarray] = field(default_factory=dict)
+    made_by: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nu", number("nu", self.nu, 0.0, 0.5))
+        choice("plane", self.plane, PLANES)
+        object.__setattr__(self, "hole_radius", positive("hole_radius", self.hole_radius))
+        string("made_by", self.made_by)
+        matrix = numbers("matrix", self.matrix).copy()
+        size = matrix.shape[0] if matrix.ndim == 2 else 0
+        if matrix.shape != (size, size) or size % 4 != 2 or not LEAST_ORDER <= (size - 2) // 4 <= MOST_ORDER:
+            words = f"must have the shape (2 + 4 K, 2 + 4 K) with K from {LEAST_ORDER} to {MOST_ORDER}"
+            raise InputError("matrix", f"{words}, not {matrix.shape}")
+        largest = float(np.abs(matrix).max())
+        if float(np.abs(matrix - matrix.T).max()) > ASYMMETRY * largest:
+            raise InputError("matrix", "must be symmetric: the displacement at one place under a force at another")
+        matrix = 0.5 * (matrix + matrix.T)
+        self._check_decay(matrix)
+        matrix.setflags(write=False)
+        object.__setattr__(self, "matrix", matrix)
+        if not isinstance(self.columns, Mapping):
+            raise InputError("columns", f"must map loads to columns, not {as_toml(self.columns)}")
+        columns = {}
+        for name, column in self.columns.items():
+            choice("columns", name, COLUMNS)
+            columns[name] = numbers(f"columns.{name}", column).copy()
+            if columns[name].shape != (size,):
+                raise InputError(f"columns.{name}", f"must have the shape ({size},), not {columns[name].shape}")
+            columns[name].setflags(write=False)
+        object.__setattr__(self, "columns", MappingProxyType(columns))
+
+    def __reduce__(self) -> tuple[type[Compliance], tuple[Any, ...]]:
+        """Copies and pickles are made anew, so that they can't be changed either."""
+        given = self.nu, self.plane, self.hole_radius, self.matrix, dict(self.columns), self.made_by
+        return type(self), given
+
+    def __repr__(self) -> str:
+        made = f", {self.made_by}" if self.made_by else ""
+        return f"<Compliance: {self.order} harmonics, nu {self.nu:g}, plane {self.plane}{made}>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Compliance) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    @staticmethod
+    def _check_decay(matrix: np.ndarray) -> None:
+        harmonic = np.r_[0, 0, np.repeat(np.arange(1, (len(matrix) - 2) // 4 + 1), 4)]
+        low, last = np.flatnonzero((harmonic == 0) | (harmonic == 2)), np.flatnonzero(harmonic == harmonic[-1])
+        inner = np.flatnonzero(harmonic != 1)  # the first harmonic holds the translation over the supports
+        size, left = float(np.abs(matrix[np.ix_(low, inner)]).max()), float(np.abs(matrix[np.ix_(last, inner)]).max())
+        if left > DECAYED * size:
+            words = f"its last harmonic {harmonic[-1]} is {left / size:.2g} of the largest; it must decay to "
+            raise InputError("matrix", f"{words}{DECAYED:g}: take more harmonics")
+
+    @property
+    def order(self) -> int:
+        """The highest harmonic K."""
+        return (len(self.matrix) - 2) // 4
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all numbers. The origin does not enter."""
+        content = self.document()
+        del content["made_by"]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> Compliance:
+        """Read a compliance from a file of ``fastpin compliance``.
+
+        Raises
+        ------
+        InputError
+            If the file can't be read, is no such file, or has a fault.
+        """
+        place = file_path("file", path)
+        try:
+            with open_input(place) as file:
+                raw = file.read(MOST_BYTES + 1)
+        except OSError as error:
+            raise InputError("file", f"{place}: {why_unreadable(error)}") from None
+        if len(raw) > MOST_BYTES:
+            raise InputError("file", f"{place} is larger than {MOST_BYTES:,} bytes")
+        try:
+            content = json.loads(raw)
+        except (ValueError, RecursionError):
+            content = None
+        if not isinstance(content, dict) or content.get("format") != FORMAT:
+            raise InputError("file", f"{place} is no compliance file; fastpin compliance makes one")
+        try:
+            return cls.from_document(content)
+        except InputError as error:
+            raise InputError("file", f"{place}: {error}") from None
+
+    @classmethod
+    def from_document(cls, content: Mapping[str, Any]) -> Compliance:
+        """Return the compliance of the content of a file.
+
+        Raises
+        ------
+        InputError
+            If an entry is missing or wrong, or the version is unknown.
+        """
+        if not isinstance(content, Mapping):
+            raise InputError("content", f"must be a table, not {as_toml(content)}")
+        if content.get("version") != VERSION:
+            raise InputError("version", f"must be {VERSION}, not {as_toml(content.get('version'))}")
+        missing = [name for name in ("nu", "plane", "hole_radius", "matrix") if name not in content]
+        if missing:
+            raise InputError(missing[0], "is missing")
+        known = ("nu", "plane", "hole_radius", "matrix", "columns", "made_by")
+        given = {name: content[name] for name in known if name in content}
+        if isinstance(given.get("made_by"), str):
+            given["made_by"] = printable(given["made_by"])  # the file may be anybody's, or of an earlier version
+        return cls(**given)
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of a file, JSON-ready."""
+        columns = {name: column.tolist() for name, column in self.columns.items()}
+        head = {"format": FORMAT, "version": VERSION, "nu": self.nu, "plane": self.plane}
+        sizes = {"hole_radius": self.hole_radius, "order": self.order, "matrix": self.matrix.tolist()}
+        return {**head, **sizes, "columns": columns, "made_by": self.made_by}
+
+    def to_text(self) -> str:
+        """Return the text of a file."""
+        return json.dumps(self.document(), indent=1) + "\n"
+
+    def columns_of(self, name: str) -> np.ndarray:
+        """The column of a load; zeros if the plate has no such load. Another name raises :class:`InputError`."""
+        choice("name", name, COLUMNS)
+        return self.columns.get(name, np.zeros(len(self.matrix)))
+
+    def scaled_to(self, radius: float) -> bool:
+        """Whether the file's hole has this radius, m, up to rounding."""
+        return math.isclose(positive("radius", radius), self.hole_radius, rel_tol=1e-9)
+
+    # -- case files, stored files, words
+
+    @classmethod
+    def read(cls, table: Table) -> Compliance | None:
+        table.require("file")
+        name = table.checked("file", any_text)
+        if name is None:
+            return None
+        try:
+            return _read(table.folder / name)
+        except InputError as error:
+            table.report(str(error), "file")
+            return None
+
+    def toml(self) -> dict[str, Any]:
+        raise InputError("plate_body", "a compliance has a file of its own: name it in the section [plate_body]")
+
+    def entries(self) -> dict[str, Any]:
+        found = super().entries()
+        return found | {"matrix": found.pop("matrix"), "columns": found.pop("columns")}
+
+    def as_json(self, material: Callable[[Material], Any]) -> dict[str, Any]:
+        """The kind, and the SHA-256 of the numbers."""
+        return {"kind": self.kind, "sha256": self.digest}
+
+    def summary(self) -> dict[str, Any]:
+        return {"order": self.order, "loads": list(self.columns), "made_by": self.made_by}
+
+    def words(self, length: InWords) -> str:
+        made = f", {self.made_by}" if self.made_by else ""
+        loads = ", ".join(["forces", *self.columns])
+        return f"finite plate, compliance of {self.order} harmonics{made}, loads: {loads}"
+
+    def caption(self, length: InWords, material: InWords) -> str:
+        return ", finite"
+
+    # -- checks
+
+    def check_pair(self, pair: MaterialPair, radius: float, dimensionless: bool) -> None:
+        nu, plane = pair.plate.nu, pair.plane
+        if not math.isclose(self.nu, nu, abs_tol=1e-9) or self.plane != plane:
+            words = f"the compliance was made for nu = {self.nu:g}, plane {self.plane}"
+            raise InputError("plate_body", f"{words}; the plate has nu = {nu:g}, plane {plane}")
+        if not dimensionless and not self.scaled_to(radius):
+            words = f"the compliance was made for a hole of radius {self.hole_radius:g}; the hole radius is {radius:g}"
+            raise InputError("plate_body", words)
+
+    def without_gauge(self, radius: float) -> str:
+        return "a compliance knows the edge of the hole only: leave the gauge out"
+
+    def check_remote(self, name: str) -> None:
+        if name not in self.columns:
+            known = ", ".join(self.columns) or "none"
+            raise InputError(name, f"the compliance of the plate has no column of this load; its columns are: {known}")
+
+    def fitted(self, table: Table, radius: float, dimensionless: bool, pair: MaterialPair | None) -> PlateBody | None:
+        return None if pair is None else self
+
+    # -- the response of the rim, and stresses
+
+    def pressed(self, rim: Rim) -> float:
+        return -(rim.compliance * (0.5 + float(self.matrix[0, 0])))
+
+    def pressed_share(self, rim: Rim) -> float:
+        return -1.0 - 2.0 * float(self.matrix[0, 0])
+
+    def pressed_by_matrix(self, rim: Rim) -> float:
+        return 2.0 * rim.compliance * float(self.matrix[0, 0])
+
+    def matrix_in(self, rim: Rim, beta: float) -> np.ndarray:
+        without = self._without_motion
+        return rim.compliance / beta * (without @ self.matrix @ without)
+
+    def load_columns(self, rim: Rim, beta: float) -> Displacements:
+        unit, rows = rim.compliance / beta, translation_rows(len(self.matrix))
+        columns: Mapping[int, np.ndarray] = {
+            Q: self.matrix @ rows[0] / (math.pi * math.sqrt(2.0)),
+            P: -self.matrix @ rows[1] / (math.pi * math.sqrt(2.0)),
+            **{LOADS.index(name): column for name, column in self.columns.items()},
+        }
+        without = self._without_motion
+        return {place: unit * complex_coefficients(without @ column) for place, column in columns.items()}
+
+    @property
+    def _without_motion(self) -> np.ndarray:
+        """The projection that takes resultant and translation from coefficients."""
+        rows = translation_rows(len(self.matrix))
+        return np.eye(len(self.matrix)) - rows.T @ rows
+
+    def over_supports(self, moved: complex, rim: Rim, projected: Projected, load: Mapping[str, float]) -> complex:
+        displacement = self.matrix @ projected(self.matrix)
+        for name in (name for name in COLUMNS if name in self.columns):
+            displacement = displacement + load[name] * self.columns[name]
+        unit = math.sqrt(0.5) * rim.radius * rim.compliance
+        x, y = unit * (translation_rows(len(self.matrix)) @ displacement)
+        return moved + complex(x, y)
+
+    def add_edge_hoop(self, hoop: np.ndarray, rim: Rim, tractions: Harmonics, remote: Remote, at: np.ndarray) -> None:
+        """Add the hoop stress on the edge beyond the infinite plate at the angles `at`, shape (m,); (T48)."""
+        t = tractions(self.order)
+        moved = self.matrix @ plate_coefficients(-(t[:, 0] + t[:, 1]), -1j * (t[:, 0] - t[:, 1]))
+        for place, value in zip(REMOTE, remote, strict=True):
+            moved = moved + value * self.columns_of(LOADS[place])
+        order = np.arange(-self.order, self.order + 1.0)
+        waves = np.exp(1j * np.multiply.outer(at, order))
+        hoop += 8.0 / (rim.kolosov + 1.0) * np.real(waves @ ((1.0 + order) * complex_coefficients(moved)))
+
+
+def _read(path: Path) -> Compliance:
+    """Read a compliance, unless the same file was read before and has not changed since."""
+    try:
+        status = path.stat()
+    except OSError:  # the file can't be read; the reader says why
+        return Compliance.from_file(path)
+    return _remembered(path, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=8)  # the points of a sweep often share a file
+def _remembered(path: Path, changed: int, size: int) -> Compliance:
+    return Compliance.from_file(path)
+
+
+# -- the basis of the coefficients ----------------------------------------------------------------------------
+
+
+def basis(matrix: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """The basis of a compliance's `matrix` (m, m) at the nodes, (2n, m), and the coefficients of hats in it, (m, 2n).
+
+    Rows and columns of the nodes belong to (gap, slip) and (N, T).
+    """
+    n = np.arange((len(matrix) - 2) // 4 + 1.0)
+    left, right = grid.knots()
+    waves = np.exp(-1j * np.multiply.outer(grid.theta, n))
+    hats = fourier.hat_moments(n, grid.theta - left, right - grid.theta) * waves / math.pi
+    return _in_basis(waves), _in_basis(hats).T
+
+
+def _in_basis(waves: np.ndarray) -> np.ndarray:
+    """Columns of the basis (2n, 2 + 4K) for gap and slip from exp(-i n theta), shape (n, K + 1).
+
+    The theta component of the basis is turned: the traction on the plate is (N, -T), and the slip counts -v_theta.
+    """
+    n, order = waves.shape[0], waves.shape[1] - 1
+    found = np.zeros((2 * n, 2 + 4 * order))
+    found[:n, 0] = waves[:, 0].real / math.sqrt(2.0)
+    found[n:, 1] = -waves[:, 0].real / math.sqrt(2.0)
+    found[:n, 2::4], found[:n, 3::4] = waves[:, 1:].real, -waves[:, 1:].imag
+    found[n:, 4::4], found[n:, 5::4] = -waves[:, 1:].real, waves[:, 1:].imag
+    return found
+
+
+def translation_rows(size: int) -> np.ndarray:
+    """Unit vectors, shape (2, size), of the force along x and y in the basis of a compliance.
+
+    They are also a translation of the hole along x and y by the square root of 1/2.
+    """
+    rows = np.zeros((2, size))
+    rows[0, [2, 5]] = math.sqrt(0.5) * np.array([1.0, -1.0])
+    rows[1, [3, 4]] = math.sqrt(0.5)
+    return rows
+
+
+def complex_coefficients(column: np.ndarray) -> np.ndarray:
+    """Fourier coefficients of v_r + i v_theta, n = -K to K, from coefficients in the real basis (2 + 4K, ...)."""
+    order = (len(column) - 2) // 4
+    found = np.zeros((2 * order + 1, *column.shape[1:]), dtype=complex)
+    found[order] = (column[0] + 1j * column[1]) / math.sqrt(2.0)
+    cos, sin = column[2::4] + 1j * column[4::4], column[3::4] + 1j * column[5::4]
+    found[order + 1 :], found[order - 1 :: -1] = 0.5 * (cos - 1j * sin), 0.5 * (cos + 1j * sin)
+    return found
+
+
+def plate_coefficients(pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    """Coefficients of the traction (N, -T) on the plate in the basis of a compliance, shape (2 + 4K, ...).
+
+    `pressure` and `shear`, shape (K + 1, ...), are int g exp(-i n xi) dxi/pi of N and T, n = 0 to K.
+    """
+    found = np.empty((4 * len(pressure) - 2, *pressure.shape[1:]))
+    found[0], found[1] = pressure[0].real / math.sqrt(2.0), -shear[0].real / math.sqrt(2.0)
+    found[2::4], found[3::4] = pressure[1:].real, -pressure[1:].imag
+    found[4::4], found[5::4] = -shear[1:].real, shear[1:].imag
+    return found
