@@ -104,7 +104,7 @@ VALUES: dict[str, Callable[[], Any]] = {
     "Decimal NaN": lambda: decimal.Decimal("sNaN"),
     "Fraction": lambda: fractions.Fraction(1, 3),
     "date": lambda: datetime.date(2000, 1, 1),
-    "timedelta64": lambda: np.timedelta64(5),
+    "timedelta64": lambda: np.timedelta64(5, "s"),
     "np.float64 nan": lambda: np.float64("nan"),
     "np.float32": lambda: np.float32(0.5),
     "np.int8": lambda: np.int8(-5),

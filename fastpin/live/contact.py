@@ -18,7 +18,7 @@ import numpy as np
 from fastpin.casefile import case_text
 from fastpin.errors import FastpinError, InputError
 from fastpin.kernels.status import OPEN
-from fastpin.live.controls import Scales, changed_fields, load_controls, problem_controls, vector_axes
+from fastpin.live.controls import ControlScales, changed_fields, load_controls, problem_controls, vector_axes
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import ALONE, MOST_UNDONE, Limits, Message, refusal
 from fastpin.model.case import Case
@@ -102,7 +102,7 @@ class LiveContact:
 
     def __init__(self, case: Case, nodes: int = NODES, limits: Limits = ALONE) -> None:
         self._case, self._nodes, self._limits = case, nodes, limits
-        self._scales = Scales(case.problem, case.history)
+        self._scales = ControlScales(case.problem, case.history)
         self._past: deque[Mark] = deque(maxlen=MOST_UNDONE)
         self._future: list[Mark] = []
         self._pictures: dict[int, Answer] = {}
@@ -416,7 +416,7 @@ def _named(given: np.ndarray) -> dict[str, float]:
     return {name: float(value) for name, value in zip(LOADS, given, strict=True) if not np.isnan(value)}
 
 
-def case_document(title: str, problem: Problem, scales: Scales) -> Answer:
+def case_document(title: str, problem: Problem, scales: ControlScales) -> Answer:
     """A problem as the page needs it: units, sizes and shapes of the bodies, loads and controls."""
     lug, bush = problem.plate_body.lug, problem.plate_body.bush
     return {

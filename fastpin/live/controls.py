@@ -37,7 +37,7 @@ MISFITS = 1.5
 """End of the slider of the clearance, in parts of the clearance or of the displacement under the usual force."""
 
 
-class Scales:
+class ControlScales:
     """Sizes of the loads and displacements of a case. They stay as they are while the problem changes.
 
     Attributes
@@ -67,7 +67,7 @@ class Scales:
         return float(getattr(self, {"traction": "stress"}.get(kind, kind)))
 
 
-def load_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+def load_controls(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The loads that the problem allows, with their units and sizes."""
     unit = units(problem)
     found = []
@@ -80,7 +80,7 @@ def load_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
     return found
 
 
-def problem_controls(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+def problem_controls(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The fields of the problem that can be changed: their group, value, unit, and ends of the slider or choices."""
     unit = units(problem) | {"modulus": Unit(1.0, "1/beta*") if problem.dimensionless else PASCAL}
     misfit = MISFITS * scales.misfit
@@ -226,7 +226,7 @@ def _changed_plate(problem: Problem, changes: Mapping[str, Any]) -> PlateBody:
     return changed_plate(body, values, problem.hole_radius, problem.pair.plate)
 
 
-def vector_axes(problem: Problem, scales: Scales) -> list[dict[str, Any]]:
+def vector_axes(problem: Problem, scales: ControlScales) -> list[dict[str, Any]]:
     """The loads that the mouse moves along x and along y: their sign in this direction, and their size."""
     names = [("ux" if driven else force, sign) for driven, force, sign in
              zip(problem.driven, ("Q", "P"), (1.0, -1.0), strict=True)]  # fmt: skip

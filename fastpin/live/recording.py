@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from fastpin.errors import InputError
 from fastpin.live.contact import case_document
-from fastpin.live.controls import Scales
+from fastpin.live.controls import ControlScales
 from fastpin.live.page import recorded_page
 from fastpin.live.pictures import packed, picture
 from fastpin.live.protocol import MOST_PICTURES
@@ -50,7 +50,7 @@ def record_page(case: Case, states: Sequence[State], sentence: str = "") -> str:
     chosen = [states[place] for place in recorded_places(len(states))]
     recording = {
         "version": __version__,
-        "case": case_document(case.title, case.problem, Scales(case.problem, case.history)),
+        "case": case_document(case.title, case.problem, ControlScales(case.problem, case.history)),
         "grids": {"0": packed(chosen[0].theta)},
         "reference": None,
         "sentence": sentence,
