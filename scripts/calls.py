@@ -42,6 +42,7 @@ import numpy as np
 import psutil
 
 import fastpin
+from fastpin.bodies.body import BodyBase, PinBody, PlateBody
 from fastpin.errors import FastpinError, InputError
 from scripts import odd_values, valid_values
 from scripts.valid_values import Valid
@@ -60,6 +61,9 @@ PAIRS = 0.25
 
 NOT_CALLED = {"fastpin.live.serve": "it serves until it is stopped"}
 """Callables that are left out, and why."""
+
+OF_BUSH = ("around", "layer", "check_material")
+"""Methods of a bush for the package only, as the questions of :mod:`fastpin.bodies.body` are."""
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs" / "reference"
 """The pages that describe the public names."""
@@ -161,8 +165,13 @@ def _targets_of_class(name: str, owner: type) -> Iterator[Target]:
     if issubclass(owner, (BaseException, enum.Enum)) or getattr(owner, "_is_protocol", False):
         return
     yield Target(name, None, owner, _parameters(owner))
+    asked = {*dir(PinBody), *dir(PlateBody), *OF_BUSH} if issubclass(owner, BodyBase) else ()
     for inner in dir(owner):
-        if inner.startswith("_") or not any(inner in vars(base) for base in owner.__mro__ if _is_ours(base)):
+        if (
+            inner in asked
+            or inner.startswith("_")
+            or not any(inner in vars(base) for base in owner.__mro__ if _is_ours(base))
+        ):
             continue
         static = inspect.getattr_static(owner, inner)
         if isinstance(static, (classmethod, staticmethod)):

@@ -2,7 +2,8 @@
 
 A body says its shape and how its load enters or leaves it. The materials stand in the problem's pair. Lengths are in m,
 or in units of R for a dimensionless problem. docs/bodies.md explains the choices. The answers here are those of a body
-without the feature that is asked for. A body is a file of this folder; :mod:`fastpin.bodies.kinds` lists them.
+without the feature that is asked for. A body is a file of this folder; :mod:`fastpin.bodies.kinds` lists them. Only
+the package asks: users have the fields of a body.
 """
 
 from __future__ import annotations
