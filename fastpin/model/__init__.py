@@ -10,4 +10,4 @@ from fastpin import bodies
 from fastpin.moved import with_moved
 
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__getattr__ = with_moved(_face, bodies, bodies.__all__)
+__getattr__ = with_moved(_face, lambda: bodies, bodies.__all__)

@@ -9,4 +9,6 @@ from fastpin import reading
 from fastpin.moved import with_moved
 
 _face, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
-__getattr__ = with_moved(_face, reading, ("BushFit", "HoopPeak", "Stress", "hoop", "joint", "refined", "stress"))
+__getattr__ = with_moved(
+    _face, lambda: reading, ("BushFit", "HoopPeak", "Stress", "hoop", "joint", "refined", "stress")
+)
