@@ -400,7 +400,7 @@ class PlateBody(BodyBase):
         return {}
 
     def load_columns(self, rim: Rim, beta: float) -> Displacements:
-        """As :meth:`displacements`, in units of beta*."""
+        """As ``displacements``, in units of beta*."""
         unit = 1.0 / beta
         return {place: unit * column for place, column in self.displacements(rim).items()}
 
