@@ -11,6 +11,7 @@ from fastpin.bodies.body import Control, PlateBody
 from fastpin.bodies.kinds import PIN_CONTROLS, PLATE_CONTROLS, SOLID_PIN, TITLES, changed_pin, changed_plate
 from fastpin.errors import InputError
 from fastpin.model.checks import choice
+from fastpin.model.fields import FIELDS
 from fastpin.model.history import LoadHistory, check_loads
 from fastpin.model.loads import LOAD_KIND, LOADS
 from fastpin.model.materials import MATERIALS, PLANES, Material, MaterialPair
@@ -204,7 +205,7 @@ def _of_body(group: str, controls: Sequence[Control], unit: Mapping[str, Unit]) 
 def _pin(problem: Problem, unit: Mapping[str, Unit]) -> list[dict[str, Any]]:
     found = _of_body("pin", problem.pin_body.page_controls(problem.hole_radius), unit)
     if problem.pin_body == SOLID_PIN and not problem.held and problem.drive == "force":
-        found.append(_chooser("pin", "pin_load", problem.pin_load, ("centre", "body")))
+        found.append(_chooser("pin", "pin_load", problem.pin_load, FIELDS["pin_load"].choices))
     if problem.pin_load != "body" and problem.hub_radius is None and problem.hub_stiffness is None:
         found.append(_chooser("pin", "rotation", problem.rotation, ("free", "fixed")))
     return found

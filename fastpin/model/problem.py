@@ -21,6 +21,7 @@ from fastpin.model.checks import (
     positive,
     true_or_false,
 )
+from fastpin.model.fields import FIELDS
 from fastpin.model.materials import LEAST_SQUEEZE, MaterialPair
 from fastpin.model.synonyms import explains_keywords
 
@@ -153,9 +154,9 @@ class Problem:
                 f"{incompressible} in plane strain: it fits into no smaller hole; "
                 f"must not be negative, not {clearance + self.joint.press_fit[1]:g}",
             )
-        choice("pin_load", self.pin_load, ("centre", "body"))
-        choice("rotation", self.rotation, ("free", "fixed", "spring"))
-        choice("drive", self.drive, ("force", "ux", "uy", "both"))
+        for name, each in FIELDS.items():
+            if each.choices:
+                choice(name, getattr(self, name), each.choices)
         if self.pin_load == "body" and self.held:
             raise InputError(
                 "rotation",
