@@ -618,24 +618,27 @@ class Kind(NamedTuple):
 
     Attributes
     ----------
+    honest : str
+        An unchanged file of the kind.
     change : callable
         ``change(rng, folder, seen)`` changes a file of a folder, and returns its path.
     attempt : callable
         ``attempt(rng, path, seen)`` makes all attempts with this file.
     """
 
+    honest: str
     change: Callable[[np.random.Generator, Path, Examination], Path]
     attempt: Callable[[np.random.Generator, Path, Examination], None]
 
 
 KINDS = {
-    "case": Kind(change_case, try_case),
-    "csv": Kind(change_csv, try_csv),
-    "result": Kind(change_finished, try_result),
-    "unfinished": Kind(change_unfinished, try_unfinished),
-    "index": Kind(change_sweep, try_sweep),
-    "lug": Kind(change_lug, try_lug),
-    "plan": Kind(change_plan, try_plan),
+    "case": Kind("case0.toml", change_case, try_case),
+    "csv": Kind("loads.csv", change_csv, try_csv),
+    "result": Kind("result.h5", change_finished, try_result),
+    "unfinished": Kind("unfinished.h5", change_unfinished, try_unfinished),
+    "index": Kind("sweep/index.sqlite", change_sweep, try_sweep),
+    "lug": Kind("lug.toml", change_lug, try_lug),
+    "plan": Kind("plan.toml", change_plan, try_plan),
 }
 """The kinds of files."""
 
@@ -674,16 +677,14 @@ def warm(before: Path) -> None:
         If an unchanged file leads to a finding.
     """
     here = mock.patch.object(workers, "through_processes", _through_this_process)
-    changed = {"case": "case0.toml", "csv": "loads.csv", "result": "result.h5", "unfinished": "unfinished.h5"}
-    changed |= {"index": "sweep/index.sqlite", "lug": "lug.toml", "plan": "plan.toml"}
-    for kind in KINDS:
+    for kind in KINDS.values():
         with tempfile.TemporaryDirectory() as name, here, warnings.catch_warnings():
             warnings.simplefilter("ignore")
             folder = Path(name) / "files"
             shutil.copytree(before, folder)
             seen = Examination(folder)
             with contextlib.chdir(folder):
-                KINDS[kind].attempt(np.random.default_rng(0), folder / changed[kind], seen)
+                kind.attempt(np.random.default_rng(0), folder / kind.honest, seen)
                 seen.command("show", folder / "saved.h5", "--plot", folder / "one.png", may_change=("^one.png$",))
             if seen.findings:
                 raise RuntimeError(f"unchanged files: {seen.findings}")
