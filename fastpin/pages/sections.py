@@ -117,9 +117,8 @@ def _status(source: Source) -> Text:
     """Say whether the result is complete, and why not."""
     corners = len(source.case.history)
     if source.result.complete:
-        followed = "the only corner" if corners == 1 else f"all {corners:,} corners"
-        verb = "was" if corners == 1 else "were"
-        return Text(f"Complete: {followed} of the load history {verb} followed; {_count(source)}.")
+        which, were = ("the only corner", "was") if corners == 1 else (f"all {corners:,} corners", "were")
+        return Text(f"Complete: {which} of the load history {were} followed; {_count(source)}.")
     why = f" The reason: {source.error}." if source.error else ""
     how = way_on(source.path, source.error)
     return Text(f"Unfinished: corner {source.reached:,} of {corners:,}; {_count(source)}.{why}{_said(how)}", "note")
