@@ -9,7 +9,7 @@ harmless one, so that the rest is still checked.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from datetime import date
 from pathlib import Path
 from typing import Any, TypeVar
@@ -29,6 +29,7 @@ from fastpin.model.materials import MATERIAL_KEYS, MATERIALS, Material, Material
 from fastpin.model.options import SolveOptions
 from fastpin.model.problem import LEAST_RADIUS, MOST_RADIUS, NO_THICKNESS, Problem, checked_thickness
 from fastpin.model.synonyms import closest, meant
+from fastpin.model.units import PER_THICKNESS
 
 EXAMPLE = Path(__file__).with_name("example.toml").read_text(encoding="utf-8")
 """A commented case file: the built-in case."""
@@ -52,6 +53,13 @@ ROOT_KEYS = ("title", "materials")
 T = TypeVar("T")
 
 _DEFAULTS = SolveOptions()
+
+_SIZES: dict[str, Any] = {
+    each.name: each.default
+    for each in fields(Problem)
+    if each.name in FIELDS and not FIELDS[each.name].choices and each.default is not MISSING
+}
+del _SIZES["thickness"]  # it converts the others
 
 _STEEL = MaterialPair(MATERIALS["steel"], MATERIALS["steel"])  # replaces a wrong pair, so that the rest is checked
 
@@ -279,24 +287,24 @@ def _problem(
         contact.require(key, " (or give load_parameter)" if key in ("hole_radius", "clearance") else "")
     values: dict[str, Any] = {"pair": pair, **{key: contact.number(key) for key in needed}}
     chosen = {name: contact.choice(name, field.choices) for name, field in FIELDS.items() if field.choices}
-    hub, thickness = _hub_and_thickness(contact)
+    sizes, thickness = _sizes_and_thickness(contact)
     if chosen["rotation"] == "spring" and "hub_stiffness" not in contact:
         contact.report('hub_stiffness: a pin with rotation = "spring" needs the stiffness of the spring', "rotation")
     radius = values.get("hole_radius", 1.0)
     if radius is None or not LEAST_RADIUS <= radius <= MOST_RADIUS:
-        radius, hub = None, dict.fromkeys(hub)  # without the radius of the hole no hub can be checked
+        radius, sizes = None, dict(_SIZES)  # without the radius of the hole no size can be checked
     values |= read_bodies(source, folder, radius, given, materials)
     radius = radius or MOST_RADIUS
     unit = radius**2 / (1.0 if make is not Problem else pair.beta_star)
     is_complete = None not in chosen.values()
     if is_complete:
-        values |= {**chosen, **hub, **thickness}
+        values |= {**chosen, **sizes, **thickness}
     harmless = {
         "hole_radius": MOST_RADIUS,
         "clearance": 0.0,
         "load_parameter": 0.0,
         "friction": 0.0,
-        **dict.fromkeys(hub),
+        **_SIZES,
         "hub_stiffness": unit if chosen["rotation"] == "spring" else None,
         "plate_body": INFINITE_PLATE,
     }
@@ -306,18 +314,19 @@ def _problem(
     return problem if is_complete else None
 
 
-def _hub_and_thickness(contact: Section) -> tuple[dict[str, float | None], dict[str, float]]:
-    """The sizes of hub and gauge, and the thickness if it is given. The stiffness of a spring is per thickness then."""
-    hub = {name: contact.number(name) for name, each in FIELDS.items() if each.is_optional and name != "thickness"}
+def _sizes_and_thickness(contact: Section) -> tuple[dict[str, Any], dict[str, float]]:
+    """The numbers with a default, and the thickness if it is given. With it, a stiffness is that of the whole pin."""
+    sizes = _SIZES | {name: contact.number(name) for name in _SIZES if name in contact}
     thickness = None if "thickness" not in contact else contact.checked("thickness", checked_thickness)
     if thickness is None:
-        return hub, {}
+        return sizes, {}
     if "load_parameter" in contact:
         contact.report(f"thickness: {NO_THICKNESS}", "thickness")
-        return hub, {}
-    if hub["hub_stiffness"] is not None:
-        hub["hub_stiffness"] /= thickness
-    return hub, {"thickness": thickness}
+        return sizes, {}
+    for name, value in sizes.items():
+        if value is not None and FIELDS[name].kind in PER_THICKNESS:
+            sizes[name] = value / thickness
+    return sizes, {"thickness": thickness}
 
 
 def _about(section: Section) -> About:

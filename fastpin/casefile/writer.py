@@ -76,10 +76,10 @@ def _contact(problem: Problem) -> Iterator[str]:
     else:
         yield f"hole_radius = {problem.hole_radius!r}"
         yield f"clearance = {problem.clearance!r}"
-    for name in FIELDS:
+    for name, field in FIELDS.items():
         value = getattr(problem, name)
         if value is not None and name not in ("hole_radius", "clearance"):
-            yield f"{name} = {_value(value if name != 'hub_stiffness' else _whole(value, problem.thickness))}"
+            yield f"{name} = {_value(_whole(value, problem.thickness) if field.kind in PER_THICKNESS else value)}"
 
 
 def _bodies(problem: Problem) -> Iterator[list[str]]:

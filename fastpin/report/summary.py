@@ -61,8 +61,7 @@ def document(
             "plane": pair.plane,
             "dundurs": {"alpha": alpha, "beta": beta, "convention": "usual"},
             "beta_star": problem.surfaces.beta_star,
-            **{name: getattr(problem, name) for name in FIELDS},
-            "hub_stiffness": problem.hub_stiffness and units(problem)["stiffness"].factor * problem.hub_stiffness,
+            **{name: _in_its_unit(problem, name) for name in FIELDS},
             "pin_body": _body_summary(problem.pin_body),
             "plate_body": _body_summary(problem.plate_body),
             "assembled_clearance": problem.assembled_clearance,
@@ -79,6 +78,12 @@ def document(
         "cycle": None if cycle is None else cycle_report.document(cycle),
     }
     return json_ready(found)
+
+
+def _in_its_unit(problem: Problem, name: str) -> Any:
+    """A field of the problem, in the unit that :func:`unit_names` gives to its kind."""
+    value, kind = getattr(problem, name), FIELDS[name].kind
+    return units(problem)[kind].factor * value if kind and value is not None else value
 
 
 def unit_names(problem: Problem) -> dict[str, str]:
