@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 from fastpin.benchmarks.rows import Outcome
 from fastpin.benchmarks.text import row_curves
 from fastpin.errors import InputError
-from fastpin.paper import catalog
 from fastpin.paper.curves import Report
+from fastpin.paper.files import FORMATS, check_files, write_files
 from fastpin.report.curves import Curve, write_csv
 from fastpin.version import __version__
 
@@ -73,7 +73,7 @@ def benchmark(name: str) -> Benchmark:
     return cast(Benchmark, importlib.import_module(f"fastpin.benchmarks.{module}"))
 
 
-def check(names: Iterable[str], directory: str | Path, formats: Sequence[str] = catalog.FORMATS[:1]) -> None:
+def check(names: Iterable[str], directory: str | Path, formats: Sequence[str] = FORMATS[:1]) -> None:
     """Check before the work that the files of all benchmarks can be written, and make `directory` if it is missing.
 
     Raises
@@ -82,7 +82,7 @@ def check(names: Iterable[str], directory: str | Path, formats: Sequence[str] = 
         If there is no such benchmark, a format is unknown, or the files can't be written.
     """
     known = [benchmark_name(name) for name in names]
-    catalog.check_files([*known, *map(curves_stem, known)], directory, formats)
+    check_files([*known, *map(curves_stem, known)], directory, formats)
 
 
 def curves_stem(name: str) -> str:
@@ -96,9 +96,7 @@ def titles() -> Iterator[tuple[str, str]]:
         yield name, benchmark(name).TITLE
 
 
-def write(
-    name: str, outcome: Outcome, directory: str | Path, formats: Sequence[str] = catalog.FORMATS[:1]
-) -> list[Path]:
+def write(name: str, outcome: Outcome, directory: str | Path, formats: Sequence[str] = FORMATS[:1]) -> list[Path]:
     """Write the numbers of a benchmark as CSV, and its figure, if it has one, in each of the `formats`.
 
     The rows stand in ``NAME.csv``, and the curves of a figure in ``NAME-curves.csv``. Return the paths.
@@ -110,4 +108,4 @@ def write(
     if not outcome.curves:
         return [rows]
     stem = curves_stem(benchmark_name(name))
-    return [rows, *catalog.write(outcome.curves, chosen.draw, stem, directory, remarks, formats)]
+    return [rows, *write_files(outcome.curves, chosen.draw, stem, directory, remarks, formats)]

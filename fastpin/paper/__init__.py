@@ -1,4 +1,4 @@
-"""The figures of the paper and four beyond it, one file each.
+"""The figures of the paper, and others beyond it, by subject.
 
 The public names stand in ``__init__.pyi``. They are loaded when first used.
 """

@@ -1,12 +1,14 @@
-"""Computing the curves of the paper's figures."""
+"""The record of a figure, and the computing of its curves."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from fastpin.model.angles import interval_near_bottom
 from fastpin.reading.zones import ALL_ROUND, Interval, is_all_round
@@ -17,6 +19,40 @@ Report = Callable[[float], None]
 """A callable that receives the computed fraction of a figure, 0 to 1."""
 
 Item = TypeVar("Item")
+
+
+class Compute(Protocol):
+    """A function that solves, and returns the curves of a figure."""
+
+    def __call__(self, nodes: int, progress: Report | None = None) -> list[Curve]:
+        """Solve with about `nodes` nodes."""
+        ...
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """A figure of the paper, or one beyond it.
+
+    Attributes
+    ----------
+    name : str
+        The number in the paper, or a name in lower case with dashes.
+    title : str
+        A description, the first line of the CSV file.
+    least_nodes : int
+        The fewest nodes that resolve the subject of the figure.
+    compute : callable
+        ``compute(nodes, progress)`` solves, and returns the curves.
+    draw : callable
+        ``draw(curves)`` draws the curves of `compute`.
+    """
+
+    name: str
+    title: str
+    least_nodes: int
+    compute: Compute
+    draw: Callable[[Sequence[Curve]], Figure]
+
 
 NEAR = 1e-12
 """Distance below which two angles are the same place, rad."""

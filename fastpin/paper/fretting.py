@@ -1,8 +1,22 @@
-"""Fretting (figures 11 to 17): a vertical load that stays, and a horizontal load that changes its direction."""
+"""Figures 11, 12 and 14 to 17: fretting. A vertical load stays, and a horizontal load changes its direction.
+
+The captions give L_p, and mu = 0.55 for figures 11 to 15. Figures 16 and 17 take this friction over.
+
+*Figures 11 and 12*: centre loads without rotation (C_omega = 0), Ti-6Al-4V in Ti-6Al-4V. The horizontal load
+eta = Q/(mu P) is our choice: 0.5 left, 1 right.
+
+*Figures 14 and 15*: body forces on a pin that rotates freely. eta = B_x/(mu B_y) is our choice, in figure 14 as in
+figures 11 and 12, in figure 15 the 1 of figures 16 and 17. The text gives the two pairs of figure 15.
+
+*Figures 16 and 17*: as figure 15, with an aluminium pin in Ti-6Al-4V. The caption of figure 16 gives
+|eta| = |B_x|/(mu B_y) = 1. In figure 17 the contacts under +B_x and -B_x overlap in five degrees only. The nodes gather
+there, at the bottom: they resolve the shear within the last degree of the second contact.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
 from matplotlib.figure import Figure
 
@@ -10,14 +24,15 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import line
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem, Rotation
-from fastpin.paper.curves import Report, steps, traction_curve
-from fastpin.paper.tractions import NAMES, PAIRS, Panel, chosen, traction_figure
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
+from fastpin.paper.sweep import NODES_RATIO, gathered_grid
+from fastpin.paper.tractions import NAMES, PAIRS, Panel, chosen, traction_figure, values_of
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 FRICTION = 0.55
 LOADS: dict[PinLoad, tuple[str, str, str]] = {"centre": ("P", "+Q", "-Q"), "body": ("By", "+Bx", "-Bx")}
-"""The paper's names of the loads of a history, for centre loads and for body forces. Figures show all three states."""
+"""The paper's names of the loads of a history, for centre loads and for body forces."""
 
 WORDS = {
     "P": "$P = F$ alone (downwards)",
@@ -60,14 +75,12 @@ def cycled(
 
 def cycle_figure(curves: Sequence[Curve], parameter: str) -> Figure:
     """Draw pressure above shear, with a column for each value of a parameter: "pair", "L_p" or "eta"."""
-    loads = list(dict.fromkeys(curve.parameters["load"] for curve in curves))
-    lines = {load: line(index, index) for index, load in enumerate(loads)}
-    values = list(dict.fromkeys(curve.parameters[parameter] for curve in curves))
-    titles = [_panel_title(chosen(curves, **{parameter: value})[0], parameter) for value in values]
+    lines = {load: line(index, index) for index, load in enumerate(values_of(curves, "load"))}
+    columns = [chosen(curves, **{parameter: value}) for value in values_of(curves, parameter)]
     layout = [
-        [Panel("N", chosen(curves, **{parameter: value}), title) for value, title in zip(values, titles, strict=True)]
+        [Panel("N", column, _panel_title(column[0], parameter)) for column in columns],
+        [Panel("T", column) for column in columns],
     ]
-    layout.append([Panel("T", panel.curves) for panel in layout[0]])
     legend = [(WORDS[load], style) for load, style in lines.items()]
     heading = case_lines(curves[0], parameter)
     return traction_figure(layout, lambda curve: lines[curve.parameters["load"]], legend, heading=heading)
@@ -100,3 +113,57 @@ def _panel_title(curve: Curve, parameter: str) -> str:
     if parameter == "pair":
         return NAMES[value]
     return f"{RATIOS[_pin_load(curve)]} = {value:g}" if parameter == "eta" else f"load parameter $L_p$ = {value:g}"
+
+
+def _figure(
+    name: str,
+    title: str,
+    pin_load: PinLoad,
+    cases: Sequence[tuple[str, float, float]],
+    varied: str,
+    least_nodes: int = 101,
+    grid: Callable[[int], Grid] | None = None,
+) -> PaperFigure:
+    """Return a figure of the states of :func:`cycled`, with a column for each value of the `varied` parameter."""
+
+    def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
+        return cycled(cases, pin_load, nodes, progress, None if grid is None else grid(nodes))
+
+    def draw(curves: Sequence[Curve]) -> Figure:
+        return cycle_figure(curves, varied)
+
+    return PaperFigure(name, title, least_nodes, compute, draw)
+
+
+def _grid_at_the_bottom(nodes: int) -> Grid:
+    """Return the nodes of figure 17. The contacts end at +-60.3 degrees."""
+    return gathered_grid(round(NODES_RATIO * nodes), math.radians(65.0))
+
+
+FIGURES = (
+    _figure(
+        "11", "Fretting type loads, L_p = 0.05, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V",
+        "centre", [("Ti/Ti", 0.05, eta) for eta in (0.5, 1.0)], "eta",
+    ),
+    _figure(
+        "12", "Fretting type loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V",
+        "centre", [("Ti/Ti", 0.5, eta) for eta in (0.5, 1.0)], "eta",
+    ),
+    _figure(
+        "14", "Fretting type loads with body forces, free rotation, L_p = 0.05, mu = 0.55, Ti-6Al-4V/Ti-6Al-4V",
+        "body", [("Ti/Ti", 0.05, eta) for eta in (0.5, 1.0)], "eta",
+    ),
+    _figure(
+        "15", "Fretting type loads with body forces, free rotation, L_p = 0.05, mu = 0.55, dissimilar pairs",
+        "body", [(pair, 0.05, 1.0) for pair in ("Ti/Al", "Al/Ti")], "pair",
+    ),
+    _figure(
+        "16",
+        "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 0.25 and 0.50, |eta| = 1",
+        "body", [("Al/Ti", load_parameter, 1.0) for load_parameter in (0.25, 0.5)], "L_p",
+    ),
+    _figure(
+        "17", "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 1.0, |eta| = 1",
+        "body", [("Al/Ti", 1.0, 1.0)], "L_p", 201, _grid_at_the_bottom,
+    ),
+)  # fmt: skip

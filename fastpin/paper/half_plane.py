@@ -37,7 +37,7 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import grey, head, legend_below, marked
 from fastpin.paper.tractions import BOTTOM
 from fastpin.report.curves import Curve
@@ -45,8 +45,6 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms
 
-TITLE = "Relative error of half-plane formulas against the load parameter"
-LEAST_NODES = 201
 LEVELS = (0.05, 0.01)
 """Relative errors at which a formula counts as right."""
 
@@ -379,3 +377,8 @@ THEORIES = {
     ),
 }
 """The panels, by the names of their quantities in the numbers."""
+
+
+FIGURES = (
+    PaperFigure("half-plane", "Relative error of half-plane formulas against the load parameter", 201, compute, draw),
+)

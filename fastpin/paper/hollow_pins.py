@@ -14,14 +14,12 @@ from fastpin.bodies import Disk, Tube
 from fastpin.bodies.tube import TubeLoad
 from fastpin.figures.style import Line, add_legend, panels
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import grey, head, marked
 from fastpin.paper.rings import CASE, LOAD_PARAMETER, PAIR
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
-TITLE = "Hollow pins: peak pressure and half-angle over the bore, by friction and load; like bodies, L_p = 0.1"
-LEAST_NODES = 101
 BORES = (0.0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, *(0.02 * k for k in range(29, 37)), 0.75, 0.8, 0.85, 0.9)
 FRICTION = (0.0, 0.3)
 LOADS: dict[TubeLoad, str] = {"uniform": "uniform traction on a free bore", "held": "rigid core in the bore"}
@@ -66,3 +64,12 @@ def draw(curves: Sequence[Curve]) -> Figure:
     friction = [(f"friction coefficient {mu:g}", grey(k)) for k, mu in enumerate(FRICTION)]
     add_legend(figure, [(words, style(load, FRICTION[0])) for load, words in LOADS.items()], friction)
     return figure
+
+
+FIGURES = (
+    PaperFigure(
+        "hollow-pins",
+        "Hollow pins: peak pressure and half-angle over the bore, by friction and load; like bodies, L_p = 0.1",
+        101, compute, draw,
+    ),
+)  # fmt: skip

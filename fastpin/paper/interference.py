@@ -21,7 +21,7 @@ from fastpin.figures.style import add_legend, line, panels
 from fastpin.kernels.status import OPEN, STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.legends import head
 from fastpin.paper.tractions import ANGLE
 from fastpin.report.curves import Curve
@@ -31,8 +31,6 @@ from fastpin.verification import interference
 from fastpin.verification.comparisons import event_load
 from fastpin.verification.finite_elements import LIKE
 
-TITLE = "Interference fit of like bodies: loads of first slip and of opening against friction; tractions at mu = 0.3"
-LEAST_NODES = 101
 LOAD_PARAMETER = -0.25
 """Any negative number will do. With this one like bodies have N0 = F/R."""
 
@@ -152,3 +150,12 @@ def _bonded(pin_load: str) -> float:
     """P/(R N0) at which a bonded contact would open."""
     problem = fitted(SHOWN_FRICTION, "body" if pin_load == "body" else "centre")
     return interference.bonded_opening_load(problem) / interference.uniform_pressure(problem)
+
+
+FIGURES = (
+    PaperFigure(
+        "interference",
+        "Interference fit of like bodies: loads of first slip and of opening against friction; tractions at mu = 0.3",
+        101, compute, draw,
+    ),
+)  # fmt: skip

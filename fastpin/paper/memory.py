@@ -17,7 +17,7 @@ from fastpin.figures.style import add_legend, panels
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.fretting import FRICTION
 from fastpin.paper.legends import grey, head, marked
 from fastpin.paper.tractions import BOTTOM, PAIRS
@@ -26,7 +26,6 @@ from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
-TITLE = "System memory: what the first direction of Q leaves behind, against load parameter and amplitude"
 LEAST_NODES = 61
 LOAD_PARAMETERS = tuple(0.01 * 2000.0 ** (k / 16) for k in range(17))
 AMPLITUDES = (0.25, 0.5, 0.75, 1.0, 1.25)
@@ -104,3 +103,11 @@ def draw(curves: Sequence[Curve]) -> Figure:
         [("first +Q (right panel)", grey(0)), ("first −Q (right panel)", grey(1, 1.0))],
     )
     return figure
+
+
+FIGURES = (
+    PaperFigure(
+        "memory", "System memory: what the first direction of Q leaves behind, against load parameter and amplitude",
+        LEAST_NODES, compute, draw,
+    ),
+)  # fmt: skip

@@ -18,15 +18,13 @@ from fastpin.elasticity.plates import plate_compliance
 from fastpin.figures.style import Line, add_legend, angle_axis, line, panels
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.legends import grey, head
 from fastpin.paper.rings import CASE, INFINITE, LOAD_PARAMETER, PAIR
 from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
-TITLE = "Rectangular lug held at its top: tractions, hoop stress and peak pressure; like bodies, L_p = 0.1"
-LEAST_NODES = 101
 FRICTION = (0.0, 0.4)
 HALF_WIDTHS = (1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.25, 2.5, 3.0, 4.0, 5.0, 6.0)
 SHOWN = 2.5
@@ -109,3 +107,12 @@ def draw(curves: Sequence[Curve]) -> Figure:
 def width_curves(curves: Sequence[Curve]) -> list[Curve]:
     """Return the curves of the peak pressure over the half-width."""
     return [curve for curve in curves if "N_max" in curve.columns]
+
+
+FIGURES = (
+    PaperFigure(
+        "rectangular-lug",
+        "Rectangular lug held at its top: tractions, hoop stress and peak pressure; like bodies, L_p = 0.1",
+        101, compute, draw,
+    ),
+)  # fmt: skip

@@ -20,8 +20,8 @@ from fastpin.figures.style import panels
 from fastpin.kernels.status import OPEN
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper import figure10
-from fastpin.paper.curves import Report, steps
+from fastpin.paper import remote_stress
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import head
 from fastpin.paper.tractions import NAMES, PAIRS
 from fastpin.reading.zones import runs
@@ -31,10 +31,8 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import interference
 
-TITLE = "Regimes of contact under remote stress, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75 and -0.75"
-LEAST_NODES = 100
 PAIR = "Ti/Al"
-LOAD_PARAMETERS = (figure10.LOAD_PARAMETER, -figure10.LOAD_PARAMETER)
+LOAD_PARAMETERS = (remote_stress.LOAD_PARAMETER, -remote_stress.LOAD_PARAMETER)
 FORCES = (0.0, 1.0)
 """P in F."""
 
@@ -83,7 +81,7 @@ def direction(turn: float) -> np.ndarray:
 
 def problem_of(load_parameter: float) -> Problem:
     """Return the joint of a column of panels."""
-    return Problem.from_load_parameter(PAIRS[PAIR], load_parameter, figure10.FRICTION, "body")
+    return Problem.from_load_parameter(PAIRS[PAIR], load_parameter, remote_stress.FRICTION, "body")
 
 
 def regimes_along(start: Result, target: np.ndarray) -> Ray:
@@ -156,7 +154,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
     figure, axes = panels(2, 2, height=3.35)
     head(
         figure,
-        f"{NAMES[PAIR]}, plane strain, friction coefficient {figure10.FRICTION:g}; body force P",
+        f"{NAMES[PAIR]}, plane strain, friction coefficient {remote_stress.FRICTION:g}; body force P",
         "sc: the stress sxx = syy that moves the edge of the hole by clearance or interference",
     )
     for panel, curve in zip(axes.flat, curves, strict=True):
@@ -270,6 +268,14 @@ def _turn(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def _mark_cases(panel: Axes) -> None:
     """Mark the stresses of figure 10. The paper normalises them by F: sigma = L_p sxx/s_c."""
-    cases = np.array(list(figure10.DASHES)) / figure10.LOAD_PARAMETER
+    cases = np.array(list(remote_stress.DASHES)) / remote_stress.LOAD_PARAMETER
     panel.plot(*cases.T, linestyle="none", marker="s", markersize=5.0, color="black")
     panel.annotate("figure 10", (cases.max(), 0.0), (5.0, 0.0), textcoords="offset points", va="center", fontsize=9.0)
+
+
+FIGURES = (
+    PaperFigure(
+        "regimes", "Regimes of contact under remote stress, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75 and -0.75",
+        100, compute, draw,
+    ),
+)  # fmt: skip

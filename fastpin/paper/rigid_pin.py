@@ -17,15 +17,13 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.legends import grey, head, marked
 from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
-TITLE = "Rigid pin in aluminium, mu = 0.4, L_p = 0.1: tractions, and how elastic pins tend to them"
-LEAST_NODES = 101
 LOAD_PARAMETER = 0.1
 FRICTION = 0.4
 PLATE = MATERIALS["aluminium"]
@@ -110,3 +108,11 @@ def draw(curves: Sequence[Curve]) -> Figure:
 
 def _pin_line(colour: int, pin_load: str) -> Line:
     return marked(colour, int(pin_load == "body")) | {"markevery": (0.05 + 0.05 * colour, 0.2)}
+
+
+FIGURES = (
+    PaperFigure(
+        "rigid-pin", "Rigid pin in aluminium, mu = 0.4, L_p = 0.1: tractions, and how elastic pins tend to them",
+        101, compute, draw,
+    ),
+)  # fmt: skip

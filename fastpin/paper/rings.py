@@ -16,13 +16,11 @@ from fastpin.bodies.ring import Support
 from fastpin.figures.style import Line, line
 from fastpin.model.materials import Material, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.tractions import Panel, chosen, traction_figure
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
-TITLE = "Ring lugs: tractions for outer radii from 1.5 R to an infinite plate; like bodies, L_p = 0.1, mu = 0.3"
-LEAST_NODES = 101
 PAIR = MaterialPair(Material(1.0, 0.3), Material(1.0, 0.3))
 LOAD_PARAMETER, FRICTION = 0.1, 0.3
 CASE = f"Like bodies (ν = 0.3), plane strain, load parameter {LOAD_PARAMETER:g}"
@@ -60,3 +58,12 @@ def draw(curves: Sequence[Curve]) -> Figure:
         [*((f"outer radius {outer:g} R", style) for outer, style in lines.items()), (INFINITE, infinite)],
         heading=[CASE, f"friction coefficient {FRICTION:g}; body force F on the pin, downwards; R: radius of the hole"],
     )
+
+
+FIGURES = (
+    PaperFigure(
+        "rings",
+        "Ring lugs: tractions for outer radii from 1.5 R to an infinite plate; like bodies, L_p = 0.1, mu = 0.3",
+        101, compute, draw,
+    ),
+)  # fmt: skip

@@ -15,15 +15,13 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import COLOURS, Line, add_legend, line, panels
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import grey, head, legend_below
 from fastpin.paper.tractions import PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
 
-TITLE = "Onset of full sliding against load parameter and friction, on the first way and on the way back"
-LEAST_NODES = 61
 LARGEST = 1.5
 """Largest Q/P at which sliding is searched for."""
 
@@ -142,3 +140,12 @@ def draw(curves: Sequence[Curve]) -> Figure:
     axes[0, 1].set_xlabel("friction coefficient  μ")
     add_legend(figure, [("first push, at +Q", grey(0)), ("way back, at −Q after +Q", grey(1))])
     return figure
+
+
+FIGURES = (
+    PaperFigure(
+        "sliding-onset",
+        "Onset of full sliding against load parameter and friction, on the first way and on the way back",
+        61, compute, draw,
+    ),
+)  # fmt: skip

@@ -15,14 +15,12 @@ from fastpin.bodies import Plate, Ring
 from fastpin.bodies.ring import SUPPORTS
 from fastpin.figures.style import Line, add_legend, line, panels
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
+from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import head
 from fastpin.paper.rings import CASE, FRICTION, INFINITE, LOAD_PARAMETER, PAIR
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
-TITLE = "Ring lugs: peak pressure and half-angle over outer radius and support; like bodies, L_p = 0.1, mu = 0.3"
-LEAST_NODES = 101
 OUTER_RADII = (
     1.2,
     1.225,
@@ -99,3 +97,12 @@ def draw(curves: Sequence[Curve]) -> Figure:
     rows = [(NAMES[support], style) for support, style in lines.items()]
     add_legend(figure, [*rows[:3], (INFINITE, {"color": "0.55", "linewidth": 1.0})], rows[3:])
     return figure
+
+
+FIGURES = (
+    PaperFigure(
+        "supports",
+        "Ring lugs: peak pressure and half-angle over outer radius and support; like bodies, L_p = 0.1, mu = 0.3",
+        101, compute, draw,
+    ),
+)  # fmt: skip

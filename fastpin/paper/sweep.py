@@ -1,4 +1,12 @@
-"""Contact, stick zone and peak pressure of a body-loaded pin over the load parameter.
+"""Figures 5 and 8: contact, stick zone and peak pressure of a body-loaded pin over the load parameter.
+
+*Figure 5*: half-angles of contact and stick of a Ti-6Al-4V pin in aluminium. The caption leaves the coefficients of
+friction and the range of L_p open. Where slip begins inside the contact, rho is the half-angle of the stick zone at the
+bottom. The narrowest is 0.2 degrees (mu = 0.1). With few nodes, rho is left out where fewer than nine nodes stick.
+
+*Figure 8*: peak pressure and relative size of the stick zone of three pairs. The caption leaves the coefficients of
+friction and the range of L_p open. The text names the materials, and compares mu = 0.1 and 0.7: for Ti-6Al-4V in
+aluminium at L_p = 0.01, 0.7 should give less than half the peak pressure of 0.1. Here it gives 0.70 of it.
 
 With a fixed clearance, a growing load passes through all load parameters. The state at the load P belongs to
 L_p = clearance / (P beta*), with tractions in P/R. One history on one grid gives a whole curve, so no change of the
@@ -13,12 +21,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from fastpin.figures.style import add_legend, line, panels
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps
-from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.paper.curves import PaperFigure, Report, steps
+from fastpin.paper.legends import grey, head, marked
+from fastpin.paper.tractions import BOTTOM, NAMES, PAIRS, values_of
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -124,3 +135,84 @@ def load_parameter_axis(panel: Axes) -> None:
     panel.set_xscale("log")
     panel.set_xticks([0.01, 0.1, 1.0], labels=["0.01", "0.1", "1"])
     panel.set_xlabel("load parameter  $L_p$ = clearance/(F β*)")
+
+
+def compute_half_angles(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Return the half-angles of figure 5, one curve for each coefficient of friction."""
+    return swept([("Ti/Al", friction) for friction in (0.1, 0.2, 0.3, 0.5, 0.7)], nodes, progress)
+
+
+def draw_half_angles(curves: Sequence[Curve]) -> Figure:
+    """Draw contact half-angles left and stick half-angles right, with one scale."""
+    figure, axes = panels(1, 2, height=2.9)
+    head(figure, f"{NAMES['Ti/Al']}, plane strain; body force F on the pin, downwards")
+    contact, stick = axes[0]
+    stick.sharey(contact)
+    styles = (0, 1, 2, 3, 5)  # the dashes of 4 look like those of 1
+    lines = [line(k, k) for k in styles[: len(curves)]]
+    for curve, style in zip(curves, lines, strict=True):
+        contact.plot(curve["L_p"], curve["epsilon_deg"], **style)
+        stick.plot(curve["L_p"], curve["rho_deg"], **style)
+    contact.set_ylabel("half-angle of the contact  ε  (deg)")
+    stick.set_ylabel("half-angle of the stick zone  ρ  (deg)")
+    contact.set_ylim(0.0, 90.0)
+    contact.set_yticks(range(0, 91, 15))
+    for panel in axes[0]:
+        load_parameter_axis(panel)
+    stick.annotate(
+        "the whole contact\nsticks: ρ = ε",
+        (0.5, 39.5),
+        (0.55, 60.0),
+        fontsize=8.0,
+        arrowprops={"arrowstyle": "-", "linewidth": 0.7},
+    )
+    names = [f"friction coefficient {curve.parameters['mu']:g}" for curve in curves]
+    add_legend(figure, list(zip(names, lines, strict=True)))
+    return figure
+
+
+def compute_peaks(nodes: int, progress: Report | None = None) -> list[Curve]:
+    """Return peak pressure and half-angles of figure 8, one curve for each pair and coefficient of friction."""
+    curves = swept([(pair, friction) for pair in PAIRS for friction in (0.1, 0.3, 0.7)], nodes, progress)
+    for curve in curves:
+        rho, epsilon = np.radians(curve["rho_deg"]), np.radians(curve["epsilon_deg"])
+        curve.columns["tan_ratio"] = np.tan(0.5 * rho) / np.tan(0.5 * epsilon)
+    return curves
+
+
+def draw_peaks(curves: Sequence[Curve]) -> Figure:
+    """Draw peak pressure left and the ratio of half-angles right. Colours show the pair, dashes the friction."""
+    figure, axes = panels(1, 2, height=3.3)
+    head(figure, "Plane strain; body force F downwards; ρ and ε: half-angles of stick zone and contact")
+    pairs, friction = values_of(curves, "pair"), values_of(curves, "mu")
+    peak, ratio = axes[0]
+    for curve in curves:
+        colour, dashes = pairs.index(curve.parameters["pair"]), friction.index(curve.parameters["mu"])
+        style = marked(colour, dashes) | {"markevery": (5 * colour, 15)}
+        peak.plot(curve["L_p"], curve["N_max"], **style)
+        ratio.plot(curve["L_p"], curve["tan_ratio"], **style)
+    peak.set_ylabel("peak pressure  $N_{max}\\,R/F$")
+    peak.set_yscale("log")
+    peak.set_yticks([0.4, 0.5, 0.7, 1.0, 1.5, 2.0], labels=["0.4", "0.5", "0.7", "1", "1.5", "2"])
+    peak.set_yticks([], minor=True)
+    ratio.set_ylabel("tan(ρ/2) / tan(ε/2)")
+    ratio.set_ylim(0.0, 1.03)
+    for panel in axes[0]:
+        load_parameter_axis(panel)
+    add_legend(
+        figure,
+        [(NAMES[pair], marked(colour)) for colour, pair in enumerate(pairs)],
+        [(f"friction coefficient {mu:g}", grey(dashes)) for dashes, mu in enumerate(friction)],
+    )
+    return figure
+
+
+FIGURES = (
+    PaperFigure(
+        "5", "Contact and stick half-angles in body force loading (Ti-6Al-4V on aluminium)",
+        201, compute_half_angles, draw_half_angles,
+    ),
+    PaperFigure(
+        "8", "Peak pressures and tan(rho/2)/tan(epsilon/2) in body force loading", 201, compute_peaks, draw_peaks
+    ),
+)  # fmt: skip

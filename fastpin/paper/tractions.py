@@ -1,10 +1,11 @@
-"""Common parts of the figures of tractions: the paper's pairs, one monotonic load, and panels of N and T."""
+"""Parts of the figures of tractions: the paper's pairs, a pin that is pushed down, and panels of N and T."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -12,7 +13,6 @@ from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
 from fastpin.paper.legends import head
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
@@ -58,17 +58,14 @@ def pushed(
     return solve(problem, [{"P": 1.0, **remote}], nodes=nodes)[-1]
 
 
-def pushed_curves(pair: str, cases: Sequence[tuple[float, float]], nodes: int, progress: Report | None) -> list[Curve]:
-    """Return the tractions of a body-loaded pin at P = F, a curve for each case: load parameter and friction."""
-    return [
-        traction_curve(pushed(pair, load_parameter, friction, nodes), pair=pair, L_p=load_parameter, mu=friction)
-        for load_parameter, friction in steps(cases, progress)
-    ]
-
-
 def chosen(curves: Sequence[Curve], **parameters: float | str) -> list[Curve]:
     """Return the curves with these parameters."""
     return [curve for curve in curves if all(curve.parameters[name] == value for name, value in parameters.items())]
+
+
+def values_of(curves: Sequence[Curve], parameter: str) -> list[Any]:
+    """Return the different values of a parameter, in the order of the curves."""
+    return list(dict.fromkeys(curve.parameters[parameter] for curve in curves))
 
 
 def traction_figure(

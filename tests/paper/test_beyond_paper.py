@@ -25,7 +25,7 @@ def remembered() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(memory, "LOAD_PARAMETERS", (0.05, 0.2, 0.5, 2.0, 8.0))
         patch.setattr(memory, "AMPLITUDES", (0.5, 1.0, 1.25))
-        return catalog.script("memory").compute(NODES)
+        return catalog.figure("memory").compute(NODES)
 
 
 def test_memory_is_largest_in_between_and_grows_with_the_amplitude(remembered):
@@ -93,9 +93,9 @@ def test_drawn(name, remembered, monkeypatch):
     monkeypatch.setattr(sliding_onset, "FRICTION", (0.1, 0.5))
     monkeypatch.setattr(sliding_onset, "SHOWN_FRICTION", (0.1, 0.3))
     monkeypatch.setattr(sliding_onset, "SHOWN_LOAD_PARAMETERS", (1.0,))
-    script = catalog.script(name)
-    curves = remembered if name == "memory" else script.compute(41)
-    figure = script.draw(curves)
+    chosen = catalog.figure(name)
+    curves = remembered if name == "memory" else chosen.compute(41)
+    figure = chosen.draw(curves)
     figure.draw_without_rendering()
     assert len(figure.axes) == 2
     lines = [line for panel in figure.axes for line in panel.lines if len(line.get_xdata()) > 2 or name != "memory"]

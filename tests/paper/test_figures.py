@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from fastpin.errors import InputError
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper import catalog, figure10, figure13, sweep, tractions
+from fastpin.paper import catalog, remote_stress, steady_states, sweep, tractions
 from fastpin.paper import curves as curves_of_figures
 from fastpin.paper.curves import steps, traction_curve
 from fastpin.report.cells import csv_cell
@@ -37,12 +37,12 @@ DRAWN = {
 
 @cache
 def computed(name: str) -> list[Curve]:
-    return catalog.script(name).compute(NODES)
+    return catalog.figure(name).compute(NODES)
 
 
 @cache
 def drawn(name: str) -> Figure:
-    return catalog.script(name).draw(computed(name))
+    return catalog.figure(name).draw(computed(name))
 
 
 def one(curves: list[Curve], **parameters: object) -> Curve:
@@ -225,7 +225,7 @@ def test_centre_loads_press_harder_and_rub_less_than_body_loads() -> None:
 
 def test_normalised_stresses_are_those_of_the_paper() -> None:
     """The hole's edge moves by F beta* [(sigma_x + sigma_y)/2 + (sigma_x - sigma_y) cos 2 theta], (42) with its 1/2."""
-    unit, along, across = figure10.stress_unit("Ti/Al"), 0.3, -0.2
+    unit, along, across = remote_stress.stress_unit("Ti/Al"), 0.3, -0.2
     problem = Problem.from_load_parameter(tractions.PAIRS["Ti/Al"], 0.75, 0.0, "body")
     loads = {"P": 3e-3, "sxx": along * unit, "syy": across * unit}  # hardly any pin load
     state = solve(problem, [loads], grid=Grid.circle(300))[-1]
@@ -245,11 +245,11 @@ def test_remote_stresses_change_the_contact_as_the_text_says() -> None:
 
 def test_the_steady_state_is_reached_at_the_second_forward_load_and_mirrored() -> None:
     curves = computed("13")
-    for eta in figure13.ETAS:
+    for eta in steady_states.ETAS:
         steady = {
             (first, load): [one(curves, eta=eta, first=first, load=load, cycle=cycle)["T"] for cycle in (1, 2, 3)]
-            for first in figure13.FIRST_LOADS
-            for load in figure13.FIRST_LOADS
+            for first in steady_states.FIRST_LOADS
+            for load in steady_states.FIRST_LOADS
         }
         for (first, load), (cycle1, cycle2, cycle3) in steady.items():
             assert np.allclose(cycle2, cycle3, atol=1e-9)
@@ -266,7 +266,7 @@ def test_a_pin_that_rotates_freely_bears_no_moment() -> None:
 
 def test_progress_counts_up_to_one() -> None:
     reported: list[float] = []
-    catalog.script(17).compute(41, reported.append)
+    catalog.figure(17).compute(41, reported.append)
     assert reported == [1.0]
     assert list(steps("abcd", reported.append)) == list("abcd")
     assert reported[1:] == [0.25, 0.5, 0.75, 1.0]
@@ -313,7 +313,7 @@ def test_traction_curve_of_several_contacts_and_of_contact_all_round() -> None:
 @pytest.mark.parametrize("name", [2, 18, "0", "", "3a", "figure03"])
 def test_figures_that_do_not_exist(name: object) -> None:
     with pytest.raises(InputError, match="there are 3 to 17"):
-        catalog.script(name)  # type: ignore[arg-type]
+        catalog.figure(name)  # type: ignore[arg-type]
 
 
 def test_names() -> None:
@@ -323,8 +323,8 @@ def test_names() -> None:
         "figure17",
         "half-plane",
     ]
-    assert {catalog.script(name).TITLE for name in catalog.PAPER} == {catalog.script(n).TITLE for n in range(3, 18)}
-    assert len({catalog.script(name).TITLE for name in catalog.PAPER}) == len(catalog.PAPER)
+    assert {catalog.figure(name).title for name in catalog.PAPER} == {catalog.figure(n).title for n in range(3, 18)}
+    assert len({catalog.figure(name).title for name in catalog.PAPER}) == len(catalog.PAPER)
 
 
 def test_a_figure_is_made_with_its_numbers(tmp_path: Path) -> None:

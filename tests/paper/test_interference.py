@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fastpin.model.grid import Grid
-from fastpin.paper import catalog, figure10, interference, regimes
+from fastpin.paper import catalog, interference, regimes, remote_stress
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.verification.interference import release_stress
@@ -40,7 +40,7 @@ def test_without_friction_it_opens_at_pi():
 def loads() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(interference, "FRICTION", (0.0, 0.3, 1.0))
-        return catalog.script("interference").compute(101)
+        return catalog.figure("interference").compute(101)
 
 
 def test_slip_comes_before_opening_and_both_come_later_with_more_friction(loads):
@@ -63,7 +63,7 @@ def test_tractions_at_the_stages(loads):
 
 
 def test_loads_are_drawn(loads):
-    figure = catalog.script("interference").draw(loads)
+    figure = catalog.figure("interference").draw(loads)
     figure.draw_without_rendering()
     drawn = [[one for one in panel.lines if len(one.get_xdata()) > 2] for panel in figure.axes]
     assert [len(lines) for lines in drawn] == [3, 3, 4, 4]
@@ -117,8 +117,8 @@ def test_equal_stress_closes_the_clearance_and_releases_the_interference(load_pa
 
 def test_figure_10_has_one_arc_each():
     begun = start(1.0, 0.75)
-    unit = figure10.stress_unit("Ti/Al")
-    for case in figure10.DASHES:
+    unit = remote_stress.stress_unit("Ti/Al")
+    for case in remote_stress.DASHES:
         if case != (0.0, 0.0):
             assert [kind for _, kind in regimes.regimes_along(begun, unit * np.array(case))] == [1]
     assert abs(release_stress(begun.problem)) == pytest.approx(0.75 * unit)
@@ -129,7 +129,7 @@ def mapped() -> list[Curve]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(regimes, "RAYS", RAYS)
         patch.setattr(regimes, "HALVINGS", 1)
-        return catalog.script("regimes").compute(81)
+        return catalog.figure("regimes").compute(81)
 
 
 def test_regimes_of_all_four_panels(mapped):
@@ -150,7 +150,7 @@ def test_rays_are_added_where_neighbours_differ(mapped):
 
 
 def test_the_map_is_drawn_with_names_in_its_regions(mapped):
-    figure = catalog.script("regimes").draw(mapped)
+    figure = catalog.figure("regimes").draw(mapped)
     figure.draw_without_rendering()
     assert len(figure.axes) == 4
     for panel, curve in zip(figure.axes, mapped, strict=True):

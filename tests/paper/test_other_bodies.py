@@ -24,7 +24,7 @@ def curve_of(curves: list[Curve], column: str, **parameters: float | str) -> np.
 
 def words(name: str, curves: list[Curve]) -> str:
     """All text of a figure that is drawn with its legends inside."""
-    figure = catalog.script(name).draw(curves)
+    figure = catalog.figure(name).draw(curves)
     figure.draw_without_rendering()
     for legend in figure.legends:
         assert 0.0 <= legend.get_window_extent().x0 < legend.get_window_extent().x1 <= figure.bbox.width
@@ -34,7 +34,7 @@ def words(name: str, curves: list[Curve]) -> str:
 
 def test_rings_have_the_pressures_of_the_support_table():
     """The peaks with mu = 0.3 are those of an independent trial; 121 nodes give them to 1e-4."""
-    curves = catalog.script("rings").compute(NODES)
+    curves = catalog.figure("rings").compute(NODES)
     peaks = {
         "infinite plate": max(curve_of(curves, "N", support="infinite plate")),
         **{kind: max(curve_of(curves, "N", support=kind, outer_radius=2.0)) for kind in ("held", "uniform")},
@@ -50,7 +50,7 @@ def test_rings_have_the_pressures_of_the_support_table():
 
 def test_supports_tend_to_the_infinite_plate(monkeypatch):
     monkeypatch.setattr(supports, "OUTER_RADII", (2.0, 200.0))
-    curves = catalog.script("supports").compute(NODES)
+    curves = catalog.figure("supports").compute(NODES)
     infinite = curve_of(curves, "N_max", support="infinite plate")[0]
     expected = {"held": 0.6219, "uniform": 0.4601, "normal": 0.4585, "half": 0.5197}
     for support in supports.SUPPORTS:
@@ -66,7 +66,7 @@ def test_supports_tend_to_the_infinite_plate(monkeypatch):
 
 def test_hollow_pins_tend_to_a_load_at_the_centre(monkeypatch):
     monkeypatch.setattr(hollow_pins, "BORES", (0.0, 0.02, 0.5))
-    curves = catalog.script("hollow-pins").compute(NODES)
+    curves = catalog.figure("hollow-pins").compute(NODES)
     for load in hollow_pins.LOADS:
         for friction in hollow_pins.FRICTION:
             solid, narrow, hollow = curve_of(curves, "N_max", load=load, mu=friction)
@@ -82,7 +82,7 @@ def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
     """An independent finite-element model has the peaks 0.563806 and 0.465317."""
     monkeypatch.setattr(plates, "FINE", plates.COARSE)  # errors of 2e-9
     monkeypatch.setattr(rectangular_lug, "HALF_WIDTHS", (2.5,))
-    curves = catalog.script("rectangular-lug").compute(NODES)
+    curves = catalog.figure("rectangular-lug").compute(NODES)
     for friction, peak in ((0.0, 0.563806), (0.4, 0.465317)):
         infinite, lug = curve_of(curves, "N_max", mu=friction)
         assert lug == pytest.approx(peak, abs=1e-4)
@@ -99,10 +99,10 @@ def test_a_rectangular_lug_has_less_pressure_and_more_hoop_stress(monkeypatch):
 
 def test_rigid_pins_have_one_quantity_on_each_axis(monkeypatch):
     monkeypatch.setattr(rigid_pin, "RATIOS", (1.0, 10.0, 100.0))
-    curves = catalog.script("rigid-pin").compute(101)
+    curves = catalog.figure("rigid-pin").compute(101)
     differences = curves[-1]
     assert np.all(np.diff(differences["N, centre to rigid"]) < 0.0)
-    figure = catalog.script("rigid-pin").draw(curves)
+    figure = catalog.figure("rigid-pin").draw(curves)
     labels = [panel.get_ylabel() for panel in figure.axes]
     assert labels == ["pressure  $N\\,R/F$", "shear traction  $T\\,R/F$", "∫|ΔN| / ∫N", "∫|ΔT| / ∫N"]
     assert [len(panel.lines) for panel in figure.axes] == [7, 7, 3, 3]

@@ -37,7 +37,7 @@ BREAKS = {
     ),
     "an import of the public face": ("one_direction", "storage/store.py", "import fastpin\n"),
     "a circle of files": ("no_circles", "reading/old_borders.py", "from fastpin.reading.ends import end_place\n"),
-    "a circle through names": ("no_circles", "paper/figure03.py", "from fastpin.paper.catalog import stem\n"),
+    "a circle through names": ("no_circles", "cli/run.py", "from fastpin.cli.main import main\n"),
     "the face of the own folder": ("nothing_hidden", "states/cycles.py", "from fastpin import states\n"),
     "a name of the own face": ("nothing_hidden", "states/cycles.py", "from fastpin.states import Regime\n"),
     "a relative import": ("nothing_hidden", "states/cycles.py", "from .regimes import Regime\n"),

@@ -14,8 +14,8 @@ import pytest
 from fastpin.kernels.status import STICK
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
-from fastpin.paper.figure10 import stress_unit
 from fastpin.paper.fretting import FRICTION as MU
+from fastpin.paper.remote_stress import stress_unit
 from fastpin.paper.tractions import BOTTOM, PAIRS
 from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms

@@ -18,8 +18,8 @@ from fastpin.verification import closed_forms
 
 @cache
 def computed(name: str) -> list[Curve]:
-    script = catalog.script(name)
-    return script.compute(script.LEAST_NODES)
+    chosen = catalog.figure(name)
+    return chosen.compute(chosen.least_nodes)
 
 
 def error_curve(quantity: str) -> Curve:
@@ -223,7 +223,7 @@ def test_elastic_pins_tend_to_the_rigid_one_with_the_inverse_of_their_modulus():
 
 @pytest.mark.parametrize(("name", "panels", "lines"), [("half-plane", 4, 23), ("rigid-pin", 4, 18)])
 def test_drawn(name, panels, lines):
-    figure = catalog.script(name).draw(computed(name))
+    figure = catalog.figure(name).draw(computed(name))
     figure.draw_without_rendering()
     assert len(figure.axes) == panels
     assert sum(len(line.get_xdata()) > 2 for panel in figure.axes for line in panel.lines) == lines
@@ -246,5 +246,5 @@ def test_floors_are_above_the_errors_of_the_discretisation(load_parameter):
 
 def test_half_plane_curves_leave_out_what_the_discretisation_hides():
     for curve in computed("half-plane"):
-        least = half_plane.floor(str(curve.parameters["quantity"]), half_plane.LEAST_NODES)
+        least = half_plane.floor(str(curve.parameters["quantity"]), catalog.figure("half-plane").least_nodes)
         assert np.nanmin(np.abs(curve["error"])) >= least

@@ -18,16 +18,12 @@ from matplotlib.figure import Figure
 from fastpin.figures.style import line
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.fretting import FRICTION, RATIOS, case_lines
 from fastpin.paper.tractions import PAIRS, Panel, chosen, traction_figure
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
-TITLE = "Steady-state shear tractions with fretting loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V"
-LEAST_NODES = 201
-PAIR = "Ti/Ti"
-LOAD_PARAMETER = 0.5
 ETAS = (0.5, 1.0)
 FIRST_LOADS = ("+Q", "-Q")
 SYMBOLS = {"+Q": "$+Q$", "-Q": "$−Q$"}
@@ -36,7 +32,7 @@ CYCLES = 3
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Tractions after each horizontal load of three cycles, for two sizes of Q and both first directions."""
-    problem = Problem.from_load_parameter(PAIRS[PAIR], LOAD_PARAMETER, FRICTION, "centre", "fixed")
+    problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], 0.5, FRICTION, "centre", "fixed")
     curves = []
     for eta, first in steps([(eta, first) for eta in ETAS for first in FIRST_LOADS], progress):
         across = eta * FRICTION if first == "+Q" else -eta * FRICTION
@@ -45,7 +41,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
             load = "+Q" if state.load["Q"] > 0.0 else "-Q"
             cycle = 1 + index // 2
             parameters: dict[str, Any] = {"eta": eta, "first": first, "load": load, "cycle": cycle}
-            curves.append(traction_curve(state, pair=PAIR, L_p=LOAD_PARAMETER, mu=FRICTION, **parameters))
+            curves.append(traction_curve(state, pair="Ti/Ti", L_p=0.5, mu=FRICTION, **parameters))
     return curves
 
 
@@ -95,3 +91,12 @@ def _name_steady_states(panel: Axes, curves: Sequence[Curve]) -> None:
                 va="center",
                 fontsize=9.0,
             )
+
+
+FIGURES = (
+    PaperFigure(
+        "13",
+        "Steady-state shear tractions with fretting loads, L_p = 0.50, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V",
+        201, compute, draw,
+    ),
+)  # fmt: skip

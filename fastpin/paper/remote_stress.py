@@ -12,12 +12,10 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import line
-from fastpin.paper.curves import Report, steps, traction_curve
+from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.tractions import NAMES, PAIRS, Panel, pushed, traction_figure
 from fastpin.report.curves import Curve
 
-TITLE = "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75"
-LEAST_NODES = 101
 PAIR = "Ti/Al"
 LOAD_PARAMETER = 0.75
 FRICTION = 0.4
@@ -66,3 +64,9 @@ def draw(curves: Sequence[Curve]) -> Figure:
             f"remote stresses in F/R ({size * unit:.2f} is σ = {size:g})",
         ],
     )
+
+
+FIGURES = (
+    PaperFigure("10", "Effect of remote stresses in body force loading, Ti-6Al-4V/aluminium, mu = 0.40, L_p = 0.75",
+                101, compute, draw),
+)  # fmt: skip
