@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from fastpin.benchmarks.formulas import half_angle, load_term, peak_pressure
-from fastpin.benchmarks.rows import Outcome, Row
+from fastpin.benchmarks.rows import Benchmark, Outcome, Row
 from fastpin.figures.style import COLOURS, Line, line, panels
 from fastpin.model.materials import MATERIALS, MaterialPair
 from fastpin.model.problem import Problem
@@ -26,13 +26,6 @@ from fastpin.solver.solving import solve
 from fastpin.verification import closed_forms
 from fastpin.verification.rows import half_width
 
-TITLE = "Handbook formulas: largest pressure over F/(D L) against load parameter and friction"
-STATEMENT = (
-    "Pin with clearance in a wide plate, plane strain, pushed by a body force. A calculator takes the larger of Hertz "
-    "and 4 F/(pi D L). It calls this a conservative envelope, and states that the true value may be 5 to 15 % above it "
-    "between both."
-)
-SOURCES = ("pin contact calculator, html-tools-efi.pages.dev/pin_contact_tool.html",)
 PAIRS = {
     "like bodies": MaterialPair(MATERIALS["steel"], MATERIALS["steel"]),
     "steel in aluminium": MaterialPair(MATERIALS["steel"], MATERIALS["aluminium"]),
@@ -170,3 +163,15 @@ def _load_parameter(degrees: ArrayLike) -> np.ndarray:
     """The inverse of :func:`_degrees`, by interpolation."""
     places = np.logspace(-4.0, 4.0, 401)
     return np.exp(np.interp(-np.asarray(degrees), -_degrees(places), np.log(places)))
+
+
+BENCHMARK = Benchmark(
+    "handbook-formulas",
+    "Handbook formulas: largest pressure over F/(D L) against load parameter and friction",
+    "Pin with clearance in a wide plate, plane strain, pushed by a body force. A calculator takes the larger of Hertz "
+    "and 4 F/(pi D L). It calls this a conservative envelope, and states that the true value may be 5 to 15 % above it"
+    " between both.",
+    ["pin contact calculator, html-tools-efi.pages.dev/pin_contact_tool.html"],
+    compute,
+    draw,
+)

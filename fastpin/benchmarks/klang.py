@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.benchmarks.rows import Outcome, Row
+from fastpin.benchmarks.rows import Benchmark, Outcome, Row
 from fastpin.bodies import Plate, Ring
 from fastpin.bodies.body import PinLoad, PlateBody
 from fastpin.figures.style import Line, add_legend, panels
@@ -28,16 +28,6 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification.rows import NODES, half_width
 
-TITLE = "Klang's problem (Code_Aster SSNV127): pin with clearance and friction"
-STATEMENT = (
-    "Steel pin in a steel plate, plane stress: E 210 GPa, nu 0.3, R 60 mm, clearance 0.01 mm, friction 0.4, P 1.875e6 "
-    "N/m. The test loads the axis of the pin, in one increment, and clamps the plate at a radius of 1 m. The printed "
-    "pressures are three digits of N R/P: one unit is 0.3125 bar."
-)
-SOURCES = (
-    "M. Klang, analytical solution, as quoted in Code_Aster, V6.04.127, and in the test ssnv127a.comm",
-    "mesh and load of the test: ssnv127a.datg and ssnv127a.comm (github.com/ralic/Code_Aster)",
-)
 PUBLISHED = (
     "178.13", "178.13", "177.50", "176.88", "175.94", "174.70", "173.12", "171.25", "169.06", "166.56", "163.43",
     "159.37", "154.06", "147.81", "140.31", "130.94", "111.69", "105.93",
@@ -165,3 +155,18 @@ def draw(curves: Sequence[Curve]) -> Figure:
 def _line(colour: int, mark: int | tuple[int, int]) -> Line:
     """Return the line of a variant, with marks at the places `mark` of Matplotlib's ``markevery``."""
     return marked(colour, colour, 1.1) | {"markevery": mark}
+
+
+BENCHMARK = Benchmark(
+    "klang",
+    "Klang's problem (Code_Aster SSNV127): pin with clearance and friction",
+    "Steel pin in a steel plate, plane stress: E 210 GPa, nu 0.3, R 60 mm, clearance 0.01 mm, friction 0.4, P 1.875e6 "
+    "N/m. The test loads the axis of the pin, in one increment, and clamps the plate at a radius of 1 m. The printed "
+    "pressures are three digits of N R/P: one unit is 0.3125 bar.",
+    [
+        "M. Klang, analytical solution, as quoted in Code_Aster, V6.04.127, and in the test ssnv127a.comm",
+        "mesh and load of the test: ssnv127a.datg and ssnv127a.comm (github.com/ralic/Code_Aster)",
+    ],
+    compute,
+    draw,
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fastpin.benchmarks.rows import Outcome, Row
+from fastpin.benchmarks.rows import Benchmark, Outcome, Row
 from fastpin.casefile.lug import parse_lug
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.model.materials import Material, MaterialPair
@@ -13,16 +13,6 @@ from fastpin.paper.curves import Report
 from fastpin.solver.solving import solve
 from fastpin.verification.rows import NODES, half_width
 
-TITLE = "NAFEMS R0094, benchmark 4: loaded pin in a strip with a round end"
-STATEMENT = (
-    "Steel pin (E 210 GPa, nu 0.3) in a sheet of E 70 GPa, nu 0.3, inner radius 50 mm, outer radius 100 mm, held 200 "
-    "mm from the centre, 10 mm thick; 100 kN on the pin, friction 0.1. The benchmark is three-dimensional, with a pin "
-    "20 mm long; fastpin is two-dimensional, in plane stress, and takes the fit as neat."
-)
-SOURCES = (
-    "A. Konter, Advanced finite element contact benchmarks, NAFEMS R0094 (2006), as quoted in the verification manual "
-    "of OptiStruct, OS-V: 0230 3D Loaded Pin; its results are plots, which were not seen",
-)
 RADIUS, P, FRICTION = 50e-3, 100e3 / 10e-3, 0.1
 ALONE = "comparison only: no published number was seen"
 OUTLINE = """
@@ -64,3 +54,17 @@ def compute(progress: Report | None = None) -> Outcome:
         Row("half-angle of contact", "deg", "", math.degrees(half_width(state.contact[0])), ALONE),
         Row("largest hoop stress of the sheet", "MPa", "", state.peak_hoop_stress().value / 1e6, ALONE),
     ])  # fmt: skip
+
+
+BENCHMARK = Benchmark(
+    "nafems-loaded-pin",
+    "NAFEMS R0094, benchmark 4: loaded pin in a strip with a round end",
+    "Steel pin (E 210 GPa, nu 0.3) in a sheet of E 70 GPa, nu 0.3, inner radius 50 mm, outer radius 100 mm, held 200 "
+    "mm from the centre, 10 mm thick; 100 kN on the pin, friction 0.1. The benchmark is three-dimensional, with a pin "
+    "20 mm long; fastpin is two-dimensional, in plane stress, and takes the fit as neat.",
+    [
+        "A. Konter, Advanced finite element contact benchmarks, NAFEMS R0094 (2006), as quoted in the verification "
+        "manual of OptiStruct, OS-V: 0230 3D Loaded Pin; its results are plots, which were not seen"
+    ],
+    compute,
+)

@@ -4,23 +4,13 @@ from __future__ import annotations
 
 import math
 
-from fastpin.benchmarks.rows import Outcome, Row
+from fastpin.benchmarks.rows import Benchmark, Outcome, Row
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import Report, steps
 from fastpin.solver.solving import solve
 from fastpin.verification.rows import NODES
 
-TITLE = "NASA TP-1862: neat frictionless pin in a quasi-isotropic plate"
-STATEMENT = (
-    "Frictionless pin without clearance in an infinite quasi-isotropic plate, plane stress. The stress concentration "
-    "is the tensile hoop stress over P/(D t). The moduli were not seen: ours are a rigid pin, and steel in a plate "
-    "with E 55 GPa, nu 0.31."
-)
-SOURCES = (
-    "J. H. Crews, C. S. Hong and I. S. Raju, Stress-concentration factors for finite orthotropic laminates with a "
-    "pin-loaded hole, NASA TP-1862 (1981); the number is in its abstract (core.ac.uk/works/24901338)",
-)
 PUBLISHED = "0.87"
 RADIUS, P = 3e-3, 1e5
 """Any values: the neat fit is linear in the load."""
@@ -45,3 +35,17 @@ def compute(progress: Report | None = None) -> Outcome:
             Row(f"place of the largest hoop stress, {words}", "deg", "", angle, "comparison only"),
         ]
     return Outcome(rows)
+
+
+BENCHMARK = Benchmark(
+    "nasa-tp-1862",
+    "NASA TP-1862: neat frictionless pin in a quasi-isotropic plate",
+    "Frictionless pin without clearance in an infinite quasi-isotropic plate, plane stress. The stress concentration "
+    "is the tensile hoop stress over P/(D t). The moduli were not seen: ours are a rigid pin, and steel in a plate "
+    "with E 55 GPa, nu 0.31.",
+    [
+        "J. H. Crews, C. S. Hong and I. S. Raju, Stress-concentration factors for finite orthotropic laminates with a "
+        "pin-loaded hole, NASA TP-1862 (1981); the number is in its abstract (core.ac.uk/works/24901338)"
+    ],
+    compute,
+)

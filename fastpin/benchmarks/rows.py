@@ -1,10 +1,13 @@
-"""The rows of a benchmark: a published number as printed, fastpin's number, and what follows."""
+"""The record of a benchmark, and its rows: a published number as printed, fastpin's number, and what follows."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from matplotlib.figure import Figure
+
+from fastpin.paper.curves import Report
 from fastpin.report.curves import Curve
 
 AGREES = "agrees to the digits printed"
@@ -70,3 +73,27 @@ class Outcome:
 
     rows: Sequence[Row]
     curves: Sequence[Curve] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A problem that others publish.
+
+    Attributes
+    ----------
+    name, title : str
+    statement : str
+        Geometry, materials and loads.
+    sources : sequence of str
+    compute : callable
+        ``compute(progress)`` solves, and returns the outcome.
+    draw : callable, optional
+        ``draw(curves)`` draws the curves of the outcome.
+    """
+
+    name: str
+    title: str
+    statement: str
+    sources: Sequence[str]
+    compute: Callable[[Report | None], Outcome]
+    draw: Callable[[Sequence[Curve]], Figure] | None = None

@@ -18,10 +18,10 @@ from fastpin.version import __version__
 def run(options: argparse.Namespace) -> int:
     """Solve the benchmarks, print their tables, and write their files."""
     if options.list:
-        width = max(map(len, catalog.NAMES))
-        say(*(f"{name:<{width}}  {title}" for name, title in catalog.titles()))
+        width = max(map(len, catalog.BENCHMARKS))
+        say(*(f"{name:<{width}}  {benchmark.title}" for name, benchmark in catalog.BENCHMARKS.items()))
         return EXIT_OK
-    names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.NAMES))
+    names = list(dict.fromkeys(catalog.benchmark_name(name) for name in options.names or catalog.BENCHMARKS))
     formats = list(dict.fromkeys(options.format or ("png",)))
     if options.output is not None:
         try:
@@ -40,11 +40,11 @@ def run(options: argparse.Namespace) -> int:
                 def progress(part: float) -> None:
                     progress_bar.update(len(documents) + part - progress_bar.n)
 
-                chosen = catalog.benchmark(name)
+                chosen = catalog.BENCHMARKS[name]
                 outcome = chosen.compute(progress)
                 documents[name] = text.document(outcome.rows)
                 if options.json != "-":
-                    shown = text.table(chosen.TITLE, chosen.STATEMENT, chosen.SOURCES, outcome.rows)
+                    shown = text.table(chosen.title, chosen.statement, chosen.sources, outcome.rows)
                     progress_bar.write(*f"{name}: {shown}".split("\n"), "", file=sys.stdout)
                 if options.output is not None:
                     files = catalog.write(name, outcome, options.output, formats)

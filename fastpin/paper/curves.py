@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -19,14 +19,6 @@ Report = Callable[[float], None]
 """A callable that receives the computed fraction of a figure, 0 to 1."""
 
 Item = TypeVar("Item")
-
-
-class Compute(Protocol):
-    """A function that solves, and returns the curves of a figure."""
-
-    def __call__(self, nodes: int, progress: Report | None = None) -> list[Curve]:
-        """Solve with about `nodes` nodes."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -50,7 +42,7 @@ class PaperFigure:
     name: str
     title: str
     least_nodes: int
-    compute: Compute
+    compute: Callable[[int, Report | None], list[Curve]]
     draw: Callable[[Sequence[Curve]], Figure]
 
 
