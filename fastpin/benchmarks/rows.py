@@ -16,9 +16,6 @@ AGREES = "agrees to the digits printed"
 WORDS = ("differs", "open", "comparison only", "misprint")
 """Words that begin the verdict on other numbers."""
 
-ROUNDING = 1e-9
-"""Part of the last digit by which a difference may exceed it: the difference of two decimal numbers is rounded."""
-
 
 @dataclass(frozen=True)
 class Row:
@@ -50,16 +47,20 @@ class Row:
         return self.ours - float(self.published) if self.published else None
 
     @property
+    def places(self) -> int:
+        """The number of decimal places of the published number."""
+        return len(self.published.partition(".")[2])
+
+    @property
     def resolution(self) -> float:
         """A unit of the last digit printed."""
-        if self.last_digit is not None:
-            return self.last_digit
-        return 10.0 ** -len(self.published.partition(".")[2])
+        return 10.0**-self.places if self.last_digit is None else self.last_digit
 
     @property
     def agrees(self) -> bool:
         """Whether the numbers differ by at most one unit of the last digit printed."""
-        return self.difference is not None and abs(self.difference) <= (1.0 + ROUNDING) * self.resolution
+        # The difference of two decimal numbers is rounded.
+        return self.difference is not None and abs(self.difference) <= (1.0 + 1e-9) * self.resolution
 
     @property
     def verdict(self) -> str:

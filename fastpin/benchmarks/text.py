@@ -10,36 +10,26 @@ import numpy as np
 
 from fastpin.benchmarks.rows import Row
 from fastpin.report.curves import Curve
+from fastpin.report.table import aligned
 
 WIDTH = 118
 """Most characters in a line of words."""
 
 
 def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row]) -> str:
-    """Return a benchmark as text: its statement, its sources, and a line for each row with its verdict."""
-    lines = [title, *_paragraph(statement)]
-    for source in sources:
-        lines += _paragraph(f"source: {source}")
-    head = ("quantity", "unit", "published", "fastpin", "difference", "verdict")
-    cells = [head, *(_cells(row) for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    sides = (str.ljust, str.ljust, str.rjust, str.rjust, str.rjust, str.ljust)
-    for line in cells:
-        padded = (side(cell, width) for side, cell, width in zip(sides, line, widths, strict=True))
-        lines.append("  " + "  ".join(padded).rstrip())
-    return "\n".join(lines)
+    """Return a benchmark as text: its statement, its sources, and a line for each row with its verdict.
 
-
-def _paragraph(words: str) -> list[str]:
-    return [f"  {line}" for line in wrap(words, WIDTH, break_on_hyphens=False)]
-
-
-def _cells(row: Row) -> tuple[str, ...]:
-    """Return the cells of a row. fastpin's number has one digit more than the published one."""
-    places = len(row.published.partition(".")[2]) + 1 if row.published else 2
-    difference = "" if row.difference is None else f"{row.difference:+.{places}f}"
-    ours = f"{round(row.ours, places) + 0.0:.{places}f}"  # + 0.0 makes 0 of -0
-    return row.quantity, row.unit, row.published or "-", ours, difference, row.verdict
+    fastpin's numbers have one digit more than the published ones.
+    """
+    words = [statement, *(f"source: {source}" for source in sources)]
+    lines = [f"  {line}" for paragraph in words for line in wrap(paragraph, WIDTH, break_on_hyphens=False)]
+    cells = [("quantity", "unit", "published", "fastpin", "difference", "verdict")]
+    for row in rows:
+        places = row.places + 1 if row.published else 2
+        ours = f"{round(row.ours, places) + 0.0:.{places}f}"  # + 0.0 makes 0 of -0
+        difference = "" if row.difference is None else f"{row.difference:+.{places}f}"
+        cells.append((row.quantity, row.unit, row.published or "-", ours, difference, row.verdict))
+    return "\n".join([title, *lines, *aligned(cells, "llrrrl")])
 
 
 def row_curves(rows: Sequence[Row]) -> list[Curve]:
@@ -47,14 +37,10 @@ def row_curves(rows: Sequence[Row]) -> list[Curve]:
     return [
         Curve(
             {"quantity": row.quantity, "unit": row.unit, "published": row.published, "verdict": row.verdict},
-            {"fastpin": np.array([row.ours]), "difference": np.array([_or_nan(row.difference)])},
+            {"fastpin": np.array([row.ours]), "difference": np.array([row.difference], dtype=float)},
         )
         for row in rows
     ]
-
-
-def _or_nan(value: float | None) -> float:
-    return np.nan if value is None else value
 
 
 def document(rows: Sequence[Row]) -> list[dict[str, Any]]:

@@ -160,6 +160,27 @@ def table_of_lines(columns: Sequence[Column], lines: Sequence[TableLine], names:
     return "\n".join(text)
 
 
+def aligned(rows: Sequence[Sequence[str]], sides: str) -> list[str]:
+    """Return a line for each row of cells, indented by two, with aligned columns.
+
+    Parameters
+    ----------
+    rows : sequence of sequences of str
+        A row with fewer cells than columns does not count in the widths of the columns.
+    sides : str
+        "l" or "r" for each column: its cells stand to the left or to the right.
+    """
+    full = [row for row in rows if len(row) == len(sides)]
+    pads = [
+        (str.ljust if side == "l" else str.rjust, max(map(len, column)))
+        for side, column in zip(sides, zip(*full, strict=True), strict=True)
+    ]
+    return [
+        "  " + "  ".join(pad(cell, width) for cell, (pad, width) in zip(row, pads, strict=False)).rstrip()
+        for row in rows
+    ]
+
+
 def line_words(heading: str, names: Sequence[str], line: Repeat | LeftOut) -> str:
     """Return the words of a line for several rows. `heading` is the name of the first column, `names` its cells."""
     return f"{line.rows:,} more" if isinstance(line, LeftOut) else _repeat_words(heading, names, line)

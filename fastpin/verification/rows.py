@@ -1,10 +1,10 @@
-"""The rows of the checks of an installation, and the solver that they share."""
+"""The record of a check of the installation, and the solver that the checks share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -65,37 +65,25 @@ class Solving:
         return result
 
 
-class CheckRow(NamedTuple):
-    """A difference of one quantity, in `unit`, without its tolerance; see :class:`Check`."""
-
-    quantity: str
-    difference: float
-    unit: str
-    reference: float | None = None
-    ours: float | None = None
-    case: str = ""
-
-    def check(self, topic: str, name: str, tolerances: dict[str, float]) -> Check:
-        """The check with the tolerance of the quantity."""
-        case = self.case or name
-        tolerance = tolerances.get(f"{self.quantity}, {case}", tolerances[self.quantity])
-        return Check(topic, case, self.quantity, self.reference, self.ours, self.difference, tolerance, self.unit)
+Checks = Iterator[Check]
+"""The checks of one case, without topic and tolerance. Their case is empty where it is the name of the topic's case."""
 
 
-CheckRows = Iterator[CheckRow]
-"""The rows of one case."""
+def difference_check(quantity: str, difference: float, unit: str, case: str = "") -> Check:
+    """Return the check of a difference between whole functions, in `unit`."""
+    return Check("", case, quantity, difference=difference, unit=unit)
 
 
-def relative_row(quantity: str, ours: float, reference: float, case: str = "") -> CheckRow:
-    """The row of a value, relative to its reference."""
-    return CheckRow(quantity, abs(ours / reference - 1.0), "relative", reference, ours, case)
+def relative_check(quantity: str, ours: float, reference: float, case: str = "") -> Check:
+    """Return the check of a value, relative to its reference."""
+    return Check("", case, quantity, reference, ours, abs(ours / reference - 1.0), unit="relative")
 
 
-def angle_row(quantity: str, ours: float, reference: float) -> CheckRow:
-    """The row of an angle, rad."""
-    return CheckRow(quantity, abs(ours - reference), "rad", reference, ours)
+def angle_check(quantity: str, ours: float, reference: float) -> Check:
+    """Return the check of an angle, rad."""
+    return Check("", "", quantity, reference, ours, abs(ours - reference), unit="rad")
 
 
 def half_width(interval: tuple[float, float]) -> float:
-    """Half the width of an interval."""
+    """Return half the width of an interval."""
     return 0.5 * (interval[1] - interval[0])
