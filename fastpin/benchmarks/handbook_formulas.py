@@ -33,24 +33,12 @@ PAIRS = {
 }
 LOAD_PARAMETERS = tuple(10.0 ** (k / 6) for k in range(-15, 7))
 FRICTION = (0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 0.9)
-NODES = 101
-"""Peaks have errors below 1e-3 then, small against the 5 % of the chart."""
 COSINE = 4.0 / math.pi
 """4 F/(pi D L) over F/(D L): the peak of a pressure like the cosine over half the hole."""
 CROSSING = 1.0 / math.pi
 """L_p at which Hertz's pressure is 4 F/(pi D L). The envelope is lowest there against fastpin."""
-HERTZ = 0.15, 0.6
-"""Place of the word beside Hertz's curve: L_p and pressure."""
 LEVEL = 0.05
 """Error up to which a formula holds."""
-STATED = "0.15"
-"""The largest part above the envelope, as the calculator states it."""
-FORMULAS = {
-    "hertz": ("Hertz", "center", 4.0),
-    "cosine": ("4F/(πDL)", "left", 0.17),
-    "projected": ("F/(DL)", "right", 0.12),
-}
-"""Columns of the errors; the words of the chart, their alignment and their place."""
 
 
 def hertz(load_parameter: np.ndarray) -> np.ndarray:
@@ -63,10 +51,13 @@ def envelope(load_parameter: np.ndarray) -> np.ndarray:
     return np.maximum(hertz(load_parameter), COSINE)
 
 
-def solved(pair: MaterialPair, load_parameter: float, friction: float, nodes: int = NODES) -> tuple[float, float]:
-    """Return the largest pressure over F/(D L), and half of the contact angle, rad, under P."""
+def solved(pair: MaterialPair, load_parameter: float, friction: float) -> tuple[float, float]:
+    """Return the largest pressure over F/(D L), and half of the contact angle, rad, under P.
+
+    The error of the pressure is below 1e-3, small against the 5 % of the chart.
+    """
     problem = Problem.from_load_parameter(pair, load_parameter, friction, "body")
-    state = solve(problem, [{"P": 1.0}], nodes=nodes)[-1]
+    state = solve(problem, [{"P": 1.0}], nodes=101)[-1]
     return 2.0 * state.peak_pressure, half_width(state.contact[0])
 
 
@@ -89,7 +80,7 @@ def compute(progress: Report | None = None) -> Outcome:
     above = peak / float(envelope(np.array(CROSSING))) - 1.0
     unsafe = "differs: the envelope is unsafe by more than its source states"
     rows = [
-        Row("largest part above the envelope, no friction", "", STATED, above, unsafe),
+        Row("largest part above the envelope, no friction", "", "0.15", above, unsafe),
         Row("half-angle of contact at this place", "deg", "", math.degrees(angle), "comparison only"),
     ]
     return Outcome(rows, curves)
@@ -126,7 +117,7 @@ def _draw_peaks(panel: Axes, curves: Sequence[Curve]) -> None:
         panel.axhline(height, color="0.2", linewidth=0.9, zorder=1)
         panel.annotate(words, (places[0], height), (3, 3), textcoords="offset points", fontsize=7.5)
     panel.plot(places, hertz(places), color="0.2", linewidth=0.9, zorder=1)
-    panel.text(*HERTZ, "Hertz", fontsize=7.5)
+    panel.text(0.15, 0.6, "Hertz", fontsize=7.5)
     panel.set_xscale("log")
     panel.set_ylim(0.5, 3.0)
     panel.set_xlim(places[0], 3.0)
@@ -139,7 +130,9 @@ def _draw_peaks(panel: Axes, curves: Sequence[Curve]) -> None:
 def _draw_regions(panel: Axes, curves: Sequence[Curve]) -> None:
     """Draw the regions of one pair. Their names stand above them."""
     places = np.array(LOAD_PARAMETERS)
-    for colour, (name, (words, side, at)) in enumerate(FORMULAS.items()):
+    names = (("hertz", "Hertz", "center", 4.0), ("cosine", "4F/(πDL)", "left", 0.17),
+             ("projected", "F/(DL)", "right", 0.12))  # fmt: skip
+    for colour, (name, words, side, at) in enumerate(names):
         error = np.array([curve[f"error_{name}"] for curve in curves])
         panel.contourf(places, FRICTION, error, levels=[-LEVEL, LEVEL], colors=[COLOURS[colour]], alpha=0.3)
         panel.contour(places, FRICTION, error, levels=[-LEVEL, LEVEL], colors=[COLOURS[colour]], linestyles="solid")

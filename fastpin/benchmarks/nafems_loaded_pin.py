@@ -13,8 +13,6 @@ from fastpin.paper.curves import Report
 from fastpin.solver.solving import solve
 from fastpin.verification.rows import NODES, half_width
 
-RADIUS, P, FRICTION = 50e-3, 100e3 / 10e-3, 0.1
-ALONE = "comparison only: no published number was seen"
 OUTLINE = """
 [plate]
 nu = 0.3
@@ -47,12 +45,13 @@ def compute(progress: Report | None = None) -> Outcome:
     report = None if progress is None else lambda done, total: progress(done / total)
     strip = plate_compliance(parse_lug(OUTLINE).lug, None, report).compliance
     pair = MaterialPair(Material(210e9, 0.3), Material(70e9, 0.3), "stress")
-    problem = Problem(pair, RADIUS, 0.0, FRICTION, "centre", plate_body=strip)
-    state = solve(problem, [{"P": P}], nodes=NODES)[-1]
+    problem = Problem(pair, 50e-3, 0.0, 0.1, "centre", plate_body=strip)
+    state = solve(problem, [{"P": 100e3 / 10e-3}], nodes=NODES)[-1]
+    alone = "comparison only: no published number was seen"
     return Outcome([
-        Row("largest pressure", "MPa", "", state.peak_pressure / 1e6, ALONE),
-        Row("half-angle of contact", "deg", "", math.degrees(half_width(state.contact[0])), ALONE),
-        Row("largest hoop stress of the sheet", "MPa", "", state.peak_hoop_stress().value / 1e6, ALONE),
+        Row("largest pressure", "MPa", "", state.peak_pressure / 1e6, alone),
+        Row("half-angle of contact", "deg", "", math.degrees(half_width(state.contact[0])), alone),
+        Row("largest hoop stress of the sheet", "MPa", "", state.peak_hoop_stress().value / 1e6, alone),
     ])  # fmt: skip
 
 

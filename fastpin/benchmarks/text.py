@@ -12,9 +12,6 @@ from fastpin.benchmarks.rows import Row
 from fastpin.report.curves import Curve
 from fastpin.report.table import aligned
 
-WIDTH = 118
-"""Most characters in a line of words."""
-
 
 def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row]) -> str:
     """Return a benchmark as text: its statement, its sources, and a line for each row with its verdict.
@@ -22,7 +19,7 @@ def table(title: str, statement: str, sources: Sequence[str], rows: Sequence[Row
     fastpin's numbers have one digit more than the published ones.
     """
     words = [statement, *(f"source: {source}" for source in sources)]
-    lines = [f"  {line}" for paragraph in words for line in wrap(paragraph, WIDTH, break_on_hyphens=False)]
+    lines = [f"  {line}" for paragraph in words for line in wrap(paragraph, 118, break_on_hyphens=False)]
     cells = [("quantity", "unit", "published", "fastpin", "difference", "verdict")]
     for row in rows:
         places = row.places + 1 if row.published else 2

@@ -47,10 +47,7 @@ class PaperFigure:
 
 
 NEAR = 1e-12
-"""Distance below which two angles are the same place, rad."""
-
-ROOT_PLACES = np.linspace(0.0, 1.0, 13) ** 2
-"""Places between an edge and the first node at which a root is drawn, in parts of the distance."""
+"""Distance below which two angles are equal, rad."""
 
 
 def steps(items: Sequence[Item], progress: Report | None) -> Iterator[Item]:
@@ -108,11 +105,11 @@ def _from_edge_to_edge(patch: np.ndarray, ends: Interval) -> np.ndarray:
 
     Where no power law was found at an edge, the patch ends at the open node beyond. There a root leads to the edge.
     """
+    part = np.linspace(0.0, 1.0, 13)[:-1, None] ** 2  # of the way from the edge to the first node
     for side, end in zip((1, -1), ends, strict=True):
         rows = patch[::side]
         if side * (end - rows[0, 0]) > NEAR:
             inside = rows[side * (rows[:, 0] - end) > NEAR]
-            part = ROOT_PLACES[:-1, None]
             beside = np.hstack([end + part * (inside[:1, 0:1] - end), np.sqrt(part) * inside[:1, 1:]])
             patch = np.vstack([beside, inside])[::side]
     moved = patch.copy()

@@ -16,9 +16,6 @@ from fastpin.storage.files import check_writable
 FORMATS = ("png", "pdf", "svg")
 """Formats of a picture, by the ends of the names of files."""
 
-DPI = 300.0
-"""Dots per inch of a bitmap."""
-
 
 def check_files(stems: Iterable[str], directory: str | Path, formats: Sequence[str]) -> None:
     """Check that the files of figures can be written, and make `directory` if it is missing.
@@ -59,7 +56,7 @@ def write_files(
     *pictures, numbers = files = _files(stem, directory, formats)
     write_csv(curves, numbers, remarks)
     for picture in pictures:
-        save_drawing(draw, curves, picture, DPI)
+        save_drawing(draw, curves, picture, dpi=300.0)
     return files
 
 

@@ -31,18 +31,19 @@ from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 FRICTION = 0.55
-LOADS: dict[PinLoad, tuple[str, str, str]] = {"centre": ("P", "+Q", "-Q"), "body": ("By", "+Bx", "-Bx")}
-"""The paper's names of the loads of a history, for centre loads and for body forces."""
-
-WORDS = {
-    "P": "$P = F$ alone (downwards)",
-    "+Q": "$P$ and $+Q$ (to the right)",
-    "-Q": "$P$ and $−Q$ (to the left)",
-    "By": "$B_y = F$ alone (downwards)",
-    "+Bx": "$B_y$ and $+B_x$ (to the right)",
-    "-Bx": "$B_y$ and $−B_x$ (to the left)",
+LOADS: dict[PinLoad, dict[str, str]] = {
+    "centre": {
+        "P": "$P = F$ alone (downwards)",
+        "+Q": "$P$ and $+Q$ (to the right)",
+        "-Q": "$P$ and $−Q$ (to the left)",
+    },
+    "body": {
+        "By": "$B_y = F$ alone (downwards)",
+        "+Bx": "$B_y$ and $+B_x$ (to the right)",
+        "-Bx": "$B_y$ and $−B_x$ (to the left)",
+    },
 }
-"""Words for the loads of each state."""
+"""The paper's names of the loads of a history, and words for them, for centre loads and for body forces."""
 
 RATIOS: dict[PinLoad, str] = {"centre": "$η = Q/(μP)$", "body": "$η = B_x/(μB_y)$"}
 """The horizontal load over the load of sliding in a half-plane."""
@@ -75,13 +76,14 @@ def cycled(
 
 def cycle_figure(curves: Sequence[Curve], parameter: str) -> Figure:
     """Draw pressure above shear, with a column for each value of a parameter: "pair", "L_p" or "eta"."""
-    lines = {load: line(index, index) for index, load in enumerate(values_of(curves, "load"))}
+    words = LOADS[_pin_load(curves[0])]
+    lines = {load: line(index, index) for index, load in enumerate(words)}
     columns = [chosen(curves, **{parameter: value}) for value in values_of(curves, parameter)]
     layout = [
         [Panel("N", column, _panel_title(column[0], parameter)) for column in columns],
         [Panel("T", column) for column in columns],
     ]
-    legend = [(WORDS[load], style) for load, style in lines.items()]
+    legend = [(words[load], style) for load, style in lines.items()]
     heading = case_lines(curves[0], parameter)
     return traction_figure(layout, lambda curve: lines[curve.parameters["load"]], legend, heading=heading)
 

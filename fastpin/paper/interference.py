@@ -31,11 +31,7 @@ from fastpin.verification import interference
 from fastpin.verification.comparisons import event_load
 from fastpin.verification.finite_elements import LIKE
 
-LOAD_PARAMETER = -0.25
-"""Any negative number will do. With this one like bodies have N0 = F/R."""
-
 FRICTION = tuple(np.r_[0.0, 0.02, 0.05, 0.1:1.51:0.1].round(2).tolist())
-LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 SHOWN_FRICTION = 0.3
 STAGES = (0.0, 3.204, 3.6029, 4.5)
 """Loads P/(R N0) of the lower panels: none, first slip, opening, and an open top."""
@@ -46,18 +42,18 @@ OPENS, SLIPS = line(5), line(4, 1)
 
 
 def slips(state: State) -> bool:
-    """Return whether a place does not stick."""
+    """Return whether a node does not stick."""
     return bool(np.any(state.status != STICK))
 
 
 def opens(state: State) -> bool:
-    """Return whether a place is open."""
+    """Return whether a node is open."""
     return bool(np.any(state.status == OPEN))
 
 
-def fitted(friction: float, pin_load: PinLoad = "centre", load_parameter: float = LOAD_PARAMETER) -> Problem:
-    """Return the interference fit of like bodies."""
-    return Problem.from_load_parameter(LIKE, load_parameter, friction, pin_load)
+def fitted(friction: float, pin_load: PinLoad = "centre") -> Problem:
+    """Return an interference fit of like bodies with N0 = F/R. The curves do not depend on the interference."""
+    return Problem.from_load_parameter(LIKE, -0.25, friction, pin_load)
 
 
 def extrapolated(problem: Problem, happened: Callable[[State], bool], about: tuple[float, float], nodes: int) -> float:
@@ -86,10 +82,11 @@ def events(friction: float, pin_load: PinLoad, nodes: int) -> tuple[float, float
 
 def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """Loads of both events against friction, one curve for each load of the pin; then tractions round the hole."""
-    cases = [(pin_load, friction) for pin_load in LOADS for friction in FRICTION]
-    rows: dict[str, list[tuple[float, float, float, float]]] = {pin_load: [] for pin_load in LOADS}
+    pin_loads: tuple[PinLoad, PinLoad] = ("centre", "body")
+    cases = [(pin_load, friction) for pin_load in pin_loads for friction in FRICTION]
+    rows: dict[str, list[tuple[float, float, float, float]]] = {}
     for pin_load, friction in steps(cases, progress):
-        rows[pin_load].append((friction, *events(friction, pin_load, nodes)))
+        rows.setdefault(pin_load, []).append((friction, *events(friction, pin_load, nodes)))
     names = ("mu", "P_opens", "P_slips", "P_slips_closed_form")
     curves = [
         Curve({"pin_load": pin_load}, dict(zip(names, np.array(values).T, strict=True)))
@@ -135,7 +132,9 @@ def _draw_events(panel: Axes, curve: Curve) -> None:
     panel.plot(curve["mu"], curve["P_slips"], **SLIPS)
     dots = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": SLIPS["color"]}
     panel.plot(curve["mu"], curve["P_slips_closed_form"], markerfacecolor="white", markeredgewidth=0.9, **dots)
-    limits = (_bonded(pin_load), "bonded", 0.06, "bottom"), (math.pi, "opens without friction: π", -0.06, "top")
+    problem = fitted(SHOWN_FRICTION, "body" if pin_load == "body" else "centre")
+    bonded = interference.bonded_opening_load(problem) / interference.uniform_pressure(problem)
+    limits = (bonded, "bonded", 0.06, "bottom"), (math.pi, "opens without friction: π", -0.06, "top")
     for load, words, shift, side in limits:
         panel.axhline(load, color="0.35", linewidth=0.8, zorder=0)
         panel.annotate(words, (FRICTION[-1], load + shift), ha="right", va=side, fontsize=8.0)
@@ -144,12 +143,6 @@ def _draw_events(panel: Axes, curve: Curve) -> None:
     panel.set_title({"centre": "force at the centre of the pin", "body": "body force"}[pin_load], fontsize=9.0)
     panel.set_xlabel("friction coefficient  μ")
     panel.set_ylabel("load  $P/(R\\,N_0)$")
-
-
-def _bonded(pin_load: str) -> float:
-    """P/(R N0) at which a bonded contact would open."""
-    problem = fitted(SHOWN_FRICTION, "body" if pin_load == "body" else "centre")
-    return interference.bonded_opening_load(problem) / interference.uniform_pressure(problem)
 
 
 FIGURES = (

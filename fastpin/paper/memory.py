@@ -14,13 +14,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, panels
+from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.history import LoadHistory
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.fretting import FRICTION
 from fastpin.paper.legends import grey, head, marked
-from fastpin.paper.tractions import BOTTOM, PAIRS
+from fastpin.paper.tractions import PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.result import Result
 from fastpin.solver.solving import solve
@@ -52,14 +53,15 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     first is the mirror image of the state at +Q of the other. Differences are integrals of absolute values: of the
     shear over int mu N, of the pressure over int N.
     """
-    found: dict[float, list[list[float]]] = {}
-    for ratio, load_parameter in steps([(a, b) for a in AMPLITUDES for b in LOAD_PARAMETERS], progress):
+    cases = [(ratio, load_parameter) for ratio in AMPLITUDES for load_parameter in LOAD_PARAMETERS]
+    rows: dict[float, list[list[float]]] = {}
+    for ratio, load_parameter in steps(cases, progress):
         problem = Problem.from_load_parameter(PAIRS["Ti/Ti"], load_parameter, FRICTION, "centre", "fixed")
         states = cycles(problem, ratio * FRICTION, nodes)  # P, +Q, -Q, +Q, ... +Q
         steady, back = states[-1], states[-2]
         normal = size(steady.pressure, steady)
         rubbing = FRICTION * normal
-        found.setdefault(ratio, []).append(
+        rows.setdefault(ratio, []).append(
             [
                 load_parameter,
                 size(steady.shear + back.shear[::-1], steady) / rubbing,  # mirrored: -T(-theta)
@@ -71,8 +73,8 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
         )
     names = ("L_p", "memory_T", "memory_N", "first_forward_T", "first_reverse_T", "second_forward_T")
     return [
-        Curve({"mu": FRICTION, "eta": ratio}, dict(zip(names, np.array(rows).T, strict=True)))
-        for ratio, rows in found.items()
+        Curve({"mu": FRICTION, "eta": ratio}, dict(zip(names, np.array(numbers).T, strict=True)))
+        for ratio, numbers in rows.items()
     ]
 
 

@@ -16,12 +16,13 @@ from matplotlib.figure import Figure
 from fastpin.bodies import Compliance, Plate
 from fastpin.elasticity.plates import plate_compliance
 from fastpin.figures.style import Line, add_legend, angle_axis, line, panels
+from fastpin.model.angles import BOTTOM
 from fastpin.model.lug import Lug, rectangle
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.legends import grey, head
 from fastpin.paper.rings import CASE, INFINITE, LOAD_PARAMETER, PAIR
-from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
+from fastpin.paper.tractions import ANGLE, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
@@ -34,8 +35,6 @@ BELOW, ABOVE = 2.5, 6.0
 """Distances of the lug's end and of its held edge from the hole's centre, in units of R."""
 
 LUG = "rectangular lug"
-AROUND = 361
-"""Angles of the hoop stress."""
 
 
 def lug_of(half_width: float) -> Compliance:
@@ -56,7 +55,7 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
             peaks.setdefault(friction, []).append((width, state.peak_pressure))
             if width in (SHOWN, math.inf):
                 parameters: dict[str, Any] = {"plate": INFINITE if math.isinf(width) else LUG, "mu": friction}
-                theta = BOTTOM + np.linspace(-math.pi, math.pi, AROUND)
+                theta = BOTTOM + np.linspace(-math.pi, math.pi, 361)
                 hoop = {"angle_deg": np.degrees(theta) + 90.0, "hoop": state.hoop_stress("plate", theta)}
                 curves += [traction_curve(state, **parameters), Curve(parameters, hoop)]
     for friction, rows in peaks.items():

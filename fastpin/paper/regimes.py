@@ -31,11 +31,6 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import interference
 
-PAIR = "Ti/Al"
-LOAD_PARAMETERS = (remote_stress.LOAD_PARAMETER, -remote_stress.LOAD_PARAMETER)
-FORCES = (0.0, 1.0)
-"""P in F."""
-
 LARGEST = 3.0
 """Largest stress of the map in s_c. It is 230 MPa in aluminium with a clearance of 0.2 % of R."""
 
@@ -60,10 +55,6 @@ Ray = list[tuple[float, int]]
 """Where each regime of a ray begins, in parts of its length, and its number of arcs."""
 
 
-CLEAR = 1.3
-"""Radius in s_c round the marked cases that names leave free."""
-
-
 def arcs(state: State) -> int:
     """Return the number of contact arcs, :data:`ALL_ROUND` if no node is open."""
     closed = state.status != OPEN
@@ -81,7 +72,7 @@ def direction(turn: float) -> np.ndarray:
 
 def problem_of(load_parameter: float) -> Problem:
     """Return the joint of a column of panels."""
-    return Problem.from_load_parameter(PAIRS[PAIR], load_parameter, remote_stress.FRICTION, "body")
+    return Problem.from_load_parameter(PAIRS[remote_stress.PAIR], load_parameter, remote_stress.FRICTION, "body")
 
 
 def regimes_along(start: Result, target: np.ndarray) -> Ray:
@@ -115,7 +106,8 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
 
     Rays are added between neighbours with different regimes.
     """
-    cases = [(force, load_parameter) for force in FORCES for load_parameter in LOAD_PARAMETERS]
+    load_parameters = (remote_stress.LOAD_PARAMETER, -remote_stress.LOAD_PARAMETER)
+    cases = [(force, load_parameter) for force in (0.0, 1.0) for load_parameter in load_parameters]
     found: dict[tuple[float, float], dict[float, Ray]] = {case: {} for case in cases}
     starts: dict[tuple[float, float], Result] = {}
     for case, index in steps([(case, index) for case in cases for index in range(RAYS)], progress):
@@ -154,14 +146,18 @@ def draw(curves: Sequence[Curve]) -> Figure:
     figure, axes = panels(2, 2, height=3.35)
     head(
         figure,
-        f"{NAMES[PAIR]}, plane strain, friction coefficient {remote_stress.FRICTION:g}; body force P",
+        f"{NAMES[remote_stress.PAIR]}, plane strain, friction coefficient {remote_stress.FRICTION:g}; body force P",
         "sc: the stress sxx = syy that moves the edge of the hole by clearance or interference",
     )
     for panel, curve in zip(axes.flat, curves, strict=True):
         is_of_paper = curve.parameters["P"] > 0.0 and curve.parameters["L_p"] > 0.0
-        _draw_map(panel, curve, CLEAR if is_of_paper else 0.0)
+        _draw_map(panel, curve, 1.3 if is_of_paper else 0.0)  # no names over the cases of figure 10
         if is_of_paper:
-            _mark_cases(panel)
+            # The paper normalises stresses by F: sigma = L_p sxx/s_c.
+            cases = np.array(list(remote_stress.DASHES)) / remote_stress.LOAD_PARAMETER
+            panel.plot(*cases.T, linestyle="none", marker="s", markersize=5.0, color="black")
+            place = (cases.max(), 0.0)
+            panel.annotate("figure 10", place, (5.0, 0.0), textcoords="offset points", va="center", fontsize=9.0)
         pin = "clearance" if curve.parameters["L_p"] > 0.0 else "interference"
         force = f"load parameter {curve.parameters['L_p']:g}" if curve.parameters["P"] > 0.0 else "no force"
         panel.set_title(f"{pin} pin, {force}".replace(" -", " −"), fontsize=10.0)
@@ -264,13 +260,6 @@ def _turn(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     a, b = x / size, y / size
     right, top, left = a >= np.abs(b), b >= np.abs(a), -a >= np.abs(b)
     return np.select([right, top, left], [b, 2.0 - a, 4.0 - b], 6.0 + a) % 8.0
-
-
-def _mark_cases(panel: Axes) -> None:
-    """Mark the stresses of figure 10. The paper normalises them by F: sigma = L_p sxx/s_c."""
-    cases = np.array(list(remote_stress.DASHES)) / remote_stress.LOAD_PARAMETER
-    panel.plot(*cases.T, linestyle="none", marker="s", markersize=5.0, color="black")
-    panel.annotate("figure 10", (cases.max(), 0.0), (5.0, 0.0), textcoords="offset points", va="center", fontsize=9.0)
 
 
 FIGURES = (

@@ -15,11 +15,12 @@ from matplotlib.figure import Figure
 
 from fastpin.bodies.body import PinLoad
 from fastpin.figures.style import Line, add_legend, angle_axis, panels
+from fastpin.model.angles import BOTTOM
 from fastpin.model.materials import MATERIALS, Material, MaterialPair
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import PaperFigure, Report, steps, traction_curve
 from fastpin.paper.legends import grey, head, marked
-from fastpin.paper.tractions import ANGLE, BOTTOM, QUANTITIES
+from fastpin.paper.tractions import ANGLE, QUANTITIES
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
@@ -30,18 +31,15 @@ PLATE = MATERIALS["aluminium"]
 PINS = {"steel": MATERIALS["steel"], "10 E": Material(10.0 * PLATE.E, 0.3), "rigid": Material.rigid()}
 RATIOS = tuple(10.0 ** (k / 2) for k in range(13))
 """E_pin / E_plate"""
-ARC = (BOTTOM - 1.35, BOTTOM + 1.35)
 LOADS: tuple[PinLoad, PinLoad] = ("centre", "body")
 PAIRS = ("centre to body", "centre to rigid", "body to rigid")
 """Pairs of states that the lower panels compare."""
-PIN_NAMES = ("above: steel pin", "above: pin ten times as stiff as the plate", "above: rigid pin")
-PAIR_NAMES = ("centre load to body load", "centre load to rigid pin", "body load to rigid pin")
 
 
 def pushed_pin(pin: Material, pin_load: PinLoad, nodes: int) -> State:
     """Solve a pin pushed down by P = F, on the same nodes for all pins."""
     problem = Problem.from_load_parameter(MaterialPair(pin, PLATE), LOAD_PARAMETER, FRICTION, pin_load)
-    return solve(problem, [{"P": 1.0}], nodes=nodes, arc=ARC)[-1]
+    return solve(problem, [{"P": 1.0}], nodes=nodes, arc=(BOTTOM - 1.35, BOTTOM + 1.35))[-1]
 
 
 def difference(one: State, two: State, quantity: str) -> float:
@@ -89,6 +87,8 @@ def draw(curves: Sequence[Curve]) -> Figure:
     axes[0, 0].set_ylim(bottom=0.0)
     differences = curves[-1]
     words = {"N": "pressure", "T": "shear traction"}
+    pins = "above: steel pin", "above: pin ten times as stiff as the plate", "above: rigid pin"
+    pairs = "centre load to body load", "centre load to rigid pin", "body load to rigid pin"
     for panel, quantity in zip(axes[1], "NT", strict=True):
         for colour, pair in enumerate(PAIRS, start=3):
             panel.plot(differences["E_pin/E_plate"], differences[f"{quantity}, {pair}"], **marked(colour, colour - 3))
@@ -99,9 +99,9 @@ def draw(curves: Sequence[Curve]) -> Figure:
         panel.set_ylabel(f"∫|Δ{quantity}| / ∫N")
     add_legend(
         figure,
-        [(name, _pin_line(index, "centre")) for index, name in enumerate(PIN_NAMES)],
+        [(name, _pin_line(index, "centre")) for index, name in enumerate(pins)],
         [("above: force at the centre", grey(0)), ("above: body force", grey(1))],
-        [(f"below: {name}", marked(colour, colour - 3)) for colour, name in enumerate(PAIR_NAMES, start=3)],
+        [(f"below: {name}", marked(colour, colour - 3)) for colour, name in enumerate(pairs, start=3)],
     )
     return figure
 

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from fastpin.figures.style import COLOURS, Line, add_legend, line, panels
+from fastpin.figures.style import Line, add_legend, line, panels
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import PaperFigure, Report, steps
-from fastpin.paper.legends import grey, head, legend_below
+from fastpin.paper.legends import grey, head, legend_below, marked
 from fastpin.paper.tractions import PAIRS
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
@@ -29,18 +30,6 @@ LOAD_PARAMETERS = tuple(0.05 * 200.0 ** (k / 16) for k in range(17))
 SHOWN_FRICTION = (0.1, 0.3, 0.55, 0.8)
 FRICTION = tuple(0.05 + 0.95 * k / 8 for k in range(9))
 SHOWN_LOAD_PARAMETERS = (0.5, 1.0, 2.0)
-STYLES: tuple[Line, ...] = tuple(
-    {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.4}
-    for colour, marker in (
-        (COLOURS[0], "o"), (COLOURS[1], "s"), (COLOURS[2], "^"), (COLOURS[3], "D"),
-        (COLOURS[4], "v"), (COLOURS[5], "x"), (COLOURS[6], "P"),
-    )
-)  # fmt: skip
-"""Lines of the coefficients of friction on the left, then of the load parameters on the right."""
-SCAN, ROUNDS = 32, 3
-"""Search of the first onset: states inside the range of Q, and how often the range is narrowed to a part of it."""
-AMPLITUDES, HALVINGS = 8, 5
-"""Search of the onset on the way back: amplitudes that are tried, and halvings of the last interval."""
 
 
 def stick_width(state: State) -> float:
@@ -56,10 +45,10 @@ def forward_onset(problem: Problem, largest: float, nodes: int) -> float:
     """
     begin, end = 0.0, largest
     grid, width = None, np.ones(1)
-    for _ in range(ROUNDS):
+    for _ in range(3):
         corners = [{"P": 1.0}, {"Q": begin}, {"Q": end}]
-        result = solve(problem, corners, nodes=nodes, grid=grid, between=SCAN)
-        grid, states = result.grid, result[-SCAN - 2 :]  # from `begin` to `end`
+        result = solve(problem, corners, nodes=nodes, grid=grid, between=32)
+        grid, states = result.grid, result[-34:]  # from `begin` to `end`
         width = np.array([stick_width(state) for state in states])
         if np.any(width == 0.0):
             low = high = int(np.argmax(width == 0.0))
@@ -80,12 +69,12 @@ def reverse_onset(problem: Problem, largest: float, nodes: int) -> float:
         corners = [{"P": 1.0}, {"Q": amplitude}, {"Q": -amplitude}]
         return stick_width(solve(problem, corners, nodes=nodes)[-1]) == 0.0
 
-    amplitudes = np.linspace(problem.friction, largest, AMPLITUDES + 1)
-    first = next((k for k in range(1, AMPLITUDES + 1) if slides_back(float(amplitudes[k]))), None)
-    if first is None:
+    amplitudes = np.linspace(problem.friction, largest, 9).tolist()
+    bounds = next((pair for pair in pairwise(amplitudes) if slides_back(pair[1])), None)
+    if bounds is None:
         return math.nan
-    low, high = float(amplitudes[first - 1]), float(amplitudes[first])
-    for _ in range(HALVINGS):
+    low, high = bounds
+    for _ in range(5):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if slides_back(middle) else (middle, high)
     return 0.5 * (low + high)
@@ -119,7 +108,7 @@ def draw(curves: Sequence[Curve]) -> Figure:
         "Like bodies (Ti-6Al-4V), plane strain; pin that can't rotate, P at its centre, then Q",
         f"Beyond the end of a curve some places stick up to Q = {LARGEST:g} P",
     )
-    styles = iter(STYLES)
+    styles = (marked(k) | {"linestyle": "-", "markevery": 1} for k in range(len(curves)))
     for panel, name, title, other in (
         (axes[0, 0], "mu", "friction coefficient", "L_p"),
         (axes[0, 1], "L_p", "load parameter", "mu"),

@@ -22,28 +22,8 @@ from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 
 OUTER_RADII = (
-    1.2,
-    1.225,
-    1.25,
-    1.275,
-    1.3,
-    1.325,
-    1.35,
-    1.4,
-    1.5,
-    1.6,
-    1.8,
-    2.0,
-    2.25,
-    2.5,
-    3.0,
-    3.5,
-    4.0,
-    5.0,
-    6.0,
-    8.0,
-    10.0,
-)
+    1.2, 1.225, 1.25, 1.275, 1.3, 1.325, 1.35, 1.4, 1.5, 1.6, 1.8, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0,
+)  # fmt: skip
 NAMES = {
     "held": "rim held",
     "uniform": "uniform traction",

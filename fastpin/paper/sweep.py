@@ -25,21 +25,15 @@ from matplotlib.figure import Figure
 
 from fastpin.figures.style import add_legend, line, panels
 from fastpin.kernels.status import STICK
+from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper.curves import PaperFigure, Report, steps
 from fastpin.paper.legends import grey, head, marked
-from fastpin.paper.tractions import BOTTOM, NAMES, PAIRS, values_of
+from fastpin.paper.tractions import NAMES, PAIRS, values_of
 from fastpin.report.curves import Curve
 from fastpin.solver.solving import solve
 from fastpin.states.state import State
-
-LIMITS = (2.2, 0.005)
-"""Largest and smallest load parameter."""
-POINTS = 89
-"""States of a curve."""
-LEAST_STICKING = 9
-"""Fewest nodes of a stick zone whose width is measured."""
 
 NODES_RATIO = 1.75
 """Nodes of the grid over the nodes that are asked for.
@@ -50,25 +44,10 @@ With 700 nodes, angles differ by 0.003 deg (median) from their values with 1,900
 REACH = math.radians(93.0)
 """Half the width of the grid: the contacts of these figures are narrower than +-90 deg."""
 
-LEAST_SPACING, CENTRE, GROWTH, SPACING, DOUBLED = 0.03, 0.45, 15.0, 0.15, 30.0
-"""Shape of the spacing over the angle x from the bottom, degrees; a common factor gives the number of nodes.
-
-It is LEAST_SPACING up to x = CENTRE. Then it grows like x/GROWTH up to about SPACING, and from there slowly: it is
-twice SPACING at x = DOUBLED. The narrowest stick zone, 0.2 deg on either side, then has 15 nodes.
-"""
-
-
 NARROW_SLIP = {("Ti/Ti", 0.3): (27, 30), ("Ti/Ti", 0.7): (51, 55), ("Al/Ti", 0.3): (20, 27), ("Al/Ti", 0.7): (48, 55)}
 """Half-angles of contacts whose slip zones have fewer than seven nodes, degrees: from and to, by pair and friction.
 
 The nodes gather there too. Otherwise the slip zones at the edges, 0.2 deg wide and more, are misread by 0.1 deg.
-"""
-
-SLIP_SPACING, SLIP_GROWTH = 0.025, 5.0
-"""Spacing at these angles, degrees. Away from them it grows by 1/SLIP_GROWTH of the distance.
-
-With 0.05 the slip zones with fewer than ten nodes were misread: the curve of Al/Ti and mu = 0.3 had a bend at L_p = 2.
-With 0.025 their widths differ from those with 0.0125 by 0.007 deg.
 """
 
 
@@ -77,14 +56,22 @@ def gathered_grid(nodes: int, reach: float = REACH, slip: tuple[float, float] | 
 
     `reach` is the distance of its ends from the bottom, rad. The interval `slip` of angles from the bottom, degrees,
     gets more nodes, in addition to `nodes`.
+
+    The spacing over the angle x from the bottom, degrees, is 0.03 up to x = 0.45. Then it grows like x/15 up to about
+    0.15, and from there slowly: it is 0.3 at x = 30. A common factor gives the number of nodes. The narrowest stick
+    zone, 0.2 degrees on either side, then has 15 nodes.
+
+    In the interval `slip` the spacing is 0.025 degrees for 700 nodes, and grows by 1/5 of the distance away from it.
+    With 0.05 the slip zones with fewer than ten nodes were misread: the curve of Al/Ti and mu = 0.3 had a bend at
+    L_p = 2. With 0.025 their widths differ from those with 0.0125 by 0.007 degrees.
     """
-    x = np.r_[0.0, np.geomspace(0.2 * CENTRE, math.degrees(reach), 2000)]
-    spacing = np.maximum(LEAST_SPACING, np.minimum(x / GROWTH, SPACING * (1.0 + x / DOUBLED)))
+    x = np.r_[0.0, np.geomspace(0.2 * 0.45, math.degrees(reach), 2000)]
+    spacing = np.maximum(0.03, np.minimum(x / 15.0, 0.15 * (1.0 + x / 30.0)))
     half = nodes // 2
     spacing *= _count(x, spacing)[-1] / half
     if slip is not None:
         away = np.maximum(np.maximum(slip[0] - x, x - slip[1]), 0.0)
-        spacing = np.minimum(spacing, 700.0 / nodes * (SLIP_SPACING + away / SLIP_GROWTH))
+        spacing = np.minimum(spacing, 700.0 / nodes * (0.025 + away / 5.0))
     below = _count(x, spacing)
     side = np.radians(np.interp(np.linspace(0.0, below[-1], round(below[-1]) + 1), below, x))
     return Grid(np.r_[BOTTOM - side[:0:-1], BOTTOM + side])
@@ -106,10 +93,10 @@ def swept(cases: Sequence[tuple[str, float]], nodes: int, progress: Report | Non
 
 @functools.lru_cache(maxsize=32)
 def _rows(pair: str, friction: float, nodes: int) -> np.ndarray:
-    """Return the numbers of a curve, shape (POINTS, 4). Figures 5 and 8 have curves in common."""
-    largest, smallest = LIMITS
+    """Return the numbers of a curve, shape (89, 4). Figures 5 and 8 have curves in common."""
+    largest, smallest = 2.2, 0.005  # load parameters
     problem = Problem.from_load_parameter(PAIRS[pair], smallest, friction, "body")
-    loads = smallest / np.geomspace(largest, smallest, POINTS)[:-1]
+    loads = smallest / np.geomspace(largest, smallest, 89)[:-1]
     grid = gathered_grid(round(NODES_RATIO * nodes), slip=NARROW_SLIP.get((pair, friction)))
     return np.array([_measured(state) for state in solve(problem, [{"P": 1.0}], grid=grid, between=loads.tolist())])
 
@@ -117,13 +104,13 @@ def _rows(pair: str, friction: float, nodes: int) -> np.ndarray:
 def _measured(state: State) -> tuple[float, float, float, float]:
     """Return L_p, the half-angles of the contact and of the stick zone at the bottom in degrees, peak pressure in F/R.
 
-    The half-angle of the stick zone is NaN with fewer nodes than :data:`LEAST_STICKING`.
+    The half-angle of a stick zone with fewer than nine nodes is NaN.
     """
     ((start, stop),) = state.contact
     rho = math.nan
     for left, right in state.stick:
         inside = (state.theta > left) & (state.theta < right) & (state.status == STICK)
-        if left < BOTTOM < right and np.count_nonzero(inside) >= LEAST_STICKING:
+        if left < BOTTOM < right and np.count_nonzero(inside) >= 9:
             rho = 0.5 * (right - left)
     force = state.load["P"]
     parameter = state.problem.load_parameter(force)

@@ -371,8 +371,6 @@ def _conditions(solving: Solving) -> Checks:
 
 Cases = dict[str, Callable[[Solving], Checks]]
 
-_RIGID_PIN = MaterialPair(Material.rigid(), MATERIALS["aluminium"])
-_SOFT_PIN = MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3))
 _FITTED = {"like": LIKE, "Ti-6Al-4V in Al": UNLIKE}
 _FITTED_CASES: Cases = {
     f"{case}, {name}": partial(body_rows.all_round, pair, case)
@@ -380,7 +378,11 @@ _FITTED_CASES: Cases = {
     for case in body_rows.FITS
 }
 _FITTED_CASES |= {f"first slip, {name}": partial(body_rows.first_slip, pair) for name, pair in _FITTED.items()}
-_COUPLED = {"Ti-6Al-4V in Al": UNLIKE, "rigid pin": _RIGID_PIN, "soft pin": _SOFT_PIN}
+_COUPLED = {
+    "Ti-6Al-4V in Al": UNLIKE,
+    "rigid pin": MaterialPair(Material.rigid(), MATERIALS["aluminium"]),
+    "soft pin": MaterialPair(Material(1e9, 0.2), Material(30e9, 0.3)),
+}
 
 TOPICS: dict[str, tuple[str, Cases]] = {
     "like": (

@@ -20,9 +20,6 @@ from fastpin.solver.solving import solve
 from fastpin.states.state import State
 from fastpin.verification import closed_forms, integral_equations, interference
 
-EVENT_ROUNDS, EVENT_STATES = 5, 16
-"""Search of the load of an event: rounds, and parts of the range of loads in each. 16^-5 is 1e-6 of the range."""
-
 
 def cattaneo_mindlin(
     state: State, x: np.ndarray | float, now: float, most: float, branch: closed_forms.Branch
@@ -241,9 +238,9 @@ def event_load(
     """
     low, high = bounds
     start: Result | None = None
-    for _ in range(EVENT_ROUNDS):
+    for _ in range(5):  # 16 parts of the range in each round: 16^-5 is 1e-6
         start = follow(problem, [{load: low}], nodes=nodes, start=start)
-        states = follow(problem, [{load: high}], nodes=nodes, start=start, between=EVENT_STATES - 1)
+        states = follow(problem, [{load: high}], nodes=nodes, start=start, between=15)
         first = next((place for place, state in enumerate(states) if happened(state)), None)
         if first is None:
             return math.nan

@@ -13,6 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from fastpin.errors import InputError
+from fastpin.model.angles import BOTTOM
 from fastpin.model.grid import Grid
 from fastpin.model.problem import Problem
 from fastpin.paper import catalog, remote_stress, steady_states, sweep, tractions
@@ -144,7 +145,7 @@ def test_pressure_goes_like_a_root_at_the_edges() -> None:
     exact = closed_forms.persson_pressure(places, half)
     curve = traction_curve(state)
     error = np.abs(np.interp(np.degrees(places), curve["angle_deg"], curve["N"]) - exact)
-    straight = np.abs(np.interp(places, state.theta - tractions.BOTTOM, state.pressure) - exact)
+    straight = np.abs(np.interp(places, state.theta - BOTTOM, state.pressure) - exact)
     assert error.mean() < 0.15 * straight.mean()
     assert error.max() < 0.3 * straight.max()
 
@@ -161,14 +162,14 @@ def test_an_edge_without_a_law_ends_in_a_root() -> None:
 
 def test_nodes_gather_at_the_bottom_and_at_narrow_slip_zones() -> None:
     grid = sweep.gathered_grid(700)
-    x = np.degrees(grid.theta - tractions.BOTTOM)
+    x = np.degrees(grid.theta - BOTTOM)
     assert grid.size == 701
     assert x == pytest.approx(-x[::-1], abs=1e-9)
     assert x[350] == pytest.approx(0.0, abs=1e-12)
     spacing = np.diff(x[350:])
     assert spacing[:10] == pytest.approx(0.0263, rel=0.01)
     assert np.all(np.diff(spacing) > -1e-3)
-    finer = np.degrees(sweep.gathered_grid(700, slip=(20, 27)).theta - tractions.BOTTOM)
+    finer = np.degrees(sweep.gathered_grid(700, slip=(20, 27)).theta - BOTTOM)
     middle = (finer[:-1] > 20.1) & (finer[1:] < 26.9)
     assert np.diff(finer)[middle] == pytest.approx(0.025, rel=0.05)
 
