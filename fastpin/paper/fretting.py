@@ -137,11 +137,6 @@ def _figure(
     return PaperFigure(name, title, least_nodes, compute, draw)
 
 
-def _grid_at_the_bottom(nodes: int) -> Grid:
-    """Return the nodes of figure 17. The contacts end at +-60.3 degrees."""
-    return gathered_grid(round(NODES_RATIO * nodes), math.radians(65.0))
-
-
 FIGURES = (
     _figure(
         "11", "Fretting type loads, L_p = 0.05, mu = 0.55, C_omega = 0, Ti-6Al-4V/Ti-6Al-4V",
@@ -166,6 +161,7 @@ FIGURES = (
     ),
     _figure(
         "17", "Fretting type loads with body forces, free rotation, aluminium/Ti-6Al-4V, L_p = 1.0, |eta| = 1",
-        "body", [("Al/Ti", 1.0, 1.0)], "L_p", 201, _grid_at_the_bottom,
+        "body", [("Al/Ti", 1.0, 1.0)], "L_p", 201,
+        lambda nodes: gathered_grid(round(NODES_RATIO * nodes), math.radians(65.0)),  # the contacts end at +-60.3
     ),
 )  # fmt: skip

@@ -274,7 +274,13 @@ def draw(curves: Sequence[Curve]) -> Figure:
         legend_below(panel, [*colours, *dashes], 2)
         _error_axes(panel, theory.title)
     for panel in axes[0]:
-        degrees = panel.secondary_xaxis("top", functions=(_degrees, _load_parameter))
+        degrees = panel.secondary_xaxis(
+            "top",
+            functions=(
+                lambda load_parameter: np.degrees(1.0 / np.sqrt(math.pi * np.maximum(load_parameter, 1e-9))),
+                lambda angle: 1.0 / (math.pi * np.radians(np.maximum(angle, 1e-9)) ** 2),
+            ),
+        )
         degrees.set_xlabel("half-angle of Hertz's contact (deg)", fontsize=8.0)
         degrees.set_xticks([60.0, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1], labels=["60", "30", "10", "3", "1", "0.3", "0.1"])
         degrees.set_xticks([], minor=True)
@@ -292,14 +298,6 @@ def _error_axes(panel: Axes, title: str) -> None:
     panel.set_xlabel("load parameter  $L_p$")
     panel.set_ylabel("error of the half-plane")
     panel.set_title(title, fontsize=9.0)
-
-
-def _degrees(load_parameter: np.ndarray) -> np.ndarray:
-    return np.degrees(1.0 / np.sqrt(math.pi * np.maximum(load_parameter, 1e-9)))
-
-
-def _load_parameter(degrees: np.ndarray) -> np.ndarray:
-    return 1.0 / (math.pi * np.radians(np.maximum(degrees, 1e-9)) ** 2)
 
 
 @dataclass(frozen=True)

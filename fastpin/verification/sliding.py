@@ -112,7 +112,8 @@ class Sliding:
         left, right = self.exponents
         weight = (1.0 - t) ** right * np.maximum(1.0 + t, 0.0) ** left
         unit = math.hypot(self.load["P"], self.load["Q"]) / self.problem.hole_radius
-        return unit * weight * _series(self.coefficients, right, left, t)
+        polynomials = eval_jacobi(np.arange(self.coefficients.size), right, left, np.asarray(t)[..., None])
+        return unit * weight * (polynomials @ self.coefficients)
 
     def shear(self, theta: ArrayLike) -> np.ndarray:
         """Shear traction T = -slip mu N on the pin, Pa, at the angles `theta`, rad; positive along +theta."""
@@ -267,21 +268,20 @@ class _Case:
     def hole(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """v_r of the hole under the loads, up to a translation, and the term H = v_r + v_r'' of (58)."""
         if self.bodies is not None:
-            return _hole_of_bodies(self.bodies, self._loads, theta)
+            loads = {
+                P: -float(self.force[1]),
+                Q: float(self.force[0]),
+                SXX: 0.5 * (self.sum_stress + self.difference_stress),
+                SYY: 0.5 * (self.sum_stress - self.difference_stress),
+                SXY: self.shear_stress,
+            }
+            moved = np.zeros((2, theta.size))
+            for load, column in self.bodies.columns.items():
+                moved += np.array(_radial(loads[load] * column, theta))
+            return moved[0], moved[1]
         cos, sin = np.cos(2.0 * theta), np.sin(2.0 * theta)
         mean, oval = 0.5 * self.sum_stress, self.difference_stress * cos + 2.0 * self.shear_stress * sin
         return 0.5 * self.plate * (mean + oval), 0.5 * self.plate * (mean - 3.0 * oval)
-
-    @property
-    def _loads(self) -> dict[int, float]:
-        """The loads by their places."""
-        return {
-            P: -float(self.force[1]),
-            Q: float(self.force[0]),
-            SXX: 0.5 * (self.sum_stress + self.difference_stress),
-            SYY: 0.5 * (self.sum_stress - self.difference_stress),
-            SXY: self.shear_stress,
-        }
 
     def radial_force(self, theta: np.ndarray) -> np.ndarray:
         """Component of the force along the outward normal at `theta`."""
@@ -391,14 +391,6 @@ def _radial(column: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return (waves @ column).real, (waves * (1.0 - order**2.0) @ column).real
 
 
-def _hole_of_bodies(bodies: BodyTerms, loads: Mapping[int, float], theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """v_r and v_r + v_r'' at `theta` under loads by their places."""
-    found = np.zeros((2, theta.size))
-    for place, column in bodies.columns.items():
-        found += np.array(_radial(loads[place] * column, theta))
-    return found[0], found[1]
-
-
 def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The function cot(x/2) - 2/x and its derivative, for |x| < 2 pi; by a power series for |x| < 1."""
     small = np.abs(x) < 1.0
@@ -411,12 +403,6 @@ def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     value[small] = x[small] * np.polynomial.polynomial.polyval(square, series)
     slope[small] = np.polynomial.polynomial.polyval(square, (2.0 * n + 1.0) * series)
     return value, slope
-
-
-def _series(coefficients: np.ndarray, right: float, left: float, t: np.ndarray) -> np.ndarray:
-    """Sum of the Jacobi polynomials P_k^(right, left) at `t` times their coefficients."""
-    k = np.arange(coefficients.size)
-    return eval_jacobi(k, right, left, np.asarray(t)[..., None]) @ coefficients
 
 
 def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> tuple[float, float]:
