@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -64,15 +65,15 @@ def solved(pair: MaterialPair, load_parameter: float, friction: float) -> tuple[
 def compute(progress: Report | None = None) -> Outcome:
     """Solve all pairs. The rows are about like bodies without friction, where the calculator makes its claim."""
     cases = [(words, friction) for words in PAIRS for friction in FRICTION]
-    places = np.array(LOAD_PARAMETERS)
+    load_parameters = np.array(LOAD_PARAMETERS)
     curves = []
     for words, friction in steps(cases, progress):
-        found = np.array([solved(PAIRS[words], value, friction) for value in LOAD_PARAMETERS])
-        peak, angle = found.T
-        columns = {"L_p": places, "half_angle_deg": np.degrees(angle), "peak_over_F_DL": peak}
+        numbers = np.array([solved(PAIRS[words], value, friction) for value in LOAD_PARAMETERS])
+        peak, angle = numbers.T
+        columns = {"L_p": load_parameters, "half_angle_deg": np.degrees(angle), "peak_over_F_DL": peak}
         formulas = {
-            "hertz": hertz(places), "cosine": COSINE, "projected": 1.0, "envelope": envelope(places),
-            "fit": peak_pressure(places, friction, load_term(PAIRS[words].pin)),
+            "hertz": hertz(load_parameters), "cosine": COSINE, "projected": 1.0, "envelope": envelope(load_parameters),
+            "fit": peak_pressure(load_parameters, friction, load_term(PAIRS[words].pin)),
         }  # fmt: skip
         columns |= {f"error_{name}": values / peak - 1.0 for name, values in formulas.items()}
         curves.append(Curve({"pair": words, "friction": friction}, columns))
@@ -104,23 +105,23 @@ def draw(curves: Sequence[Curve]) -> Figure:
 
 def _draw_peaks(panel: Axes, curves: Sequence[Curve]) -> None:
     """Draw the largest pressure of like bodies, the fit and the formulas."""
-    places = np.array(LOAD_PARAMETERS)
+    load_parameters = np.array(LOAD_PARAMETERS)
     entries: list[tuple[str, Line]] = []
     for colour, friction in enumerate((0.0, 0.3, 0.9)):
         (curve,) = (one for one in curves if one.parameters["friction"] == friction)
         style = line(colour, colour)
-        panel.plot(places, curve["peak_over_F_DL"], **style)
+        panel.plot(load_parameters, curve["peak_over_F_DL"], **style)
         fit: Line = {"color": COLOURS[colour], "linestyle": "none", "marker": "ox+"[colour], "markersize": 3.5}
-        panel.plot(places[::2], peak_pressure(places[::2], friction), **fit)
+        panel.plot(load_parameters[::2], peak_pressure(load_parameters[::2], friction), **fit)
         entries += [(f"friction {friction:g}", style), (f"fit, {friction:g}", fit)]
     for height, words in ((COSINE, "4F/(πDL)"), (1.0, "F/(DL)")):
         panel.axhline(height, color="0.2", linewidth=0.9, zorder=1)
-        panel.annotate(words, (places[0], height), (3, 3), textcoords="offset points", fontsize=7.5)
-    panel.plot(places, hertz(places), color="0.2", linewidth=0.9, zorder=1)
+        panel.annotate(words, (load_parameters[0], height), (3, 3), textcoords="offset points", fontsize=7.5)
+    panel.plot(load_parameters, hertz(load_parameters), color="0.2", linewidth=0.9, zorder=1)
     panel.text(0.15, 0.6, "Hertz", fontsize=7.5)
     panel.set_xscale("log")
     panel.set_ylim(0.5, 3.0)
-    panel.set_xlim(places[0], 3.0)
+    panel.set_xlim(load_parameters[0], 3.0)
     panel.set_xlabel("load parameter  $L_p$")
     panel.set_ylabel("largest pressure over F/(DL)")
     panel.set_title("like bodies", fontsize=9.0)
@@ -129,13 +130,14 @@ def _draw_peaks(panel: Axes, curves: Sequence[Curve]) -> None:
 
 def _draw_regions(panel: Axes, curves: Sequence[Curve]) -> None:
     """Draw the regions of one pair. Their names stand above them."""
-    places = np.array(LOAD_PARAMETERS)
+    load_parameters = np.array(LOAD_PARAMETERS)
     names = (("hertz", "Hertz", "center", 4.0), ("cosine", "4F/(πDL)", "left", 0.17),
              ("projected", "F/(DL)", "right", 0.12))  # fmt: skip
     for colour, (name, words, side, at) in enumerate(names):
         error = np.array([curve[f"error_{name}"] for curve in curves])
-        panel.contourf(places, FRICTION, error, levels=[-LEVEL, LEVEL], colors=[COLOURS[colour]], alpha=0.3)
-        panel.contour(places, FRICTION, error, levels=[-LEVEL, LEVEL], colors=[COLOURS[colour]], linestyles="solid")
+        look: dict[str, Any] = {"levels": [-LEVEL, LEVEL], "colors": [COLOURS[colour]]}
+        panel.contourf(load_parameters, FRICTION, error, **look, alpha=0.3)
+        panel.contour(load_parameters, FRICTION, error, **look, linestyles="solid")
         panel.text(at, 1.02 * FRICTION[-1], words, fontsize=7.5, ha=side)
     panel.axvline(CROSSING, color="0.2", linewidth=0.9, linestyle=":")
     panel.set_xscale("log")
@@ -154,8 +156,8 @@ def _degrees(load_parameter: ArrayLike) -> np.ndarray:
 
 def _load_parameter(degrees: ArrayLike) -> np.ndarray:
     """The inverse of :func:`_degrees`, by interpolation."""
-    places = np.logspace(-4.0, 4.0, 401)
-    return np.exp(np.interp(-np.asarray(degrees), -_degrees(places), np.log(places)))
+    load_parameters = np.logspace(-4.0, 4.0, 401)
+    return np.exp(np.interp(-np.asarray(degrees), -_degrees(load_parameters), np.log(load_parameters)))
 
 
 BENCHMARK = Benchmark(

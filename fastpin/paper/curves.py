@@ -103,7 +103,7 @@ def _from_the_top(patch: np.ndarray) -> np.ndarray:
 def _from_edge_to_edge(patch: np.ndarray, ends: Interval) -> np.ndarray:
     """Return the rows of a contact, shape (m, 3), from edge to edge, beside the bottom of the hole.
 
-    Where no power law was found at an edge, the patch ends at the open node beyond. There a root leads to the edge.
+    At an edge without a power law the patch ends at the open node beyond. There a root leads to the edge.
     """
     part = np.linspace(0.0, 1.0, 13)[:-1, None] ** 2  # of the way from the edge to the first node
     for side, end in zip((1, -1), ends, strict=True):

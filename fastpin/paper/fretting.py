@@ -59,7 +59,7 @@ def cycled(
     """Return the tractions after P = F, +Q and -Q, with Q = eta mu P, for each case.
 
     A case is a pair of :data:`~fastpin.paper.tractions.PAIRS`, a load parameter and eta. A centre-loaded pin keeps its
-    rotation, a body-loaded pin rotates freely. A `grid` takes the place of `nodes`.
+    rotation, a body-loaded pin rotates freely. A `grid` replaces `nodes`.
     """
     rotation: Rotation = "fixed" if pin_load == "centre" else "free"
     curves = []
@@ -90,18 +90,18 @@ def cycle_figure(curves: Sequence[Curve], parameter: str) -> Figure:
 
 def case_lines(curve: Curve, varied: str) -> list[str]:
     """Return the heading of a figure of fretting: all parameters but the `varied` one, which panels name."""
-    given = curve.parameters
+    parameters = curve.parameters
     words = {
-        "pair": NAMES[given["pair"]],
+        "pair": NAMES[parameters["pair"]],
         "plane": "plane strain",
-        "mu": f"friction coefficient {given['mu']:g}",
-        "L_p": f"load parameter {given['L_p']:g}",
+        "mu": f"friction coefficient {parameters['mu']:g}",
+        "L_p": f"load parameter {parameters['L_p']:g}",
     }
     first = ", ".join(text for name, text in words.items() if name != varied)
     held, force, ratio = "pin that can't rotate", "P at its centre, then +Q, then −Q", "Q/(μP)"
     if _pin_load(curve) == "body":
         held, force, ratio = "pin free to rotate", "body force By, then +Bx, then −Bx", "Bx/(μBy)"
-    eta = "" if varied == "eta" else f"; η = {ratio} = {given['eta']:g}"
+    eta = "" if varied == "eta" else f"; η = {ratio} = {parameters['eta']:g}"
     return [first[0].upper() + first[1:], f"{held}; {force}{eta}"]
 
 

@@ -4,7 +4,7 @@ An error is half-plane over fastpin minus 1, with its sign in the CSV. Errors th
 from the discretisation error are left out (`floor`). The half-plane formulas are used in the usual way, with Hertz's
 half-width and peak pressure and with arcs for lengths. Materials are similar and mu = 0.5 unless said otherwise.
 
-*Hertz*: peak pressure and half-width under P. Without friction, Persson's closed form takes the place of fastpin.
+*Hertz*: peak pressure and half-width under P. Without friction, Persson's closed form replaces fastpin.
 
 *Cattaneo-Mindlin*: pin held, centre load, P, then Q = +-0.6 mu P. The errors are: stick zone over contact, largest
 shear, and int |difference of T| over int mu N. The formula's middle is the bottom of the hole, or is moved to the

@@ -1,7 +1,7 @@
 """Interference fits under a force: the loads at which they slip and open, and their tractions on the way.
 
 Like bodies, nu = 0.3, plane strain. Above: the load P over R N0 at which the contact opens (solid) and at which the
-first place slips (dashed), against the coefficient of friction. N0 is the pressure before the load; the curves do not
+first node slips (dashed), against the coefficient of friction. N0 is the pressure before the load; the curves do not
 depend on the interference. The solver gives both loads on two grids, and the limit of fine grids is extrapolated.
 Circles: the closed form of the slip. Grey lines: closed forms of the opening without friction and of a bonded contact.
 Below: pressure and shear round the hole for mu = 0.3 and a load at the centre.

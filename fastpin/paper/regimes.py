@@ -82,22 +82,22 @@ def regimes_along(start: Result, target: np.ndarray) -> Ray:
     """
     corner = [dict(zip(("sxx", "syy"), target.tolist(), strict=True))]
 
-    def found(fractions: np.ndarray) -> list[int]:
+    def regimes_at(fractions: np.ndarray) -> list[int]:
         result = solve(start.problem, corner, start=start, between=fractions.tolist())
         return [arcs(state) for state in result]
 
     coarse = np.arange(1, COARSE) / COARSE
-    kinds = [arcs(start[-1]), *found(coarse)]
-    changed = [place for place in range(COARSE) if kinds[place] != kinds[place + 1]]
+    kinds = [arcs(start[-1]), *regimes_at(coarse)]
+    changed = [index for index in range(COARSE) if kinds[index] != kinds[index + 1]]
     begun = [(0.0, kinds[0])]
     if not changed:
         return begun
-    fine = np.concatenate([(place + np.arange(1, FINE) / FINE) / COARSE for place in changed])
-    within = np.reshape(found(fine)[: fine.size], (len(changed), FINE - 1))
-    for place, row in zip(changed, within, strict=True):
-        for step, kind in enumerate([*row.tolist(), kinds[place + 1]], start=1):
+    fine = np.concatenate([(index + np.arange(1, FINE) / FINE) / COARSE for index in changed])
+    within = np.reshape(regimes_at(fine)[: fine.size], (len(changed), FINE - 1))
+    for index, row in zip(changed, within, strict=True):
+        for step, kind in enumerate([*row.tolist(), kinds[index + 1]], start=1):
             if kind != begun[-1][1]:
-                begun.append(((place + (step - 0.5) / FINE) / COARSE, kind))
+                begun.append(((index + (step - 0.5) / FINE) / COARSE, kind))
     return begun
 
 
@@ -108,16 +108,16 @@ def compute(nodes: int, progress: Report | None = None) -> list[Curve]:
     """
     load_parameters = (remote_stress.LOAD_PARAMETER, -remote_stress.LOAD_PARAMETER)
     cases = [(force, load_parameter) for force in (0.0, 1.0) for load_parameter in load_parameters]
-    found: dict[tuple[float, float], dict[float, Ray]] = {case: {} for case in cases}
+    rays_of: dict[tuple[float, float], dict[float, Ray]] = {case: {} for case in cases}
     starts: dict[tuple[float, float], Result] = {}
     for case, index in steps([(case, index) for case in cases for index in range(RAYS)], progress):
         if case not in starts:
             even = nodes - nodes % 4  # symmetric about x and y, like the contact without a force
             starts[case] = solve(problem_of(case[1]), [{"P": case[0]}], grid=Grid.circle(even))
-        low, high = ((place % RAYS + 0.5) * 8.0 / RAYS for place in (index, index + 1))
-        _add_rays(found[case], starts[case], (low, high), HALVINGS)
+        low, high = ((number % RAYS + 0.5) * 8.0 / RAYS for number in (index, index + 1))
+        _add_rays(rays_of[case], starts[case], (low, high), HALVINGS)
     curves = []
-    for (force, load_parameter), rays in found.items():
+    for (force, load_parameter), rays in rays_of.items():
         rows = [
             (turn, *(part * REACH * LARGEST * direction(turn)).tolist(), kind)
             for turn, ray in sorted(rays.items())
@@ -156,8 +156,8 @@ def draw(curves: Sequence[Curve]) -> Figure:
             # The paper normalises stresses by F: sigma = L_p sxx/s_c.
             cases = np.array(list(remote_stress.DASHES)) / remote_stress.LOAD_PARAMETER
             panel.plot(*cases.T, linestyle="none", marker="s", markersize=5.0, color="black")
-            place = (cases.max(), 0.0)
-            panel.annotate("figure 10", place, (5.0, 0.0), textcoords="offset points", va="center", fontsize=9.0)
+            corner = (cases.max(), 0.0)
+            panel.annotate("figure 10", corner, (5.0, 0.0), textcoords="offset points", va="center", fontsize=9.0)
         pin = "clearance" if curve.parameters["L_p"] > 0.0 else "interference"
         force = f"load parameter {curve.parameters['L_p']:g}" if curve.parameters["P"] > 0.0 else "no force"
         panel.set_title(f"{pin} pin, {force}".replace(" -", " −"), fontsize=10.0)
@@ -184,11 +184,11 @@ def _draw_map(panel: Axes, curve: Curve, clear: float) -> None:
     """Fill the sectors between neighbouring rays, draw the borders, and write names farther than `clear` from 0."""
     rays = _rays(curve)
     turns = [*rays, min(rays) + 8.0]
-    found = [*rays.values(), rays[min(rays)]]
+    regimes = [*rays.values(), rays[min(rays)]]
     polygons: list[np.ndarray] = []
     fills: list[str] = []
     borders: list[np.ndarray] = []
-    for first, second, one, two in zip(turns[:-1], turns[1:], found[:-1], found[1:], strict=True):
+    for first, second, one, two in zip(turns[:-1], turns[1:], regimes[:-1], regimes[1:], strict=True):
         if [kind for _, kind in one] == [kind for _, kind in two]:
             _add_sector((first, second), (one, two), polygons, fills, borders)
         else:
@@ -231,7 +231,7 @@ def _borders_along(turn: float, one: Ray, two: Ray) -> list[np.ndarray]:
 
 
 def _write_names(panel: Axes, rays: dict[float, Ray], clear: float) -> None:
-    """Write the name of each region at the place that is farthest from its borders, and from the middle of the map."""
+    """Write the name of each region at its point farthest from borders, and farther than `clear` from the middle."""
     raster = np.linspace(-LARGEST, LARGEST, 181)
     x, y = np.meshgrid(raster, raster)
     size = np.maximum(np.abs(x), np.abs(y)) / LARGEST / REACH
@@ -239,9 +239,9 @@ def _write_names(panel: Axes, rays: dict[float, Ray], clear: float) -> None:
     nearest = np.abs(_turn(x, y)[..., None] - turns).argmin(axis=-1)
     kinds = np.empty(x.shape, dtype=int)
     for index, ray in enumerate(rays.values()):
-        places = nearest == index
-        begun = np.searchsorted([part for part, _ in ray], size[places], side="right") - 1
-        kinds[places] = np.array([kind for _, kind in ray])[begun]
+        near = nearest == index
+        begun = np.searchsorted([part for part, _ in ray], size[near], side="right") - 1
+        kinds[near] = np.array([kind for _, kind in ray])[begun]
     for kind in np.unique(kinds).tolist():
         # A corridor that is narrower than a letter does not join regions.
         regions, count = ndimage.label(ndimage.binary_erosion(kinds == kind, iterations=4))

@@ -87,7 +87,7 @@ RING = Problem.from_load_parameter(UNLIKE, 0.1, 0.4, "body", plate_body=Ring(2.0
 
 
 def cut_layer_difference(kind: str) -> float:
-    """Difference of a bush cut into two layers from one layer, in a ring whose rim is free or held.
+    """Return the difference of a bush cut into two layers from one layer, in a ring whose rim is free or held.
 
     It is the largest difference of a compliance of the harmonics 2 to 60, in parts of the largest.
     """
@@ -104,7 +104,7 @@ def cut_layer_difference(kind: str) -> float:
 
 
 def ring_compliance(problem: Problem, order: int) -> Compliance:
-    """The compliance of the ring of `problem` with the harmonics up to `order`, from closed forms.
+    """Return the compliance of the ring of `problem` with the harmonics up to `order`, from closed forms.
 
     Its first harmonic holds no translation of the hole. The mean rotation of the outer rim is 0.
     """
@@ -118,8 +118,8 @@ def ring_compliance(problem: Problem, order: int) -> Compliance:
     change = harmonics.ring(np.arange(2.0, order + 1.0), rim, kolosov, kind).T
     for k, (a, b, d) in enumerate([(of_traction + 0.5, of_force, 0.0), *change]):
         radial, shear, mixed = 0.5 * (a + d) + b, 0.5 * (a + d) - b, 0.5 * (a - d)
-        place = 2 + 4 * k
-        block = matrix[place : place + 4, place : place + 4]  # r cos, r sin, theta cos, theta sin
+        start = 2 + 4 * k
+        block = matrix[start : start + 4, start : start + 4]  # r cos, r sin, theta cos, theta sin
         block += -0.5 * np.diag([radial, radial, shear, shear])
         block[[0, 3], [3, 0]], block[[1, 2], [2, 1]] = -0.5 * mixed, 0.5 * mixed
     columns = _stress_columns(problem, order)
@@ -127,7 +127,7 @@ def ring_compliance(problem: Problem, order: int) -> Compliance:
 
 
 def _stress_columns(problem: Problem, order: int) -> dict[str, np.ndarray]:
-    """Columns of the stresses on a ring's rim for its compliance, from the terms of the ring."""
+    """Return the columns of the stresses on a ring's rim for its compliance, from the terms of the ring."""
     terms = body_terms(problem)
     assert terms is not None
     unit = problem.pair.plate_compliance / problem.surfaces.beta_star
@@ -136,12 +136,12 @@ def _stress_columns(problem: Problem, order: int) -> dict[str, np.ndarray]:
 
 
 def _real_coefficients(column: np.ndarray, order: int) -> np.ndarray:
-    """Coefficients in the real basis of a compliance from those of v_r + i v_theta, n = -m to m."""
+    """Return coefficients in the real basis of a compliance, from coefficients of v_r + i v_theta, n = -m to m."""
     reach, middle = min(order, column.size // 2), column.size // 2
     above, below = np.zeros((2, order), dtype=complex)
     above[:reach], below[:reach] = column[middle + 1 :][:reach], column[:middle][::-1][:reach]
-    found = np.zeros(2 + 4 * order)
-    found[:2] = np.sqrt(2.0) * np.array([column[middle].real, column[middle].imag])
+    real = np.zeros(2 + 4 * order)
+    real[:2] = np.sqrt(2.0) * np.array([column[middle].real, column[middle].imag])
     cos, sin = above + below, 1j * (above - below)
-    found[2::4], found[4::4], found[3::4], found[5::4] = cos.real, cos.imag, sin.real, sin.imag
-    return found
+    real[2::4], real[4::4], real[3::4], real[5::4] = cos.real, cos.imag, sin.real, sin.imag
+    return real

@@ -44,8 +44,8 @@ def first_slip(pair: MaterialPair, solving: Solving) -> Checks:
     problem = Problem.from_load_parameter(pair, -0.3, 0.3)
     exact = interference.first_slip_load(problem)
     bounds = 0.9 * exact, 1.1 * exact
-    found = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving)
-    yield relative_check("slip begins", found, exact)
+    load = event_load(problem, "P", bounds, lambda state: bool(np.any(state.status != STICK)), NODES, solving)
+    yield relative_check("slip begins", load, exact)
 
 
 def finite_bodies(name: str, solving: Solving) -> Checks:

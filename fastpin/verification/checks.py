@@ -38,7 +38,7 @@ STATED = 1.2
 BACK = 0.4
 """Part of Q to which the half-plane contact is unloaded at last.
 
-The largest shear then stays at the place of the border at full Q.
+The largest shear then stays where the border was at full Q.
 """
 
 TOLERANCES: dict[str, dict[str, float]] = {
@@ -181,9 +181,9 @@ def _half_plane(solving: Solving) -> Checks:
 
 
 def _peak_shear(state: State, ratio: float, part: float) -> float:
-    """Largest shear of Cattaneo and Mindlin after unloading from Q to `part` times Q.
+    """Return the largest shear of Cattaneo and Mindlin after unloading from Q to `part` times Q.
 
-    It acts at the place of the border at +Q.
+    It acts at the angle of the border at +Q.
     """
     half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     border = half * float(closed_forms.cattaneo_mindlin_stick_ratio(ratio))
@@ -262,9 +262,9 @@ def _interference_fit(solving: Solving) -> Checks:
 
 
 def _stress_difference(state: State, body: Body, radius: np.ndarray, theta: np.ndarray, expected: np.ndarray) -> float:
-    """Largest difference of a polar component from the expected ones, shape (3, ...)."""
-    found = state.stress(Points.at_radius(radius, theta), body)
-    return float(np.abs(np.array([found.radial, found.hoop, found.shear]) - expected).max())
+    """Return the largest difference of a polar component from the expected ones, shape (3, ...)."""
+    stress = state.stress(Points.at_radius(radius, theta), body)
+    return float(np.abs(np.array([stress.radial, stress.hoop, stress.shear]) - expected).max())
 
 
 def _edges_and_circles(name: str, problem: Problem, solving: Solving) -> Checks:
@@ -273,8 +273,8 @@ def _edges_and_circles(name: str, problem: Problem, solving: Solving) -> Checks:
     for body in _BODIES:
         edge, force, moment = [], [], []
         for state in states:
-            found = state.stress(Points.at_depth(0.0, state.theta), body, straight=True)
-            difference = np.abs([found.radial + state.pressure, found.shear - state.shear])
+            stress = state.stress(Points.at_depth(0.0, state.theta), body, straight=True)
+            difference = np.abs([stress.radial + state.pressure, stress.shear - state.shear])
             edge.append(float(difference.max()) / state.peak_pressure)
             for radius in (1.2, 3.0) if body == "plate" else (0.3, 0.8):
                 carried, turned = stress_resultant(state, body, radius)
@@ -308,8 +308,8 @@ def _hertz_stress(solving: Solving) -> Checks:
     for body in _BODIES:
 
         def shear(depth: float, body: Body = body) -> float:
-            found = state.stress(Points.at_depth(_NARROW * depth, BOTTOM), body)
-            return -0.5 * float(np.hypot(found.radial - found.hoop, 2.0 * found.shear)) / peak
+            stress = state.stress(Points.at_depth(_NARROW * depth, BOTTOM), body)
+            return -0.5 * float(np.hypot(stress.radial - stress.hoop, 2.0 * stress.shear)) / peak
 
         largest = minimize_scalar(shear, bounds=(0.5, 1.1), method="bounded", options={"xatol": 1e-6})
         yield relative_check("largest shear", -largest.fun, math.sqrt(golden) * (1.0 - golden), f"P, {body}")
@@ -330,10 +330,10 @@ def _cattaneo_mindlin_stress(solving: Solving) -> Checks:
         for body in _BODIES:
             difference = half_plane_stress_difference(state, body, now, ratio, branch)
             yield difference_check("stresses", difference, "p0", f"{name}, {body}")
-            found = state.peak_hoop_stress(body)
+            largest = state.peak_hoop_stress(body)
             trailing = -1.0 if (now > 0.0) == (body == "plate") else 1.0
-            yield relative_check("peak hoop stress", found.value, peak, f"{name}, {body}")
-            yield relative_check("its place", (found.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
+            yield relative_check("peak hoop stress", largest.value, peak, f"{name}, {body}")
+            yield relative_check("its place", (largest.angle - BOTTOM) / _NARROW, trailing, f"{name}, {body}")
 
 
 def _energy(problem: Problem, solving: Solving) -> Checks:

@@ -1,6 +1,6 @@
 """Closed forms of contact solutions and of stresses, to check the solver.
 
-Places along the contact are angles from the direction of the load, rad. Tractions are in units of F/R. The load
+Positions along the contact are angles from the direction of the load, rad. Tractions are in units of F/R. The load
 parameter is L_p = (R - R_D)/(F beta*), with beta* of Eq. (32). Arguments may be numbers or arrays that broadcast.
 Numbers give a float.
 
@@ -318,7 +318,7 @@ def elliptic_stress(
     Parameters
     ----------
     x, depth : float or ndarray
-        Place along the surface from the middle of the contact, and depth >= 0, in the unit of `half_width`.
+        Position along the surface from the middle of the contact, and depth >= 0, in the unit of `half_width`.
     half_width : float
         a, positive.
     pressure, shear : float
@@ -369,7 +369,7 @@ def cattaneo_mindlin_stress(
     Parameters
     ----------
     x, depth : float or ndarray
-        Place along the surface and depth, see :func:`elliptic_stress`.
+        Position along the surface and depth, see :func:`elliptic_stress`.
     half_width, peak_pressure, friction, load_ratio, peak_ratio, branch
         As for :func:`cattaneo_mindlin_shear`. The shear acts on the half-plane in the direction of x.
 

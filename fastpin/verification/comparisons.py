@@ -24,7 +24,7 @@ from fastpin.verification import closed_forms, integral_equations, interference
 def cattaneo_mindlin(
     state: State, x: np.ndarray | float, now: float, most: float, branch: closed_forms.Branch
 ) -> np.ndarray | float:
-    """Cattaneo and Mindlin's shear traction T on the pin under the load P of a state, in P/R.
+    """Return Cattaneo and Mindlin's shear traction T on the pin under the load P of a state, in P/R.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def cattaneo_mindlin(
 
 
 def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[float]:
-    """Differences int |dT| / int mu N of three states from Cattaneo-Mindlin shear tractions.
+    """Return the differences int |dT| / int mu N of three states from Cattaneo-Mindlin shear tractions.
 
     Parameters
     ----------
@@ -69,14 +69,14 @@ def cattaneo_mindlin_differences(states: Sequence[State], ratio: float) -> list[
         (-ratio, "unloading"),
         (ratio, "reloading"),
     ]
-    found = []
+    differences = []
     for state, (now, branch) in zip(states, branches, strict=True):
         shear = cattaneo_mindlin(state, state.theta - BOTTOM, now, ratio, branch)
         weights = state.grid.weights
-        found.append(
+        differences.append(
             float(weights @ np.abs(state.shear - shear) / (state.problem.friction * (weights @ state.pressure)))
         )
-    return found
+    return differences
 
 
 def half_plane_stress_difference(
@@ -96,7 +96,7 @@ def half_plane_stress_difference(
     """
     half = float(closed_forms.hertz_half_angle(state.problem.load_parameter(state.load["P"])))
     x, depth = np.linspace(-2.0, 2.0, 41), np.linspace(0.02, 2.0, 21)[:, None]
-    found = state.stress(Points.at_depth(half * depth, BOTTOM + half * x), body)
+    stress = state.stress(Points.at_depth(half * depth, BOTTOM + half * x), body)
     # The pin pushes the plate along +x on the loading branch, and the plate pushes the pin along -x. The depth is
     # +r in the plate and -r in the pin: in the pin x and srt change their signs.
     side = 1.0 if body == "plate" else -1.0
@@ -104,11 +104,11 @@ def half_plane_stress_difference(
         side * x, depth, 1.0, 1.0, state.problem.friction, now, most, branch
     )
     peak = float(closed_forms.hertz_peak_pressure(state.problem.load_parameter(state.load["P"])))
-    return float(np.abs(np.array([found.hoop, found.radial, found.shear]) / peak - expected).max())
+    return float(np.abs(np.array([stress.hoop, stress.radial, stress.shear]) / peak - expected).max())
 
 
 def stress_resultant(state: State, body: Body, radius: float, count: int = 400) -> tuple[complex, float]:
-    """Force Q - iP and moment that the stress carries through a circle about the centre, from inside to outside.
+    """Return the force Q - iP and the moment that the stress carries outwards through a circle about the centre.
 
     Parameters
     ----------
@@ -125,9 +125,9 @@ def stress_resultant(state: State, body: Body, radius: float, count: int = 400) 
         In N/m and N.
     """
     theta = 2.0 * np.pi * np.arange(count) / count
-    found = state.stress(Points.at_radius(radius, theta), body, straight=True)
-    force = -2.0 * np.pi * radius * np.mean((found.radial + 1j * found.shear) * np.exp(1j * theta))
-    return complex(force), -2.0 * np.pi * radius**2 * float(found.shear.mean())
+    stress = state.stress(Points.at_radius(radius, theta), body, straight=True)
+    force = -2.0 * np.pi * radius * np.mean((stress.radial + 1j * stress.shear) * np.exp(1j * theta))
+    return complex(force), -2.0 * np.pi * radius**2 * float(stress.shear.mean())
 
 
 def strain_slip_difference(state: State) -> float:
@@ -155,14 +155,14 @@ def strain_slip_difference(state: State) -> float:
 def _hoop_strain(state: State, body: Body, theta: np.ndarray) -> np.ndarray:
     pair = state.problem.surfaces
     material, kolosov = (pair.plate, pair.plate_kolosov) if body == "plate" else (pair.pin, pair.pin_kolosov)
-    found = state.stress(Points.at_depth(0.0, theta), body, straight=True)
+    stress = state.stress(Points.at_depth(0.0, theta), body, straight=True)
     # the press fit of a bush is over before slip and gap count
-    hoop = found.hoop - (press_fit_hoop(state.problem) if body == "plate" else 0.0)
-    return (hoop - 0.25 * (3.0 - kolosov) * (hoop + found.radial)) / (2.0 * material.shear_modulus)
+    hoop = stress.hoop - (press_fit_hoop(state.problem) if body == "plate" else 0.0)
+    return (hoop - 0.25 * (3.0 - kolosov) * (hoop + stress.radial)) / (2.0 * material.shear_modulus)
 
 
 def residuals_away(state: State, margin: float) -> tuple[float, float]:
-    """Largest residuals of (46) and (47) inside the contact, away from its edges and borders.
+    """Return the largest residuals of (46) and (47) inside the contact, away from its edges and borders.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def residuals_away(state: State, margin: float) -> tuple[float, float]:
 
 
 def all_round_difference(state: State) -> float:
-    """Largest difference of N and T from the closed forms of a contact all round, over the uniform pressure N0.
+    """Return the largest difference of N and T from the closed forms of a contact all round, over the pressure N0.
 
     Parameters
     ----------
@@ -204,8 +204,8 @@ def all_round_difference(state: State) -> float:
         expected = np.array([pressure, np.zeros(pressure.size)])
     else:
         expected = interference.stuck_tractions(state.problem, state.theta, load)
-    found = np.array([state.pressure, state.shear])
-    return float(np.abs(found - expected).max() / interference.uniform_pressure(state.problem))
+    tractions = np.array([state.pressure, state.shear])
+    return float(np.abs(tractions - expected).max() / interference.uniform_pressure(state.problem))
 
 
 def event_load(
@@ -216,7 +216,7 @@ def event_load(
     nodes: int,
     follow: Callable[..., Result] = solve,
 ) -> float:
-    """The size of one load at which an event first happens on a grid, by states along the exact path.
+    """Return the size of one load at which an event first happens on a grid, by states along the exact path.
 
     Parameters
     ----------
@@ -241,7 +241,7 @@ def event_load(
     for _ in range(5):  # 16 parts of the range in each round: 16^-5 is 1e-6
         start = follow(problem, [{load: low}], nodes=nodes, start=start)
         states = follow(problem, [{load: high}], nodes=nodes, start=start, between=15)
-        first = next((place for place, state in enumerate(states) if happened(state)), None)
+        first = next((index for index, state in enumerate(states) if happened(state)), None)
         if first is None:
             return math.nan
         low, high = (low if first == 0 else states[first - 1].load[load]), states[first].load[load]

@@ -100,16 +100,16 @@ class FiniteElements:
         return cls(problem, FRETTING[: len(states)], Grid(theta[inside]), pressure, shear)
 
     def differences(self, states: Sequence[State]) -> list[Difference]:
-        """Differences of the states at the corners of the history. The states must be solved on ``grid``."""
-        found = []
+        """Return the differences of the states at the corners of the history. The states must be solved on ``grid``."""
+        differences = []
         away = np.ones(self.grid.size, dtype=bool)
         for state, pressure, shear in zip(states, self.pressure, self.shear, strict=True):
             for border in np.flatnonzero(np.diff(state.status)):
                 away[max(border - _NEAR + 1, 0) : border + _NEAR + 1] = False
             normal, tangential = np.abs(state.pressure - pressure), np.abs(state.shear - shear)
             sums = (normal.sum(), tangential.sum(), normal[away].sum(), tangential[away].sum())
-            found.append(Difference(*(float(total / pressure.sum()) for total in sums)))
-        return found
+            differences.append(Difference(*(float(total / pressure.sum()) for total in sums)))
+        return differences
 
 
 _MODELS = {

@@ -125,7 +125,7 @@ def residuals(
 
 
 def _pin_constants(problem: Problem) -> tuple[float, float]:
-    """The composite constants gamma and gamma' over beta*, (39) or (56)."""
+    """Return the composite constants gamma and gamma' over beta*, (39) or (56)."""
     pair = problem.surfaces
     if problem.pin_load == "centre":
         return pair.gamma / pair.beta_star, pair.gamma_prime / pair.beta_star
@@ -150,16 +150,16 @@ def _traction_terms(bodies: BodyTerms, grid: Grid, tractions: np.ndarray) -> np.
     gap, slip = first * pressure - 1j * cross * shear, second * shear + 1j * cross * pressure
     n = order[: first.size]
     waves = np.exp(1j * np.multiply.outer(grid.theta, n))
-    found = np.array([waves @ (1j * n * slip - gap), waves @ (1j * n * gap + slip)]).real
+    terms = np.array([waves @ (1j * n * slip - gap), waves @ (1j * n * gap + slip)]).real
     if bodies.matrix.size:
         low = spectra[: (len(bodies.matrix) + 2) // 4] / math.pi
         moved = complex_coefficients(bodies.matrix @ plate_coefficients(*low.T))
-        found += _of_displacement(moved, grid.theta)
-    return found
+        terms += _of_displacement(moved, grid.theta)
+    return terms
 
 
 def _load_terms(problem: Problem, bodies: BodyTerms, theta: np.ndarray, load: dict[int, float]) -> np.ndarray:
-    """Terms of (46) and (47), shape (2, n), by which loads, by their places, move finite bodies.
+    """Terms of (46) and (47), shape (2, n), by which loads move finite bodies.
 
     The first harmonic of P and Q counts beyond that of a solid pin, which (39) and (56) hold.
     """
@@ -167,10 +167,10 @@ def _load_terms(problem: Problem, bodies: BodyTerms, theta: np.ndarray, load: di
     point = bodies.force_factor - share * pair.pin_compliance / (4.0 * math.pi * pair.beta_star)
     force = load[Q] - 1j * load[P]
     moved = 2.0 * point * np.conj(force) * np.exp(1j * theta)
-    found = np.array([moved.real, moved.imag])
+    terms = np.array([moved.real, moved.imag])
     for place, column in bodies.columns.items():
-        found += _of_displacement(load[place] * column, theta)
-    return found
+        terms += _of_displacement(load[place] * column, theta)
+    return terms
 
 
 def _of_displacement(column: np.ndarray, theta: np.ndarray) -> np.ndarray:

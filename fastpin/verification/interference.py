@@ -214,7 +214,7 @@ def bonded_opening_load(problem: Problem) -> float:
 
 
 def first_slip_load(problem: Problem) -> float:
-    """The load P at which the first place slips: 2 pi R mu N0/sqrt[(1 - m)^2 + mu^2 (1 + m)^2].
+    """The load P at which the first point slips: 2 pi R mu N0/sqrt[(1 - m)^2 + mu^2 (1 + m)^2].
 
     It lies at sin theta = mu |1 + m|/sqrt[(1 - m)^2 + mu^2 (1 + m)^2], on both sides.
 

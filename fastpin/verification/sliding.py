@@ -181,18 +181,18 @@ def solve_sliding(problem: Problem, load: Mapping[str, float], slip: int = 1, te
         raise InputError("slip", f"must be 1 (counter-clockwise) or -1, not {as_toml(slip)}")
     counts = TERMS if terms is None else (whole_number("terms", terms, LEAST_TERMS, MOST_TERMS),)
     case = _Case.of(problem, given, -float(slip))
-    place: tuple[float, float] | None = None
+    ends: tuple[float, float] | None = None
     with threadpool_limits(limits=1, user_api="blas"):
         for count in counts:
             basis = _Basis.of(case, count)
-            place = _two_ends(case, basis, place)
-            patch = _patch(case, basis, *place)
+            ends = _two_ends(case, basis, ends)
+            patch = _patch(case, basis, *ends)
             size = np.abs(patch.coefficients)
             truncation = float(size[-3:].max() / size.max())
             if truncation < NEGLIGIBLE:
                 break
-        assert place is not None
-        centre, half = place
+        assert ends is not None
+        centre, half = ends
         moment = -case.sign * problem.friction * case.size * problem.hole_radius * patch.total
         result = Sliding(
             problem,
@@ -297,7 +297,7 @@ class _Case:
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """Polynomials and integrals that do not depend on the place of the contact.
+    """Polynomials and integrals that do not depend on the ends of the contact.
 
     Rows are collocation points t_i, or quadrature nodes in ``weighted``. Columns are terms k.
     """
@@ -329,7 +329,7 @@ class _Basis:
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """The solution on a contact with given ends. Its clearance and transverse force may differ from the case."""
+    """The solution on a contact with known ends. Its clearance and transverse force may differ from the case."""
 
     coefficients: np.ndarray  # of the pressure
     clearance: float  # with which these ends are a solution
@@ -338,7 +338,7 @@ class _Piece:
 
 
 def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Piece:
-    """Solve (58) times -half/(2 pi) on centre +- half, with given normal force and unknown clearance."""
+    """Solve (58) times -half/(2 pi) on centre +- half, with known normal force and unknown clearance."""
     mu, terms = case.sign * case.mu, basis.points.size
     difference = half * (basis.points[:, None] - basis.nodes)
     kernel, slope = _smooth_cotangent(difference)
@@ -365,7 +365,7 @@ def _patch(case: _Case, basis: _Basis, centre: float, half: float) -> _Piece:
 
 
 def _kernels(bodies: BodyTerms, mu: float, theta: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The gap g that finite bodies add at `theta` (m,) per pressure at `xi` (k,), and g + g''; each (m, k).
+    """Return the gap g that finite bodies add at `theta` (m,) per pressure at `xi` (k,), and g + g''; each (m, k).
 
     The shear traction is `mu` times the pressure.
     """
@@ -374,25 +374,28 @@ def _kernels(bodies: BodyTerms, mu: float, theta: np.ndarray, xi: np.ndarray) ->
     seen, acting = (np.exp(1j * np.multiply.outer(angle, order)) for angle in (theta, xi))
     both = (first - 1j * mu * cross) * np.conj(acting)
     gap, sum_gap = ((seen * part) @ both.T for part in (1.0, 1.0 - order**2.0))
-    found = np.array([gap.real, sum_gap.real])
+    kernels = np.array([gap.real, sum_gap.real])
     if bodies.matrix.size:
         n = np.arange((len(bodies.matrix) - 2) // 4 + 1)
         waves = np.exp(-1j * np.multiply.outer(n, xi)) / math.pi
         acting = plate_coefficients(waves, mu * waves)
         moved = complex_coefficients(bodies.matrix @ acting)
-        found += np.array(_radial(moved, theta))
-    return found[0], found[1]
+        kernels += np.array(_radial(moved, theta))
+    return kernels[0], kernels[1]
 
 
 def _radial(column: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """v_r and v_r + v_r'' at `theta` (m,) from coefficients of v_r + i v_theta, n = -K to K, shape (2K + 1, ...)."""
+    """Return v_r and v_r + v_r'' at `theta` (m,) from the coefficients of v_r + i v_theta, n = -K to K.
+
+    `column` has the shape (2K + 1, ...).
+    """
     order = np.arange(len(column)) - len(column) // 2
     waves = np.exp(1j * np.multiply.outer(theta, order))
     return (waves @ column).real, (waves * (1.0 - order**2.0) @ column).real
 
 
 def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The function cot(x/2) - 2/x and its derivative, for |x| < 2 pi; by a power series for |x| < 1."""
+    """Return cot(x/2) - 2/x and its derivative, for |x| < 2 pi; by a power series for |x| < 1."""
     small = np.abs(x) < 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         value = 1.0 / np.tan(0.5 * x) - 2.0 / x
@@ -406,7 +409,7 @@ def _smooth_cotangent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _two_ends(case: _Case, basis: _Basis, start: tuple[float, float] | None) -> tuple[float, float]:
-    """Middle and half-width of the contact, with the clearance and the direction of force of the case.
+    """Return middle and half-width of the contact with the clearance and the direction of force of the case.
 
     Without a good `start` the case is approached from a loose fit (L_p = 1 at least) without remote stress. Clearance
     and stress change together, or one after the other: on some ways the contact would have several parts.
@@ -463,7 +466,7 @@ def _along(before: _Case, after: _Case, basis: _Basis, place: tuple[float, float
 
 
 def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[float, float] | None:
-    """Middle and half-width of the contact of a case, near `start`. None if the iteration does not converge there."""
+    """Return middle and half-width of a case's contact near `start`, None if the iteration does not converge."""
 
     def residuals(unknowns: np.ndarray) -> np.ndarray:
         half = 2.0 * math.atan(math.exp(min(unknowns[1], 50.0)))
@@ -483,15 +486,15 @@ def _ends_near(case: _Case, basis: _Basis, start: tuple[float, float]) -> tuple[
     return float(solution.x[0]), 2.0 * math.atan(math.exp(solution.x[1]))
 
 
-def _check_conditions(case: _Case, found: Sliding) -> None:
+def _check_conditions(case: _Case, sliding: Sliding) -> None:
     """Raise ConvergenceError unless N >= 0 in the contact and h >= 0 outside it."""
-    start, stop = found.contact
-    unit = case.size / found.problem.hole_radius
-    inside = found.pressure(np.linspace(start, stop, 402)[1:-1]) / unit
+    start, stop = sliding.contact
+    unit = case.size / sliding.problem.hole_radius
+    inside = sliding.pressure(np.linspace(start, stop, 402)[1:-1]) / unit
     if not inside.min() >= -1e-9 * inside.max():
         raise ConvergenceError("the sliding contact would pull somewhere: it has several parts under this load")
     outside = np.linspace(stop, start + 2.0 * math.pi, 202)[1:-1]
-    gap = _gap(case, found, outside)
+    gap = _gap(case, sliding, outside)
     if not gap.min() >= -1e-6 * np.abs(gap).max():
         angle = math.degrees(outside[np.argmin(gap)]) + 90.0
         raise ConvergenceError(
@@ -500,10 +503,10 @@ def _check_conditions(case: _Case, found: Sliding) -> None:
         )
 
 
-def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
-    """Gap at angles `theta` outside the contact, in F beta*, from the displacements (9)-(12)."""
-    start, stop = found.contact
-    unit = case.size / found.problem.hole_radius
+def _gap(case: _Case, sliding: Sliding, theta: np.ndarray) -> np.ndarray:
+    """Return the gap at angles `theta` outside the contact, in F beta*, from the displacements (9)-(12)."""
+    start, stop = sliding.contact
+    unit = case.size / sliding.problem.hole_radius
     u, weights = np.polynomial.legendre.leggauss(200)
     u, weights = 0.5 * (u + 1.0), 0.5 * weights
 
@@ -515,7 +518,7 @@ def _gap(case: _Case, found: Sliding, theta: np.ndarray) -> np.ndarray:
         """
         xi = begin + (end - begin) * u**2 * (3.0 - 2.0 * u)
         width = (end - begin) * 6.0 * u * (1.0 - u) * weights
-        pressure = width * found.pressure(xi) / unit
+        pressure = width * sliding.pressure(xi) / unit
         shear = case.sign * case.mu * pressure
         phi = angle[:, None] - xi
         C, S, L = np.cos(phi), np.sin(phi), np.log(4.0 * np.sin(0.5 * phi) ** 2)
